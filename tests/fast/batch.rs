@@ -1,4 +1,4 @@
-//! Batches, end to end: what a run leaves, what its table says, shards and merges, failures and Ctrl-C.
+//! Batches, end to end: files and table of a run, shards and merges, failures and Ctrl-C.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,11 +9,11 @@ use crate::harness::{REFUSED, SWEEP, VARIANTS, differences, done, ended, hashes,
 use pinswitch_batch::{Schema, Sweep, SweepSource, read_rows};
 
 #[test]
-fn a_batch_leaves_parts_table_plots_and_page() {
+fn a_batch_has_parts_table_and_page() {
     let folder = with_sweep(SWEEP);
     let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(said.contains("b: 12 variants made, 12 refused, 0 failed"), "{said}");
-    // Two pin layouts by two tendon lengths by three widths: a label on shell and support, one coupon, a ring a width.
+    // Two pin layouts, two tendon lengths, three widths: shells and supports with labels, one coupon, one ring per width.
     assert!(said.contains("48 part files, 28 of them different"), "{said}");
     let b = folder.path().join("b");
     let rows = table(&b);
@@ -51,7 +51,7 @@ fn a_batch_leaves_parts_table_plots_and_page() {
     );
 }
 
-/// The manifest names every file with its hash and its content; links are links.
+/// Checks the manifest's hashes and contents of all files, and that parts are hard links.
 fn check_variant(of: &Path, row: &BTreeMap<String, String>) {
     use std::os::unix::fs::MetadataExt;
     let manifest: serde_json::Value =
@@ -100,7 +100,7 @@ fn parquet_and_csv_hold_the_same() {
 }
 
 #[test]
-fn a_dry_run_tells_and_writes_nothing() {
+fn dry_runs_write_nothing() {
     let folder = with_sweep(SWEEP);
     let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b", "--dry-run"]);
     let lines: Vec<_> = said.lines().collect();
@@ -144,7 +144,7 @@ fn samples_and_rows_are_made_like_axes() {
 }
 
 #[test]
-fn shards_merge_to_what_one_run_makes() {
+fn merged_shards_equal_one_run() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     done(path, &["batch", "sweep.toml", "--out", "whole"]);
@@ -168,7 +168,7 @@ fn shards_merge_to_what_one_run_makes() {
         "{said}"
     );
 
-    // Shards in two places, of different sizes, into a third.
+    // Shards of different sizes in two folders, merged into a third one.
     for (out, shard) in [("a", "1/2"), ("b", "3/4"), ("b", "4/4")] {
         done(path, &["batch", "sweep.toml", "--out", out, "--shard", shard]);
     }
@@ -186,7 +186,7 @@ fn shards_merge_to_what_one_run_makes() {
 }
 
 #[test]
-fn shards_meet_behind_a_file_url() {
+fn shards_share_a_file_url() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     let url = format!("file://{}/shared/sweep", path.display());
@@ -196,14 +196,14 @@ fn shards_meet_behind_a_file_url() {
     done(path, &["merge", &url]);
     done(path, &["batch", "sweep.toml", "--out", "whole"]);
     let differing = differences(&hashes(&path.join("shared/sweep")), &hashes(&path.join("whole")));
-    // A shard's own notes stand beside what one run makes.
+    // Records of shards are in addition to the files of one run.
     assert!(differing.iter().all(|name| name.starts_with("shards/")), "{differing:?}");
     let again = done(path, &["batch", "sweep.toml", "--out", &url, "--shard", "1/2"]);
     assert!(again.contains("; 12 were there before"), "{again}");
 }
 
 #[test]
-fn what_was_changed_is_made_again() {
+fn changed_files_are_made_again() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     done(path, &["batch", "sweep.toml", "--out", "b"]);
@@ -222,7 +222,7 @@ fn what_was_changed_is_made_again() {
 }
 
 #[test]
-fn a_variant_that_fails_is_recorded_and_the_others_are_made() {
+fn failed_variants_are_recorded() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     done(path, &["batch", "sweep.toml", "--out", "b"]);
@@ -238,7 +238,9 @@ fn a_variant_that_fails_is_recorded_and_the_others_are_made() {
     assert!(row["reason"].contains(&victim), "{row:?}");
     let (code, said) = ended(path, &["batch", "sweep.toml", "--out", "b", "--fail-fast"]);
     assert!(
-        code == Some(1) && said.contains(&victim) && said.contains("--fail-fast ends the run here"),
+        code == Some(1)
+            && said.contains(&format!("variant {victim} failed: "))
+            && said.contains("omit --fail-fast to make the other variants"),
         "{said}"
     );
     std::fs::remove_file(&obstacle).unwrap();
@@ -247,7 +249,7 @@ fn a_variant_that_fails_is_recorded_and_the_others_are_made() {
 }
 
 #[test]
-fn ctrl_c_finishes_what_is_begun() {
+fn ctrl_c_finishes_started_variants() {
     // Long enough to be interrupted: 400 variants on one thread.
     let folder = with_sweep(
         "[sweep]\nbase = \"three-double\"\n[axes]\n\"shell.width_mm\" = { from = 12, to = 16, count = 400 }\n",
@@ -261,7 +263,7 @@ fn ctrl_c_finishes_what_is_begun() {
     let variants = folder.path().join("b/variants");
     let start = Instant::now();
     while std::fs::read_dir(&variants).map_or(0, Iterator::count) < 3 {
-        assert!(start.elapsed() < Duration::from_secs(60), "no variant was begun");
+        assert!(start.elapsed() < Duration::from_secs(60), "no variant was started");
         std::thread::sleep(Duration::from_millis(5));
     }
     let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
@@ -269,8 +271,8 @@ fn ctrl_c_finishes_what_is_begun() {
     let mut said = String::new();
     std::io::Read::read_to_string(child.stderr.as_mut().unwrap(), &mut said).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
-    assert!(said.contains("error: stopped: ") && said.contains(" of 400 variants are there"), "{said}");
-    // A pipe gets no bar.
+    assert!(said.contains("error: stopped: ") && said.contains(" of 400 variants are finished"), "{said}");
+    // There is no progress bar in a pipe.
     assert!(!said.contains('\r') && !said.contains('\u{1b}'), "{said:?}");
     for variant in std::fs::read_dir(&variants).unwrap() {
         assert!(variant.unwrap().path().join("manifest.json").exists());
@@ -280,7 +282,7 @@ fn ctrl_c_finishes_what_is_begun() {
 }
 
 #[test]
-fn what_only_meshing_finds_is_refused_and_its_field_is_named() {
+fn meshing_errors_are_refusals() {
     let folder = with_sweep(
         "[sweep]\nbase = \"base.toml\"\nparts = [\"proxy\", \"shell\"]\n[set]\n\"friction.points\" = 3\n\
          [axes]\n\"tendon.length_mm\" = [200]\n\"segment.groove_radius_mm\" = [0.9, 1.0]\n",

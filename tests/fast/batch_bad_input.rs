@@ -14,57 +14,71 @@ fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn sweeps_that_make_no_sense_are_refused() {
+fn invalid_sweeps_are_refused() {
     let axes = |text: &str| format!("[axes]\n{text}\n");
     for (sweep, expected) in [
         (
             axes("\"shell.with_mm\" = [1]"),
-            "sweep.toml:2: shell.with_mm is no known field; did you mean \"shell.width_mm\"?",
+            "sweep.toml:2:19: shell.with_mm: unknown field; did you mean \"shell.width_mm\"?",
         ),
         (
             axes("\"support.slots\" = { from = 1, to = 3, step = 1 }"),
-            "sweep.toml:2: support.slots takes no numbers, so no range; give a list of values",
+            "sweep.toml:2:19: support.slots: range over a field that does not take numbers; give a list of values",
         ),
         (
             axes("\"shell.width_mm\" = [\"wide\"]"),
-            "sweep.toml:2: shell.width_mm = \"wide\" is not accepted; give a number within 2 to 100",
+            "sweep.toml:2:20: shell.width_mm = \"wide\": invalid value; give a number within 2 to 100",
         ),
-        (axes("\"shell.width_mm\" = []"), "sweep.toml:2: shell.width_mm = [] is an empty axis"),
-        (axes(""), "sweep.toml:1: sweep is empty"),
-        (String::new(), "sweep.toml:1: sweep is empty"),
+        (
+            format!(
+                "{}[[constraints]]\nrequire = \"shell.width_mm + 1\"\n",
+                axes("\"shell.width_mm\" = [12]")
+            ),
+            "sweep.toml:4:12: constraints.require = \"shell.width_mm + 1\": expected a condition, found a number",
+        ),
+        (
+            format!("{}[[constraints]]\nbecause = \"x\"\n", axes("\"shell.width_mm\" = [12]")),
+            "sweep.toml:3:1: constraints.require: missing, or not a string",
+        ),
+        (axes("\"shell.width_mm\" = []"), "sweep.toml:2:20: shell.width_mm = []: empty axis"),
+        (axes(""), "sweep.toml:1:1: the sweep has no axes ([axes], [sample] or [rows])"),
+        (String::new(), "sweep.toml:1:1: the sweep has no axes ([axes], [sample] or [rows])"),
         (
             axes("\"shell.width_mm\" = { from = 16, to = 12, step = 1 }"),
-            "sweep.toml:2: shell.width_mm = 16 to 12 runs backwards; write from = 12, to = 16",
+            "sweep.toml:2:20: shell.width_mm = 16 to 12: from is above to; write from = 12, to = 16",
         ),
-        (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2: shell.width_mm = 500 is not accepted"),
-        ("[axis]\n".to_owned(), "sweep.toml:1: axis is no table of a sweep; known are sweep, set, axes"),
-        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2: sweep.basis is no known key"),
+        (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2:20: shell.width_mm = 500: invalid value"),
+        ("[axis]\n".to_owned(), "sweep.toml:1:1: axis: unknown table; known are sweep, set, axes"),
+        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2:9: sweep.basis: unknown key; known are name, base"),
         (
             "[sweep]\nbase = \"four-double\"\n".to_owned(),
-            "sweep.toml:2: sweep.base = \"four-double\" is neither a file",
+            "sweep.toml:2:8: sweep.base = \"four-double\": neither a file",
         ),
         (
             "[sweep]\nparts = [\"shel\"]\n[axes]\n\"shell.width_mm\" = [12]\n".to_owned(),
-            "sweep.toml:2: sweep.parts = \"shel\" is no part",
+            "sweep.toml:2:9: sweep.parts = \"shel\": unknown part",
         ),
-        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "sweep.toml:2: rows.file = \"no.csv\" cannot be read"),
-        ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1: sample is empty"),
+        (
+            "[rows]\nfile = \"no.csv\"\n".to_owned(),
+            "sweep.toml:2:8: rows.file = \"no.csv\": cannot read the file",
+        ),
+        ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1:1: the sample has no points or no axes"),
         (
             "[sample]\nmethod = \"sobol\"\ncount = 5\n".to_owned(),
-            "sweep.toml:1: sample.method = \"sobol\" is no method",
+            "sweep.toml:1:1: sample.method = \"sobol\": unknown method",
         ),
         (
             format!(
                 "{}[sample]\ncount = 2\n[sample.axes]\n\"shell.width_mm\" = [12]\n",
                 axes("\"shell.width_mm\" = [12]")
             ),
-            "sweep.toml:1: shell.width_mm varies twice",
+            "sweep.toml:1:1: shell.width_mm: the field varies twice",
         ),
         (
             format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),
-            "sweep.toml:3: constraints.require = \"shell.width > 3\" has the unknown name \"shell.width\"",
+            "sweep.toml:4:12: constraints.require = \"shell.width > 3\": unknown name 'shell.width'; did you mean shell.width_mm?",
         ),
-        ("[axes\n".to_owned(), "sweep.toml:1: syntax"),
+        ("[axes\n".to_owned(), "sweep.toml:1:6: syntax: "),
     ] {
         let folder = with_sweep(&sweep);
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
@@ -75,7 +89,7 @@ fn sweeps_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn too_many_variants_want_a_yes() {
+fn large_sweeps_need_confirmation() {
     let folder = with_sweep("[axes]\n\"shell.width_mm\" = { from = 10, to = 30, step = 0.001 }\n");
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert_eq!(code, Some(2));
@@ -87,16 +101,20 @@ fn too_many_variants_want_a_yes() {
 }
 
 #[test]
-fn shards_that_are_none_are_refused() {
+fn invalid_shards_are_refused() {
     let folder = with_sweep(SWEEP);
     let (code, said) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
-    assert!(code == Some(2) && said.contains("\"4/3\" is no shard; give K/N"), "{said}");
+    assert!(
+        code == Some(2)
+            && said.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
+        "{said}"
+    );
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
     assert!(code == Some(2) && error.contains("--shard 1/99 has no variant: the sweep has 24"), "{error}");
 }
 
 #[test]
-fn a_folder_with_something_else_is_left_alone() {
+fn folders_with_other_files_stay_unchanged() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     done(path, &["batch", "sweep.toml", "--out", "b"]);
@@ -104,36 +122,44 @@ fn a_folder_with_something_else_is_left_alone() {
     std::fs::write(path.join("other.toml"), SWEEP.replace("\"small\"", "\"other\"")).unwrap();
     let (code, error) = refused(path, &["batch", "other.toml", "--out", "b"]);
     assert_eq!(code, Some(2));
-    assert_eq!(error, "error: b holds another sweep (\"small\"); give another --out, nothing was changed");
+    assert_eq!(
+        error,
+        "error: b contains another sweep (\"small\"); give another --out (nothing was changed)"
+    );
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/thesis"), "dear").unwrap();
     let (code, error) = refused(path, &["batch", "sweep.toml", "--out", "papers"]);
     assert_eq!(code, Some(2));
     assert_eq!(
         error,
-        "error: papers holds files that are no batch; give an empty or new --out, nothing was changed"
+        "error: papers is not empty and not a batch folder (batch.json not found); give an empty or new --out (nothing was \
+         changed)"
     );
     assert_eq!(std::fs::read_dir(path.join("papers")).unwrap().count(), 1);
     assert_eq!(differences(&before, &hashes(&path.join("b"))), Vec::<String>::new());
     let (code, error) = refused(path, &["merge", "papers"]);
-    assert!(code == Some(2) && error.contains("papers holds no batch: there is no batch.json"), "{error}");
+    assert!(
+        code == Some(2) && error.contains("papers is not a batch folder (batch.json not found)"),
+        "{error}"
+    );
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_refused() {
+fn unwritable_destinations_are_refused() {
     let folder = with_sweep(SWEEP);
     std::fs::write(folder.path().join("file"), "").unwrap();
-    // A file is no folder, and nobody writes into /proc, not even an administrator.
+    // A file is not a folder, and not even an administrator can write into /proc.
     let long = "x".repeat(300);
     for out in ["file", "file/b", "/proc/b", "gopher://bucket/b", "s4://bucket/b", &long] {
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", out]);
-        assert!(code == Some(2) && error.starts_with(&format!("error: {out}")), "{error}");
+        let shown = pinswitch_diagnostic::excerpt(out, 160);
+        assert!(code == Some(2) && error.starts_with(&format!("error: {shown}")), "{error}");
         assert!(error.contains("; give a") || error.contains("give another --out"), "{error}");
     }
 }
 
 #[test]
-fn what_stands_in_the_way_is_refused_by_a_dry_run_as_by_the_run() {
+fn obstructed_products_are_refused() {
     let folder = with_sweep(SWEEP);
     done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     let before = hashes(&folder.path().join("b"));
@@ -153,14 +179,14 @@ fn what_stands_in_the_way_is_refused_by_a_dry_run_as_by_the_run() {
 }
 
 #[test]
-fn a_dry_run_says_what_single_variants_would_fail_at() {
+fn dry_runs_report_obstructed_variants() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     done(path, &["batch", "sweep.toml", "--out", "b"]);
     let made = std::fs::read_dir(path.join("b/variants")).unwrap().map(|e| e.unwrap().path()).next().unwrap();
     let dry = || ended(path, &["batch", "sweep.toml", "--out", "b", "--dry-run"]);
     assert_eq!(dry().0, Some(0));
-    // What has the name of no variant is in nobody's way.
+    // A file without the name of a variant does not obstruct.
     std::fs::write(path.join("b/variants/notes.txt"), "dear").unwrap();
     assert_eq!(dry().0, Some(0));
     std::fs::remove_file(made.join("manifest.json")).unwrap();
@@ -175,9 +201,9 @@ fn a_dry_run_says_what_single_variants_would_fail_at() {
 }
 
 #[test]
-fn too_many_rows_are_counted_and_not_read() {
+fn rows_are_counted_before_they_are_read() {
     let folder = with_sweep("[rows]\nfile = \"rows.csv\"\n");
-    // Of these rows, all are wrong: had one been read, that would be the error.
+    // Every row is invalid: the error of a row would show that it was read.
     let rows = format!("shell.width_mm\n{}", "wide\n".repeat(200_000));
     std::fs::write(folder.path().join("rows.csv"), rows).unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
@@ -185,7 +211,7 @@ fn too_many_rows_are_counted_and_not_read() {
     std::fs::write(folder.path().join("rows.csv"), "shell.width_mm\n12\nwide\n").unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(
-        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\" is not accepted"),
+        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\": invalid value"),
         "{error}"
     );
     let many = format!("[axes]\n\"shell.width_mm\" = [{}]\n", "12.5, ".repeat(200_000));
@@ -195,7 +221,7 @@ fn too_many_rows_are_counted_and_not_read() {
 }
 
 #[test]
-fn a_full_disk_stops_the_run_and_room_lets_it_go_on() {
+fn runs_resume_after_a_full_disk() {
     let folder = with_sweep(SWEEP);
     let (path, disk) = (folder.path(), folder.path().join("disk"));
     std::fs::create_dir(&disk).unwrap();
@@ -218,8 +244,8 @@ fn a_full_disk_stops_the_run_and_room_lets_it_go_on() {
     assert_eq!(code, Some(1), "{error}");
     assert!(
         error.contains("No space left on device")
-            && error.contains("make room")
-            && error.ends_with("variants are there: then give the same command again"),
+            && error.ends_with(" of 24 variants are finished)")
+            && error.contains("make room, or give another --out, then run the same command again to resume"),
         "{error}"
     );
     assert_eq!(resumed.0, Some(0), "{}", resumed.1);

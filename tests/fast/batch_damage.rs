@@ -1,5 +1,5 @@
-//! Batches whose files were damaged, edited or deleted: a resumed run makes them again, a merge names them; and sweeps
-//! that are refused before they are expanded, by a dry run as by a run.
+//! Batches with damaged, edited or deleted files: a resumed run makes them again, a merge reports them; and sweeps that are
+//! refused before they are expanded, in a dry run as in a run.
 
 use std::path::Path;
 use std::process::Command;
@@ -19,7 +19,7 @@ fn flip(path: &Path, random: &mut ChaCha8Rng) {
     std::fs::write(path, bytes).unwrap();
 }
 
-/// The JSON with the hash of its bytes as a batch writes it, for a forger who knows how.
+/// Returns the JSON with a valid checksum, to test consistency checks behind it.
 fn sealed(value: &serde_json::Value) -> String {
     let text = serde_json::to_string_pretty(value).unwrap();
     let body = text.strip_suffix("\n}").unwrap();
@@ -31,13 +31,13 @@ fn read_json(path: &Path) -> serde_json::Value {
 }
 
 #[test]
-fn a_resumed_run_makes_again_what_was_damaged() {
+fn damaged_files_are_made_again() {
     let folder = with_sweep(SWEEP);
     let (path, b) = (folder.path(), folder.path().join("b"));
     let run = || done(path, &["-q", "batch", "sweep.toml", "--out", "b"]);
     run();
     let whole = hashes(&b);
-    let mended = |what: &str| {
+    let expect_repair = |what: &str| {
         assert_ne!(hashes(&b), whole, "{what}");
         run();
         assert_eq!(differences(&whole, &hashes(&b)), Vec::<String>::new(), "{what}");
@@ -50,11 +50,11 @@ fn a_resumed_run_makes_again_what_was_damaged() {
         for name in &manifests {
             flip(&b.join(name), &mut random);
         }
-        mended(&format!("manifests, round {round}"));
+        expect_repair(&format!("manifests, round {round}"));
         for name in names.iter().filter(|n| n.starts_with("parts/") == (round % 2 == 0)).step_by(3) {
             flip(&b.join(name), &mut random);
         }
-        mended(&format!("files, round {round}"));
+        expect_repair(&format!("files, round {round}"));
     }
     // A forged manifest that lists nothing, and the shell is gone.
     let manifest = b.join(manifests[0]);
@@ -63,20 +63,20 @@ fn a_resumed_run_makes_again_what_was_damaged() {
     forged.as_object_mut().unwrap().remove("checksum");
     std::fs::write(&manifest, sealed(&forged)).unwrap();
     std::fs::remove_file(manifest.with_file_name("shell.stl")).unwrap();
-    mended("forged");
-    // The stamp: what does not tell another sweep is written again.
+    expect_repair("forged");
+    // A stamp of the same sweep is written again.
     let stamp = std::fs::read_to_string(b.join("batch.json")).unwrap();
     for (from, to) in
         [("\"variants\": 24", "\"variants\": 23"), ("13, to", "12, to"), ("sweep.toml\"", "s.toml\"")]
     {
         assert!(stamp.contains(from), "{from}");
         std::fs::write(b.join("batch.json"), stamp.replace(from, to)).unwrap();
-        mended(from);
+        expect_repair(from);
     }
 }
 
 #[test]
-fn a_merge_names_what_is_missing_or_changed() {
+fn merges_report_damaged_files() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     for shard in ["1/2", "2/2"] {
@@ -134,7 +134,7 @@ fn a_merge_names_what_is_missing_or_changed() {
     std::fs::remove_dir_all(damaged.join("parts")).unwrap();
     refused("parts", "damaged", &[" more are missing or have changed"]);
 
-    // Stamps that were edited, with the hash of what they say now.
+    // Stamps that were edited and have a valid checksum.
     let edited = copy("edited");
     let stamp = read_json(&edited.join("batch.json"));
     for (pointer, value) in [
@@ -172,7 +172,7 @@ fn a_merge_names_what_is_missing_or_changed() {
 }
 
 #[test]
-fn a_sweep_that_is_too_large_is_refused_before_it_is_expanded() {
+fn large_sweeps_are_refused_unexpanded() {
     let fine = |field: &str| format!("\"{field}\" = {{ from = 10, to = 12, step = 1e-6 }}\n");
     let three = ["shell.width_mm", "support.plate_mm", "tendon.length_mm"].map(fine).concat();
     let sample = "[sample]\ncount = 10000000\n[sample.axes]\n\"shell.width_mm\" = { from = 12, to = 16 }\n\
@@ -184,7 +184,7 @@ fn a_sweep_that_is_too_large_is_refused_before_it_is_expanded() {
     {
         let folder = with_sweep(sweep);
         for more in ["--out b", "--dry-run", "--dry-run --out b"] {
-            // 256 MB of addresses, of which threads and the program itself take most.
+            // 256 MB of address space; threads and the program itself need most of it.
             let command = format!("ulimit -v 262144; exec \"$0\" batch sweep.toml {more}");
             let mut run = Command::new("sh");
             run.args(["-c", &command, env!("CARGO_BIN_EXE_pinswitch")]).current_dir(folder.path());
@@ -199,7 +199,7 @@ fn a_sweep_that_is_too_large_is_refused_before_it_is_expanded() {
 }
 
 #[test]
-fn a_dry_run_refuses_what_the_run_refuses() {
+fn dry_runs_refuse_like_runs() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     std::fs::write(path.join("file"), "").unwrap();
@@ -224,11 +224,11 @@ fn a_dry_run_refuses_what_the_run_refuses() {
         let dry = ended(path, &[&["batch", "sweep.toml", "--out", "new", "--dry-run"], more].concat());
         assert_eq!(run, dry);
     }
-    // Nothing of a place that is fine is left, not even the folders on the way.
+    // A dry run leaves no folders.
     done(path, &["-q", "batch", "sweep.toml", "--out", "deep/new", "--dry-run"]);
     assert!(!path.join("deep").exists());
 
-    // Variants, too: keys that do not fit are found when the mould is put together.
+    // Refusals that occur when the mould is built are in the estimate, too.
     let sweep = "[sweep]\nparts = [\"shell\", \"mould-ring\"]\n[axes]\n\"mould.key_height_mm\" = [2, 10]\n\
                  \"shell.width_mm\" = [5, 14]\n\"mould.key_diameter_mm\" = [3, 9.5]\n\"support.corner_radius_mm\" = [1.5, 4.7]\n";
     std::fs::write(path.join("keys.toml"), sweep).unwrap();

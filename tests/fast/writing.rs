@@ -114,11 +114,11 @@ fn places_that_cannot_be_written_are_one_error_with_a_remedy() {
     for (arguments, word) in [
         ("generate three-double --out /proc", "/proc: cannot write"),
         ("generate three-double --out /proc/x/y", "cannot write"),
-        ("generate three-double --out file", "a file stands where a folder must be"),
-        ("generate three-double --out file/x", "a file stands where a folder must be"),
-        ("init three-double --out no/such/folder.toml", "make its folder"),
+        ("generate three-double --out file", "a file is in place of a folder"),
+        ("generate three-double --out file/x", "a file is in place of a folder"),
+        ("init three-double --out no/such/folder.toml", "create its folder"),
         ("init three-double --out /proc/x.toml", "cannot write"),
-        ("physics --out file", "a file stands where a folder must be"),
+        ("physics --out file", "a file is in place of a folder"),
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
         let (code, said) = ended(folder.path(), &arguments);

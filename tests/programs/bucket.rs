@@ -189,11 +189,12 @@ impl Bucket {
         let half_way = tried.iter().find(|(code, _)| *code == Some(1));
         let said = &half_way.unwrap_or_else(|| panic!("never half-way: {tried:?}")).1;
         let error = said.lines().find(|l| l.starts_with("error: ")).unwrap();
-        assert!(error.contains("variants are there: then give the same command again"), "{said}");
+        assert!(error.contains("then run the same command again to resume ("), "{said}");
+        assert!(error.contains(" variants are finished)"), "{said}");
         assert!(error.len() < 600 && !said.contains("panicked"), "{said}");
         let error = self.refused(2, &format!("-q batch sweep.toml --out {url}/gone"));
         assert!(
-            error.contains(&format!("{url}/gone")) && error.contains("see that the store answers"),
+            error.contains(&format!("{url}/gone")) && error.contains("check that the store is reachable"),
             "{error}"
         );
         proxy.be(Mood::Fine);

@@ -1,4 +1,4 @@
-//! A batch that is killed (SIGKILL) at random moments and started again ends with the files of one that was not.
+//! A batch that is killed (SIGKILL) at random moments and restarted has the same files as an uninterrupted one.
 
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -7,9 +7,9 @@ use crate::harness::{differences, done, hashes, with_sweep};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Kills in all.
+/// Total number of kills.
 const KILLS: usize = 20;
-/// Kills of one folder before it is let through to its end.
+/// Kills of one batch before it runs to its end.
 const IN_A_ROW: usize = 4;
 
 const SWEEP: &str = r#"
@@ -31,7 +31,7 @@ fn killed_runs_end_with_the_same_files() {
     let whole_run = start.elapsed();
     let whole = hashes(&folder.path().join("whole"));
     let mut random = ChaCha8Rng::seed_from_u64(20);
-    // Each attempt may get about a quarter of the way, so that all stages are hit.
+    // Each attempt completes about a quarter of the batch, so that kills hit all stages.
     let mut longest_s = whole_run.as_secs_f64() * 1.5 / IN_A_ROW as f64;
     let (mut kills, mut round) = (0, 0);
     while kills < KILLS {
@@ -45,7 +45,7 @@ fn killed_runs_end_with_the_same_files() {
                 .unwrap();
             std::thread::sleep(Duration::from_secs_f64(longest_s * random.random_range(0.0..1.0)));
             if child.try_wait().unwrap().is_some() {
-                // It came to its end: that was no kill, and the next ones come sooner.
+                // It finished before the kill: later kills are earlier.
                 longest_s *= 0.8;
                 break;
             }

@@ -1,140 +1,122 @@
-//! Constraints: what a variant must fulfil, over its parameters, its derived dimensions and its predicted friction.
+//! Constraints: conditions on a variant's parameters, its derived dimensions and its predicted
+//! friction.
 
+use std::fmt;
 use std::sync::Arc;
 
-use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator, Val, ValMatcher, ValOpsFactory};
+use pinswitch_formula::{Condition, FormulaError, NameError, nearest};
 use pinswitch_friction::{FrictionCurve, Transition};
 
-use super::axis::config_error;
-use pinswitch_switch::config::{ConfigError, Configuration};
+use super::axis::is_whole;
+use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::derived;
 
-/// Names beside fields and derived dimensions.
+/// Names in addition to fields and derived dimensions.
 const PREDICTED: [&str; 5] = ["pin_count", "friction_n", "band_low_n", "band_high_n", "threshold_n"];
 
-type Value = Val<i32, f64>;
-type Expression = FlatEx<Value, Operators, ValMatcher>;
-
-/// The evaluator's operators with the usual precedence: comparisons before `&&` before `||`. By default it joins
-/// conditions before it compares them.
-#[derive(Clone, Debug)]
-struct Operators;
-
-impl MakeOperators<Value> for Operators {
-    fn make<'a>() -> Vec<Operator<'a, Value>> {
-        let bound = |operator: Operator<'a, Value>| {
-            let Ok(BinOp { apply, prio, is_commutative }) = operator.bin() else { return operator };
-            let prio = match operator.repr() {
-                "||" => 11,
-                "&&" => 12,
-                "==" | "!=" | "<" | "<=" | ">" | ">=" => 15,
-                _ => 10 * prio,
-            };
-            let bin = BinOp { apply, prio, is_commutative };
-            match operator.unary() {
-                Ok(unary) => Operator::make_bin_unary(operator.repr(), bin, unary),
-                Err(_) => Operator::make_bin(operator.repr(), bin),
-            }
-        };
-        ValOpsFactory::<i32, f64>::make().into_iter().map(bound).collect()
-    }
-}
-
-/// A condition that every variant must fulfil.
+/// A condition that every variant of a sweep must meet.
 #[derive(Clone, Debug)]
 pub struct Constraint {
     /// As written.
     text: String,
-    /// Why, as the sweep says.
+    /// The reason, as written in the sweep.
     because: Option<String>,
-    expression: Arc<Expression>,
-    /// The names in it, in the order in which the expression wants their values.
-    names: Vec<String>,
+    /// Names are indices of `quantities`.
+    condition: Arc<Condition<usize>>,
+    /// The names of the quantities in the condition.
+    quantities: Vec<String>,
+}
+
+/// A constraint that a variant does not meet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Violation {
+    /// The constraint, as written.
+    pub constraint: String,
+    /// The quantities in it with their values, in alphabetical order; `None` for a value that does
+    /// not exist.
+    pub values: Vec<(String, Option<f64>)>,
+    /// The reason of the constraint, as written in the sweep.
+    pub because: Option<String>,
 }
 
 impl Constraint {
-    /// Reads an expression such as `shell.outer_radius_mm - shell.wall_mm >= 12 && friction_n > 4`.
+    /// Parses a condition such as `shell.outer_radius_mm - shell.wall_mm >= 12 && friction_n > 4`,
+    /// in the language of [`pinswitch_formula`].
     ///
     /// # Errors
-    /// [`ConfigError`] for an unknown name, or what is no expression.
-    pub fn new(text: &str, because: Option<String>) -> Result<Self, ConfigError> {
+    /// An unknown name, and a text that is not a condition.
+    pub fn new(text: &str, because: Option<String>) -> Result<Self, FormulaError> {
         let known = names();
-        let (braced, unknown) = brace_names(text, &known);
-        if let Some(name) = unknown {
-            let near = known
-                .iter()
-                .max_by(|a, b| strsim::jaro_winkler(&name, a).total_cmp(&strsim::jaro_winkler(&name, b)));
-            return Err(config_error(
-                "constraints.require",
-                Some(&format!("{text:?}")),
-                &format!("has the unknown name {name:?}"),
-                &format!(
-                    "did you mean {:?}? Fields with numbers, derived dimensions, {} are known",
-                    near.map_or("", |n| n),
-                    PREDICTED.join(", ")
-                ),
-            ));
-        }
-        let refused = |problem: &str| {
-            config_error(
-                "constraints.require",
-                Some(&format!("{text:?}")),
-                problem,
-                "write a comparison such as \"shell.outer_radius_mm - shell.wall_mm >= 12\"",
-            )
+        let mut quantities: Vec<String> = Vec::new();
+        let resolve = |name: &str| {
+            if let Some(index) = quantities.iter().position(|quantity| quantity == name) {
+                return Ok(index);
+            }
+            if !known.iter().any(|k| k == name) {
+                return Err(unknown_name(name, &known));
+            }
+            quantities.push(name.to_owned());
+            Ok(quantities.len() - 1)
         };
-        let expression =
-            Expression::parse(&braced).map_err(|e| refused(&format!("is no expression: {e}")))?;
-        let names = expression.var_names().to_vec();
-        // An expression that is no condition is refused before any variant is made: its type does not depend on the values.
-        let ones = vec![Val::Float(1.0); names.len()];
-        match expression.eval(&ones) {
-            Ok(Val::Bool(_)) => {}
-            _ => return Err(refused("is no condition that is true or false")),
-        }
-        Ok(Self { text: text.to_owned(), because, expression: Arc::new(expression), names })
+        let condition = Arc::new(Condition::parse(text, resolve)?);
+        Ok(Self { text: text.to_owned(), because, condition, quantities })
     }
 
-    /// Why `design` is refused; `None` if it fulfils the condition. A value that does not exist, such as the threshold
-    /// of a switch that does not switch, fulfils nothing.
-    pub fn refusal(&self, design: &Design, curve: &FrictionCurve) -> Option<String> {
-        let values: Vec<_> = self.names.iter().map(|name| quantity(name, design, curve)).collect();
-        let known = values.iter().map(|v| Val::Float(v.unwrap_or(f64::NAN))).collect::<Vec<_>>();
-        if let Ok(Val::Bool(true)) = self.expression.eval(&known) {
+    /// Returns why `design` does not meet the condition; `None` if it does.
+    ///
+    /// A condition that depends on a value that does not exist, such as the threshold of a switch
+    /// that does not switch, is not met.
+    pub fn violation(&self, design: &Design, curve: &FrictionCurve) -> Option<Violation> {
+        let values: Vec<Option<f64>> =
+            self.quantities.iter().map(|name| value(name, design, curve)).collect();
+        let read = |index: &usize| values.get(*index).copied().flatten().unwrap_or(f64::NAN);
+        if self.condition.truth(read) == Some(true) {
             return None;
         }
-        let shown: Vec<_> = self
-            .names
-            .iter()
-            .zip(&values)
-            .map(|(name, value)| match value {
-                Some(value) => format!("{name} = {}", (value * 1e6).round() / 1e6),
-                None => format!("there is no {name}"),
-            })
-            .collect();
-        let because = self.because.as_ref().map(|b| format!(", {b}")).unwrap_or_default();
-        Some(format!("constraint {:?} is not met: {}{because}", self.text, shown.join(", ")))
+        let mut values: Vec<_> = self.quantities.iter().cloned().zip(values).collect();
+        values.sort_by(|a, b| a.0.cmp(&b.0));
+        Some(Violation { constraint: self.text.clone(), values, because: self.because.clone() })
     }
 }
 
-/// All names that an expression may use.
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "constraint {:?} is not met", self.constraint)?;
+        let mut separator = ": ";
+        for (name, value) in &self.values {
+            match value {
+                Some(value) => write!(f, "{separator}{name} = {}", (value * 1e6).round() / 1e6)?,
+                None => write!(f, "{separator}{name} does not exist")?,
+            }
+            separator = ", ";
+        }
+        match &self.because {
+            Some(because) => write!(f, "{separator}{because}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns all names that a constraint can use: numeric fields, derived dimensions with their unit,
+/// and [`PREDICTED`].
 fn names() -> Vec<String> {
-    let fields = Configuration::PARAMETERS
-        .iter()
-        .filter(|p| {
-            matches!(
-                (p.get)(&Configuration::default()),
-                toml_edit::Value::Integer(_) | toml_edit::Value::Float(_)
-            )
-        })
-        .map(|p| p.path());
+    let fields = Configuration::PARAMETERS.iter().filter(|p| is_whole(p).is_some()).map(|p| p.path());
     let design = Design::new(Configuration::default());
     let dimensions = design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit));
     fields.chain(dimensions).chain(PREDICTED.map(str::to_owned)).collect()
 }
 
-fn quantity(name: &str, design: &Design, curve: &FrictionCurve) -> Option<f64> {
+fn unknown_name(name: &str, known: &[String]) -> NameError {
+    let error = NameError::new(format!("unknown name '{}'", pinswitch_diagnostic::excerpt(name, 40)));
+    error.with_help(match nearest(name, known.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean {near}?"),
+        None => format!("use numeric fields, derived dimensions with their unit, {}", PREDICTED.join(", ")),
+    })
+}
+
+/// Returns the value of a quantity; `None` where the design has none.
+fn value(name: &str, design: &Design, curve: &FrictionCurve) -> Option<f64> {
     match name {
         #[allow(clippy::cast_precision_loss)]
         "pin_count" => return Some(design.configuration().layout.pins.len() as f64),
@@ -152,77 +134,137 @@ fn quantity(name: &str, design: &Design, curve: &FrictionCurve) -> Option<f64> {
     derived(design).into_iter().find(|d| format!("{}_{}", d.name, d.unit) == name).map(|d| d.value)
 }
 
-/// `text` with every known name in braces, as the evaluator wants names with dots; and the first unknown name.
-fn brace_names(text: &str, known: &[String]) -> (String, Option<String>) {
-    const FUNCTIONS: [&str; 13] =
-        ["abs", "sqrt", "min", "max", "round", "floor", "ceil", "exp", "ln", "sin", "cos", "if", "else"];
-    let mut out = String::new();
-    let mut unknown = None;
-    let mut rest = text;
-    while let Some(first) = rest.chars().next() {
-        let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
-        if !word(first) {
-            out.push(first);
-            rest = &rest[first.len_utf8()..];
-            continue;
-        }
-        let (token, after) = rest.split_at(rest.find(|c| !word(c)).unwrap_or(rest.len()));
-        if known.iter().any(|k| k == token) {
-            out += &format!("{{{token}}}");
-        } else {
-            if first.is_ascii_alphabetic() && !FUNCTIONS.contains(&token) {
-                unknown.get_or_insert_with(|| token.to_owned());
-            }
-            out += token;
-        }
-        rest = after;
-    }
-    (out, unknown)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use pinswitch_switch::config::assign;
     use pinswitch_switch::prediction::predicted_curve;
 
-    fn refusal(text: &str) -> Option<String> {
-        let mut c = Configuration::default();
-        assign(&mut c, "layout.pins=[5, 8, 11]").unwrap();
-        let design = Design::new(c).unwrap();
+    fn design(assignments: &[&str]) -> (Design, FrictionCurve) {
+        let mut configuration = Configuration::default();
+        assignments.iter().for_each(|a| assign(&mut configuration, a).unwrap());
+        let design = Design::new(configuration).unwrap();
         let curve = predicted_curve(&design);
-        Constraint::new(text, Some("the mandrel".to_owned())).unwrap().refusal(&design, &curve)
+        (design, curve)
+    }
+
+    /// A switch without pins, one with three, the same without a threshold in its loads, and a
+    /// large one.
+    fn designs() -> [(Design, FrictionCurve); 4] {
+        let five_pins =
+            ["layout.pins=[4, 6, 8, 10, 12]", "shell.outer_radius_mm=24", "silicone.thickness_mm=2.5"];
+        [
+            design(&[]),
+            design(&["layout.pins=[5, 8, 11]"]),
+            design(&["layout.pins=[5, 8, 11]", "friction.load_max_n=8"]),
+            design(&five_pins),
+        ]
+    }
+
+    /// Which of [`designs`] meet the constraint, as `T` and `F`.
+    fn met(text: &str) -> String {
+        let constraint = Constraint::new(text, None).unwrap();
+        let is_met =
+            |(design, curve): &(Design, FrictionCurve)| constraint.violation(design, curve).is_none();
+        designs().iter().map(|d| if is_met(d) { 'T' } else { 'F' }).collect()
+    }
+
+    /// Every constraint of the documents, examples and tests, with the results of the evaluator of
+    /// pinswitch 0.1 before it had a language of its own (exmex 0.21).
+    #[test]
+    fn results_equal_those_of_exmex() {
+        for (text, expected) in [
+            ("shell.outer_radius_mm - shell.wall_mm >= 12 && friction_n > 4", "FFFT"),
+            ("contact_radius_mm + support.rise_mm <= 28.5", "TTTF"),
+            ("shell.width_mm >= 14 || tendon.length_mm > 0", "TTTT"),
+            ("land_on_shell_mm >= 1.0", "TTTT"),
+            ("shell.width_mm > 10", "TTTT"),
+            ("threshold_n > 5", "FTFT"),
+            ("shell.outer_radius_mm - shell.wall_mm >= 11.5", "TTTT"),
+            ("contact_radius_mm == 22 && pin_count == 3", "FTTF"),
+            ("friction_n > 8.9 && friction_n < 9.1", "FTFF"),
+            ("threshold_n > 20 || 1 > 2", "FTFT"),
+            ("1 > 2 && 1 > 2 || shell.wall_mm < 9", "TTTT"),
+            ("-shell.wall_mm + 2 * 4.25 == 0", "TTTT"),
+            ("max(shell.wall_mm, 3) <= 8.5", "TTTT"),
+            ("shell.wall_mm + 1 > 9.5 && pin_count < 9", "FFFF"),
+            ("min(pin_count, 4) != 3", "TFFT"),
+            ("round(threshold_n) >= 24", "FTFT"),
+            ("floor(friction_n) == 8 || ceil(friction_n) == 9", "FTFF"),
+            ("abs(contact_radius_mm - 22) < 0.5", "TTTF"),
+            ("sqrt(friction_n) > 2.5 && exp(0.0) == 1 && ln(1.0) == 0", "TTFT"),
+            ("sin(0.0) == 0 && cos(0.0) == 1 && 8/4/2 == 1 && 7 - 2 - 1 == 4", "TTTT"),
+            ("2^3 == 8 && shell.wall_mm^2 > 70", "TTTT"),
+            ("threshold_n > 20 || pin_count == 3", "FTTT"),
+            ("threshold_n <= 20 || pin_count != 3", "TFFT"),
+            ("pin_count == 3 || pin_count == 0 && friction_n < 1", "FTTF"),
+            ("(pin_count == 3 || pin_count == 0) && friction_n < 5", "FFTF"),
+            ("band_high_n - band_low_n < 0.5 * friction_n", "TTFF"),
+            ("(pin_count > 0) == (friction_n > 1)", "FTFT"),
+        ] {
+            assert_eq!(met(text), expected, "{text}");
+        }
     }
 
     #[test]
-    fn conditions_range_over_fields_dimensions_and_friction() {
-        for met in [
-            "shell.outer_radius_mm - shell.wall_mm >= 11.5",
-            "contact_radius_mm == 22 && pin_count == 3",
-            "friction_n > 8.9 && friction_n < 9.1",
-            "threshold_n > 20 || 1 > 2",
-            "1 > 2 && 1 > 2 || shell.wall_mm < 9",
-            "-shell.wall_mm + 2 * 4.25 == 0",
-            "max(shell.wall_mm, 3) <= 8.5",
-        ] {
-            assert_eq!(refusal(met), None, "{met}");
+    fn missing_values_meet_no_condition() {
+        let (design, curve) = &designs()[2];
+        for text in ["threshold_n > 0", "threshold_n != 3", "!(threshold_n > 20)"] {
+            let constraint = Constraint::new(text, None).unwrap();
+            assert!(constraint.violation(design, curve).is_some(), "{text}");
         }
-        let text = refusal("shell.wall_mm + 1 > 9.5 && pin_count < 9").unwrap();
+        let violation = Constraint::new("threshold_n > 20", None).unwrap().violation(design, curve);
+        let text = violation.map(|v| v.to_string());
         assert_eq!(
-            text,
+            text.as_deref(),
+            Some("constraint \"threshold_n > 20\" is not met: threshold_n does not exist")
+        );
+    }
+
+    #[test]
+    fn violations_list_values_and_reason() {
+        let (design, curve) = &designs()[1];
+        let text = "shell.wall_mm + 1 > 9.5 && pin_count < 9";
+        let constraint = Constraint::new(text, Some("the mandrel".to_owned())).unwrap();
+        let violation = constraint.violation(design, curve).unwrap();
+        assert_eq!(
+            violation.to_string(),
             "constraint \"shell.wall_mm + 1 > 9.5 && pin_count < 9\" is not met: pin_count = 3, shell.wall_mm = 8.5, the mandrel"
         );
     }
 
     #[test]
-    fn bad_expressions_are_refused_before_anything_is_made() {
-        for (text, expected) in [
-            ("shell.with_mm > 3", "has the unknown name \"shell.with_mm\"; did you mean \"shell.width_mm\"?"),
-            ("shell.width_mm >", "is no expression"),
-            ("shell.width_mm + 1", "is no condition that is true or false"),
+    fn invalid_constraints_are_located() {
+        for (text, marked, expected) in [
+            (
+                "shell.with_mm > 3",
+                "shell.with_mm",
+                "unknown name 'shell.with_mm'; did you mean shell.width_mm?",
+            ),
+            ("friction.max_n >", "friction.max_n", "unknown name 'friction.max_n'"),
+            (
+                "zzzzzzzzzzzz > 1",
+                "zzzzzzzzzzzz",
+                "use numeric fields, derived dimensions with their unit, pin_count",
+            ),
+            ("tendon.length_mm < 300 && true", "true", "unknown name 'true'"),
+            ("label.text > 1", "label.text", "unknown name"),
+            ("shell.width_mm >", "", "expected a number, a name or '(', found the end"),
+            ("shell.width_mm + 1", "shell.width_mm + 1", "expected a condition, found a number"),
+            ("pin_count > 2 || 3", "3", "'||' needs a condition, found a number"),
+            ("1 < pin_count < 9", "<", "comparisons cannot be chained"),
+            ("", "", "expected a number"),
         ] {
-            let error = Constraint::new(text, None).unwrap_err().to_string();
-            assert!(error.contains(expected), "{error}");
+            let error = Constraint::new(text, None).unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+            assert_eq!(&text[error.span()], marked, "{text}");
+        }
+    }
+
+    #[test]
+    fn every_name_can_be_used() {
+        for name in names() {
+            assert!(Constraint::new(&format!("{name} > 0"), None).is_ok(), "{name}");
         }
     }
 }

@@ -1,7 +1,9 @@
-//! Content-addressed parts: what is equal between variants is made once and kept once, under the hash of its bytes.
+//! Content-addressed parts: equal parts of different variants are made once and stored once, by the
+//! hash of their bytes.
 
 use std::sync::Arc;
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use quick_cache::sync::Cache;
 use sha2::{Digest, Sha256};
 
@@ -16,18 +18,19 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::output::SetError;
 use pinswitch_switch::parts::Part;
 
-/// Recipes kept in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
-const CACHED_RECIPES: usize = 50_000;
-/// Corners of caps in the cache, 3 MB: neighbours in a sweep share most of theirs, but for the labels.
+/// Parts in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
+const CACHED_PARTS: usize = 50_000;
+/// Corners of caps in the cache, 3 MB: adjacent variants of a sweep share most caps except those of
+/// labels.
 const CACHED_CORNERS: usize = 65_536;
 
-/// Makes the mesh file of a part: [`mesh_file`], or a stand-in that fails, in tests.
+/// Makes the mesh file of a part: [`mesh_file`], or a function that fails in tests.
 pub type MeshMaker = fn(&Part, &Design, &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError>;
 
-/// The part as binary STL, meshed and examined, with what the mesh measures.
+/// Meshes and examines a part; returns it as binary STL with the measurements of its mesh.
 ///
 /// # Errors
-/// [`SetError`]; a mesh that the oracle refuses is never returned.
+/// [`SetError`], also for a mesh that is not valid.
 pub fn mesh_file(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
     let (mesh, facts) = examined_print_mesh(part, design, caps)?;
     Ok((stl_bytes(&mesh).map_err(SetError::encoding)?, facts))
@@ -40,57 +43,80 @@ pub(super) struct StoredPart {
     pub sha256: String,
     /// Its size.
     pub bytes: usize,
-    /// What its mesh measures.
+    /// Measurements of its mesh.
     pub facts: MeshFacts,
 }
 
-/// Why a part could not be stored.
-#[derive(Debug, thiserror::Error)]
+/// Why a variant could not be stored.
+#[derive(Debug)]
 pub(super) enum ContentError {
-    /// It cannot be made.
-    #[error(transparent)]
-    Set(#[from] SetError),
-    /// It cannot be written.
-    #[error(transparent)]
-    Destination(#[from] DestinationError),
-    /// It cannot be sliced.
-    #[error(transparent)]
-    Slicer(#[from] SlicerError),
-    /// What was kept is gone.
-    #[error("{0} is gone; give the same command again")]
-    Gone(String),
+    /// A file cannot be made.
+    Set(SetError),
+    /// A file cannot be written or read.
+    Destination(DestinationError),
+    /// A part cannot be sliced.
+    Slicer(SlicerError),
+    /// A stored part was removed during the run.
+    Removed(String),
+}
+
+impl From<ContentError> for Diagnostic {
+    fn from(error: ContentError) -> Self {
+        match error {
+            ContentError::Set(error) => Self::from_error(error),
+            ContentError::Destination(error) => error.into(),
+            ContentError::Slicer(error) => error.into(),
+            ContentError::Removed(path) => Self::new("the file was removed during the run")
+                .with_location(Location::file(path))
+                .with_help("run the same command again"),
+        }
+    }
+}
+
+impl From<SetError> for ContentError {
+    fn from(error: SetError) -> Self {
+        Self::Set(error)
+    }
+}
+
+impl From<DestinationError> for ContentError {
+    fn from(error: DestinationError) -> Self {
+        Self::Destination(error)
+    }
+}
+
+impl From<SlicerError> for ContentError {
+    fn from(error: SlicerError) -> Self {
+        Self::Slicer(error)
+    }
 }
 
 /// The parts of a batch at a destination.
 pub(super) struct PartStore<'a> {
     destination: &'a Destination,
     mesh_maker: MeshMaker,
-    known: Cache<[u8; 32], Arc<StoredPart>>,
+    cache: Cache<[u8; 32], Arc<StoredPart>>,
     caps: CapCache,
 }
 
-/// Path of the STL with this hash.
+/// Returns the path of the STL with this hash.
 pub(super) fn content_path(sha256: &str) -> String {
     format!("parts/{}/{sha256}.stl", sha256.get(..2).unwrap_or_default())
 }
 
 impl<'a> PartStore<'a> {
-    /// An empty cache for `destination`.
+    /// A store at `destination` with an empty cache.
     pub(super) fn new(destination: &'a Destination, mesh_maker: MeshMaker) -> Self {
-        Self {
-            destination,
-            mesh_maker,
-            known: Cache::new(CACHED_RECIPES),
-            caps: CapCache::new(CACHED_CORNERS),
-        }
+        Self { destination, mesh_maker, cache: Cache::new(CACHED_PARTS), caps: CapCache::new(CACHED_CORNERS) }
     }
 
-    /// Stores the part unless it is stored already. Threads that need the same part wait for the first.
+    /// Stores the part unless it is stored already. Threads that need the same part wait for the
+    /// first one.
     ///
     /// # Errors
-    /// [`ContentError`] if it cannot be made or written.
-    pub(super) fn keep(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
-        self.known.get_or_insert_with(&recipe(part, design), || {
+    /// A part that cannot be made or written.
+    pub(super) fn store(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
+        self.cache.get_or_insert_with(&recipe_hash(part, design), || {
             let (bytes, facts) = (self.mesh_maker)(part, design, &self.caps)?;
             let sha256 = hexadecimal(&Sha256::digest(&bytes));
             self.write(&content_path(&sha256), &bytes)?;
@@ -98,26 +124,27 @@ impl<'a> PartStore<'a> {
         })
     }
 
-    /// The bytes of the part with this hash, as kept.
+    /// Reads the bytes of the stored part with this hash.
     ///
     /// # Errors
-    /// [`ContentError`] if they cannot be read.
-    pub(super) fn stored(&self, sha256: &str) -> Result<Vec<u8>, ContentError> {
+    /// A part that cannot be read.
+    pub(super) fn read(&self, sha256: &str) -> Result<Vec<u8>, ContentError> {
         let path = content_path(sha256);
-        self.destination.get(&path)?.ok_or(ContentError::Gone(path))
+        self.destination.get(&path)?.ok_or(ContentError::Removed(path))
     }
 
-    /// Writes the file unless it is there already, whole: a file that is replaced would no longer be the same as the
-    /// links to it. A store's objects are never half written, so that their size is enough.
-    fn write(&self, place: &str, bytes: &[u8]) -> Result<(), DestinationError> {
-        let there = self.destination.size(place)? == Some(bytes.len() as u64)
-            && (!self.destination.links() || self.destination.get(place)?.as_deref() == Some(bytes));
-        if there { Ok(()) } else { self.destination.put(place, bytes) }
+    /// Writes the file unless it exists with the same content: a replaced file would no longer be
+    /// identical to the hard links to it. Objects of a store are never partly written, so that
+    /// comparing their size is enough.
+    fn write(&self, path: &str, bytes: &[u8]) -> Result<(), DestinationError> {
+        let exists = self.destination.size(path)? == Some(bytes.len() as u64)
+            && (!self.destination.has_links() || self.destination.get(path)?.as_deref() == Some(bytes));
+        if exists { Ok(()) } else { self.destination.put(path, bytes) }
     }
 }
 
-/// Hash of all that decides the bytes of a part's mesh: its exact solid and the chord tolerance.
-fn recipe(part: &Part, design: &Design) -> [u8; 32] {
+/// Returns the hash of the inputs of a part's mesh: its exact solid and the chord tolerance.
+fn recipe_hash(part: &Part, design: &Design) -> [u8; 32] {
     let tolerance = design.tolerance().mm().to_bits().to_le_bytes();
     Sha256::new_with_prefix(tolerance).chain_update(part.solid.content_bytes()).finalize().into()
 }
@@ -136,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_recipes_are_equal_bytes_and_only_they() {
+    fn equal_recipes_give_equal_bytes() {
         let mut bytes_of: HashMap<[u8; 32], Vec<u8>> = HashMap::new();
         let caps = CapCache::new(CACHED_CORNERS);
         let mut shared = 0;
@@ -151,32 +178,33 @@ mod tests {
             let design = design(assignments);
             for part in printed(&design).unwrap() {
                 let (bytes, _) = mesh_file(&part, &design, &caps).unwrap();
-                if let Some(before) = bytes_of.insert(recipe(&part, &design), bytes.clone()) {
+                if let Some(before) = bytes_of.insert(recipe_hash(&part, &design), bytes.clone()) {
                     assert_eq!(before, bytes, "{}", part.name);
                     shared += 1;
                 }
             }
         }
-        // All eight of the second set, and what carries no label in the third and the last.
+        // All eight parts of the second set, and the parts without a label of the third and the
+        // last.
         assert!(shared >= 16, "{shared}");
         let different: std::collections::HashSet<_> = bytes_of.values().collect();
         assert_eq!(different.len(), bytes_of.len());
     }
 
     #[test]
-    fn a_part_is_made_once_and_a_damaged_file_is_replaced() {
+    fn damaged_parts_are_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let destination = Destination::open(folder.path().to_str().unwrap(), ".partial").unwrap();
         let _lock = destination.lock().unwrap();
         let design = design(&[]);
         let part = &printed(&design).unwrap()[0];
-        let keep = || PartStore::new(&destination, mesh_file).keep(part, &design).unwrap();
-        let kept = keep();
-        let path = folder.path().join(content_path(&kept.sha256));
+        let store = || PartStore::new(&destination, mesh_file).store(part, &design).unwrap();
+        let stored = store();
+        let path = folder.path().join(content_path(&stored.sha256));
         let whole = std::fs::read(&path).unwrap();
-        assert_eq!(whole.len(), kept.bytes);
-        std::fs::write(&path, vec![0; kept.bytes]).unwrap();
-        assert_eq!(keep().sha256, kept.sha256);
+        assert_eq!(whole.len(), stored.bytes);
+        std::fs::write(&path, vec![0; stored.bytes]).unwrap();
+        assert_eq!(store().sha256, stored.sha256);
         assert_eq!(std::fs::read(&path).unwrap(), whole);
     }
 }

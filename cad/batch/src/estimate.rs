@@ -1,4 +1,4 @@
-//! What a batch would be: how many variants, which are refused and why, how long it takes, how large it becomes.
+//! The estimate of a dry run: number of variants, refusals with their reasons, time and size.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,70 +7,70 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::content::MeshMaker;
-use super::destination::{Destination, DestinationError, remedy};
-use super::forecast::Forecasts;
-use super::make::{VariantMaker, VariantOutcome, accepted};
+use super::destination::{Destination, DestinationError};
+use super::make::{Refusal, VariantMaker, VariantOutcome, accept};
+use super::prediction_cache::PredictionCache;
 use super::shard::Shard;
 use super::variant::Variants;
 
-/// At most this many variants are checked; of a larger sweep, an even sample.
+/// Most variants that are checked; of a larger sweep, an evenly spaced sample.
 const MAX_CHECKED: u64 = 100_000;
-/// Variants made first, so that shared parts exist.
+/// Variants that are made before the measurement, so that shared parts exist.
 const WARM_UP_VARIANTS: usize = 8;
-/// Variants made after those, and measured.
+/// Variants that are measured.
 const MEASURED_VARIANTS: usize = 24;
 
-/// Variants that are refused for the same kind of reason.
+/// Refusals of the same kind.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RefusalGroup {
-    /// The field, constraint or kind.
+    /// [`Refusal::kind`]: the field or the constraint.
     pub kind: String,
-    /// How many of those checked.
+    /// Number of checked variants.
     pub count: u64,
-    /// One of them.
+    /// Id of one of them.
     pub example: String,
-    /// Its reason in full.
+    /// Its reason.
     pub reason: String,
 }
 
-/// What was measured on a few variants.
+/// Measurements of a few variants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// Variants that were made to measure it.
+    /// Number of measured variants.
     pub variants: usize,
-    /// Seconds for each further variant, with all threads at work.
+    /// Time per further variant with all threads, s.
     pub seconds_per_variant: f64,
-    /// Bytes that each further variant adds at the destination.
+    /// Size that each further variant adds to the destination, bytes.
     pub bytes_per_variant: f64,
-    /// Bytes of its files, were nothing shared.
+    /// Size of its files including shared parts, bytes.
     pub bytes_unshared: f64,
 }
 
-/// The estimate.
+/// The estimate of a dry run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Estimate {
-    /// Variants of the shard.
+    /// Number of variants of the shard.
     pub variants: u64,
-    /// How many of them were checked.
+    /// Number of checked variants.
     pub checked: u64,
-    /// How many of the checked ones would be refused, by kind, most first.
+    /// Refusals among the checked variants by kind, the most frequent first.
     pub refused: Vec<RefusalGroup>,
-    /// Absent if no variant can be made.
+    /// Measurements; absent if no variant can be made.
     pub measured: Option<Measured>,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Variants that would be made, scaled up from those checked.
+    /// Number of variants that would be made, extrapolated from the checked ones.
     pub made: u64,
-    /// How long it would take here, s.
+    /// Time on this machine, s.
     pub seconds: f64,
-    /// How large it would become, bytes.
+    /// Size of the batch, bytes.
     pub bytes: f64,
 }
 
-/// Checks every variant of `shard`, makes a few in a temporary folder, and throws them away.
+/// Checks the variants of `shard`, and makes a few of them in a temporary folder to measure them.
 ///
 /// # Errors
-/// [`DestinationError`] if the temporary folder cannot be used.
+/// A temporary folder that cannot be used.
 pub fn estimate(
     variants: &Variants,
     shard: Shard,
@@ -80,18 +80,19 @@ pub fn estimate(
     let range = shard.range(variants.count());
     let count = range.end - range.start;
     let every = count.div_ceil(MAX_CHECKED).max(1);
-    let forecasts = Forecasts::default();
-    let checked: Vec<(u64, Option<String>)> = (0..count.div_ceil(every))
+    let predictions = PredictionCache::default();
+    let checked: Vec<(u64, Option<Refusal>)> = (0..count.div_ceil(every))
         .into_par_iter()
         .map(|i| {
             let index = range.start + i * every;
-            (index, accepted(variants, &variants.get(index), &forecasts).err())
+            (index, accept(variants, &variants.get(index), &predictions).err())
         })
         .collect();
-    let good: Vec<u64> = checked.iter().filter(|(_, reason)| reason.is_none()).map(|(i, _)| *i).collect();
-    let measured = measure(variants, &good, mesh_maker)?;
+    let accepted: Vec<u64> =
+        checked.iter().filter(|(_, refusal)| refusal.is_none()).map(|(i, _)| *i).collect();
+    let measured = measure(variants, &accepted, mesh_maker)?;
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let made = (count as f64 * good.len() as f64 / checked.len().max(1) as f64).round() as u64;
+    let made = (count as f64 * accepted.len() as f64 / checked.len().max(1) as f64).round() as u64;
     #[allow(clippy::cast_precision_loss)]
     let total = |each: fn(&Measured) -> f64| measured.as_ref().map_or(0.0, each) * made as f64;
     Ok(Estimate {
@@ -106,58 +107,42 @@ pub fn estimate(
     })
 }
 
-fn refusals(variants: &Variants, checked: &[(u64, Option<String>)]) -> Vec<RefusalGroup> {
-    let mut kinds: BTreeMap<String, RefusalGroup> = BTreeMap::new();
-    for (index, reason) in checked.iter().filter_map(|(i, r)| Some((*i, r.as_ref()?))) {
-        let kind = reason_kind(reason);
-        let entry = kinds.entry(kind.clone()).or_insert_with(|| RefusalGroup {
+/// Groups the refusals by kind.
+fn refusals(variants: &Variants, checked: &[(u64, Option<Refusal>)]) -> Vec<RefusalGroup> {
+    let mut groups: BTreeMap<String, RefusalGroup> = BTreeMap::new();
+    for (index, refusal) in checked.iter().filter_map(|(i, r)| Some((*i, r.as_ref()?))) {
+        let kind = refusal.kind();
+        let group = groups.entry(kind.clone()).or_insert_with(|| RefusalGroup {
             kind,
             count: 0,
             example: variants.get(index).id,
-            reason: reason.clone(),
+            reason: refusal.to_string(),
         });
-        entry.count += 1;
+        group.count += 1;
     }
-    let mut all: Vec<_> = kinds.into_values().collect();
-    all.sort_by_key(|r| std::cmp::Reverse(r.count));
+    let mut all: Vec<_> = groups.into_values().collect();
+    all.sort_by_key(|group| std::cmp::Reverse(group.count));
     all
 }
 
-/// A reason without its numbers.
-fn reason_kind(reason: &str) -> String {
-    if reason.starts_with("repeats ") {
-        return "repeats another variant".to_owned();
-    }
-    if let Some((constraint, _)) = reason.split_once(" is not met") {
-        return constraint.to_owned();
-    }
-    reason.split(' ').next().unwrap_or_default().to_owned()
-}
-
-/// Makes an even sample of variants and measures what each of the later ones costs.
+/// Makes an evenly spaced sample of the accepted variants, and measures the later ones.
 #[allow(clippy::cast_precision_loss)]
 fn measure(
     variants: &Variants,
-    good: &[u64],
+    accepted: &[u64],
     mesh_maker: MeshMaker,
 ) -> Result<Option<Measured>, DestinationError> {
-    if good.is_empty() {
+    if accepted.is_empty() {
         return Ok(None);
     }
-    let failed = |e: std::io::Error| DestinationError {
-        place: "the temporary folder".to_owned(),
-        problem: e.to_string(),
-        remedy: remedy(&e),
-        is_fatal: true,
-    };
-    let folder = tempfile::tempdir().map_err(failed)?;
+    let folder = tempfile::tempdir().map_err(DestinationError::temporary)?;
     let destination = Destination::open(&folder.path().display().to_string(), ".partial-dry-run")?;
     let _lock = destination.lock()?;
     let maker = VariantMaker::new(variants, "", &destination, false, mesh_maker, None);
-    let chosen: Vec<u64> = (0..good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS))
-        .map(|i| good[i * good.len() / good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS)])
+    let chosen: Vec<u64> = (0..accepted.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS))
+        .map(|i| accepted[i * accepted.len() / accepted.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS)])
         .collect();
-    // With few variants there is nothing to warm up with: the shared parts count in full.
+    // Few variants are measured without a warm-up, and shared parts count in full.
     let (first, rest) = chosen.split_at(if chosen.len() > WARM_UP_VARIANTS { WARM_UP_VARIANTS } else { 0 });
     let make = |indices: &[u64]| -> Result<f64, DestinationError> {
         let sizes: Result<Vec<f64>, _> = indices
@@ -188,7 +173,7 @@ fn measure(
     }))
 }
 
-/// Bytes of all files under `folder`; links to one file count once.
+/// Returns the bytes of all files in `folder` and below; links to one file count once.
 #[allow(clippy::cast_precision_loss)]
 fn folder_size(folder: &std::path::Path) -> f64 {
     let Ok(entries) = std::fs::read_dir(folder) else { return 0.0 };
@@ -196,13 +181,15 @@ fn folder_size(folder: &std::path::Path) -> f64 {
         .filter_map(Result::ok)
         .map(|entry| match entry.file_type() {
             Ok(kind) if kind.is_dir() => folder_size(&entry.path()),
-            // Every part of a variant is a link to one under parts/.
-            Ok(_) if entry.path().extension().is_some_and(|e| e == "stl") && !in_parts(&entry.path()) => 0.0,
+            // Every part of a variant is a link to a file in parts/.
+            Ok(_) if entry.path().extension().is_some_and(|e| e == "stl") && !is_in_parts(&entry.path()) => {
+                0.0
+            }
             _ => entry.metadata().map_or(0.0, |m| m.len() as f64),
         })
         .sum()
 }
 
-fn in_parts(path: &std::path::Path) -> bool {
+fn is_in_parts(path: &std::path::Path) -> bool {
     path.parent().and_then(std::path::Path::parent).is_some_and(|p| p.ends_with("parts"))
 }

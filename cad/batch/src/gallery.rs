@@ -1,84 +1,86 @@
-//! What plots and page show of a sweep: as many variants as a person can look at, evenly taken from all.
+//! The variants in plots and page: an evenly spaced sample of the sweep, small enough for a
+//! browser.
 
 use std::collections::HashMap;
 
 use serde::Serialize;
 
-use super::forecast::ForecastKey;
+use super::prediction_cache::PredictionKey;
 use super::table::{Cell, Row, Schema};
 use super::variant::Variants;
 use pinswitch_friction::predict;
 use pinswitch_switch::design::Design;
 
-/// Most variants that are shown; beyond it every second, third, ... one is.
+/// Most variants in the gallery; of a larger sweep, every second, third, ... one.
 const MAX_SHOWN: u64 = 5000;
-/// Points of a shown curve.
+/// Points of a curve.
 const POINTS: usize = 25;
 
-/// A value of a field that varies.
+/// The value of a field that varies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum SettingValue {
     /// A number.
     Number(f64),
-    /// Anything else, as written.
-    Words(String),
+    /// Any other value, as written.
+    Text(String),
 }
 
-/// A variant as it is shown; curve and numbers are absent unless it was made. Forces in newtons.
+/// A variant in the gallery; curve and numbers are absent unless it was made. Forces are in
+/// newtons.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct GalleryEntry {
     /// Its id.
     pub id: String,
-    /// What is engraved.
+    /// The engraved label.
     pub label: String,
-    /// made, refused or failed.
+    /// `made`, `refused` or `failed`.
     pub status: String,
-    /// Why not.
+    /// Why it was not made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The fields that vary, in the order of [`Gallery::fields`].
+    /// The values of the fields that vary, in the order of [`Gallery::fields`].
     pub settings: Vec<SettingValue>,
-    /// Friction at the heaviest load with the edges of its band: middle, low, high.
+    /// Friction at the largest load with its band: middle, low, high.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_n: Option<[f64; 3]>,
-    /// Load from which the silicone makes half of the friction.
+    /// Load at which silicone carries half of the friction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold_n: Option<f64>,
-    /// How far to trust the curve.
+    /// Prediction status: `published`, `interpolated` or `extrapolated`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trust: Option<String>,
     /// Mass of all printed parts, g.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub printed_g: Option<f64>,
-    /// First and last load of the curve.
+    /// Smallest and largest load of the curve.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loads_n: Option<[f64; 2]>,
-    /// Friction at evenly spaced loads between them.
+    /// Friction at evenly spaced loads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub curve_n: Vec<f64>,
-    /// Its segment.
+    /// Its segment as a small drawing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub glyph: Option<Glyph>,
 }
 
-/// The segment as it is drawn small, seen along the pulley's axis.
+/// A small drawing of the segment, seen along the pulley's axis.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Glyph {
     /// Outer radius of the shell.
     radius_mm: f64,
-    /// Its radial thickness.
+    /// Radial thickness of the shell.
     wall_mm: f64,
-    /// Thickness of the silicone, or of the rigid proxy in its place.
+    /// Thickness of the silicone layer, or of the rigid proxy that replaces it.
     layer_mm: f64,
     /// Angle over all grooves.
     span_deg: f64,
-    /// Where the pins lie, from the middle.
+    /// Angles of the pins from the middle.
     pins_deg: Vec<f64>,
 }
 
 impl Glyph {
-    fn of(design: &Design) -> Self {
+    fn from_design(design: &Design) -> Self {
         let c = design.configuration();
         let pins_deg = design.pin_angles_rad().into_iter().map(|a| rounded(a.to_degrees())).collect();
         Self {
@@ -91,28 +93,28 @@ impl Glyph {
     }
 }
 
-/// A curve as it is shown.
+/// A curve in the gallery.
 #[derive(Clone, Debug)]
 struct ShownCurve {
-    /// First and last load.
+    /// Smallest and largest load.
     loads_n: [f64; 2],
-    /// Friction at evenly spaced loads between them.
+    /// Friction at evenly spaced loads.
     friction_n: Vec<f64>,
 }
 
-/// The variants that are shown.
+/// The variants in plots and page.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gallery {
     /// Names of the fields that vary.
     pub fields: Vec<String>,
     /// Number of variants of the sweep.
     pub of: u64,
-    /// One in this many is shown.
+    /// Every how many variants one is in the gallery.
     pub every: u64,
-    /// Those shown.
+    /// The variants in the gallery.
     pub shown: Vec<GalleryEntry>,
-    /// Curves by what they depend on.
-    curves: HashMap<ForecastKey, ShownCurve>,
+    /// Curves by their inputs.
+    curves: HashMap<PredictionKey, ShownCurve>,
 }
 
 impl Gallery {
@@ -127,7 +129,7 @@ impl Gallery {
         }
     }
 
-    /// Adds variant `index` if it is one of those shown.
+    /// Adds variant `index` if it is in the sample.
     pub(super) fn add(&mut self, variants: &Variants, index: u64, schema: &Schema, row: &Row) {
         if !index.is_multiple_of(self.every) {
             return;
@@ -136,13 +138,13 @@ impl Gallery {
         let text = |name: &str| cell(name).text().map(str::to_owned);
         let number = |name: &str| cell(name).number().map(rounded);
         let made = cell("status").text() == Some("made");
-        // From the configuration: cheaper than to keep or read what was made of it.
+        // Building the design again is cheaper than keeping or reading what was made.
         let design = made.then(|| Design::new(variants.get(index).configuration).ok()).flatten();
         let curve = design.as_ref().map(|design| self.curve(design));
         let settings = self.fields.iter().map(|name| match cell(name) {
-            Cell::Text(words) => SettingValue::Words(words.clone()),
+            Cell::Text(text) => SettingValue::Text(text.clone()),
             other => {
-                other.number().map_or_else(|| SettingValue::Words(other.to_string()), SettingValue::Number)
+                other.number().map_or_else(|| SettingValue::Text(other.to_string()), SettingValue::Number)
             }
         });
         self.shown.push(GalleryEntry {
@@ -160,16 +162,16 @@ impl Gallery {
             printed_g: number("printed_mass_g"),
             loads_n: curve.as_ref().map(|curve| curve.loads_n),
             curve_n: curve.map(|curve| curve.friction_n).unwrap_or_default(),
-            glyph: design.as_ref().map(Glyph::of),
+            glyph: design.as_ref().map(Glyph::from_design),
         });
     }
 
     fn curve(&mut self, design: &Design) -> ShownCurve {
-        let known = self.curves.entry(ForecastKey::of(design));
-        known.or_insert_with(|| shown_curve(design)).clone()
+        let entry = self.curves.entry(PredictionKey::from_design(design));
+        entry.or_insert_with(|| shown_curve(design)).clone()
     }
 
-    /// The variants with a curve.
+    /// Returns the variants with a curve.
     pub(super) fn made(&self) -> impl Iterator<Item = &GalleryEntry> {
         self.shown.iter().filter(|s| s.loads_n.is_some())
     }
@@ -185,7 +187,7 @@ fn shown_curve(design: &Design) -> ShownCurve {
     ShownCurve { loads_n: ends.map(rounded), friction_n: curve.friction_n.into_iter().map(rounded).collect() }
 }
 
-/// A tenth of a millinewton is enough to look at.
+/// Rounds to a tenth of a millinewton, or of a micrometre, for display.
 fn rounded(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }

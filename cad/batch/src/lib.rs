@@ -1,8 +1,20 @@
-//! Sweeps of many variants, made in parallel, resumed where they were stopped, on one machine or on many.
+//! Sweeps of many variants: built in parallel, resumed after an interruption, on one machine or on
+//! many.
 //!
-//! It knows sweeps, destinations and tables; how a switch is built and predicted it leaves to `pinswitch-switch`.
+//! This crate implements sweeps, destinations and tables; `pinswitch-switch` builds and predicts a
+//! switch.
 //!
-//! Data flows: sweep file → axes → variants → sets (equal parts once) → rows → table, plots, page.
+//! Data flow: sweep file → axes → variants → sets (equal parts once) → rows → table, plots, page.
+//!
+//! | type | what it is |
+//! | --- | --- |
+//! | [`SweepSource`] | the texts of a sweep: its file, its base configuration and its rows |
+//! | [`Sweep`] | a valid sweep: a base configuration, [axes](SweepAxis) and [constraints](Constraint) |
+//! | [`Variants`] | the variants of a sweep, each computed on request |
+//! | [`Shard`] | a contiguous block of the variants, for one machine |
+//! | [`Destination`] | the folder or object store of a batch |
+//! | [`VariantOutcome`] | what became of a variant: made, [refused](Refusal) or failed |
+//! | [`Tally`] | totals of a batch or shard |
 //!
 //! ```
 //! use pinswitch_batch::{Shard, Sweep, SweepSource, Variants};
@@ -12,7 +24,7 @@
 //! "shell.width_mm" = { from = 13, to = 15, step = 1 }
 //! "layout.pins" = [[5, 8, 11], [4, 8, 12]]
 //! "#;
-//! // SweepSource::read takes a file, with all that it names.
+//! // SweepSource::read reads a file, and the files that it names.
 //! let source = SweepSource {
 //!     slice: false,
 //!     name: "widths".to_owned(),
@@ -23,33 +35,38 @@
 //! };
 //! let variants = Variants::new(Sweep::new(&source)?, &source);
 //! assert_eq!(variants.count(), 6);
-//! // A variant is put together when it is asked for; its id says what it is.
+//! // The id of a variant contains its settings.
 //! let third = variants.get(2);
 //! assert!(third.id.starts_with("width14_pins5.8.11-") && third.configuration.shell.width_mm == 14.0);
-//! // One of four machines makes a block of neighbours.
+//! // One of four machines makes a contiguous block.
 //! assert_eq!("2/4".parse::<Shard>()?.range(variants.count()), 1..3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`run`] makes them at a [`Destination`]; `cad/examples/sweep.rs` is a whole program. `cad/doc/batch.md` says what a run
-//! leaves, how it is resumed and spread over machines, and what it costs.
+//! [`run`] makes them at a [`Destination`]; `cad/examples/sweep.rs` is a complete program.
+//! `cad/doc/batch.md` describes the files of a batch, how it is resumed and distributed, and what
+//! it costs.
+//!
+//! Errors convert to a [`Diagnostic`](pinswitch_diagnostic::Diagnostic), and their `Display` is its
+//! one-line form.
 
 mod axis;
+mod checksum;
 mod constraint;
 mod content;
 mod destination;
+mod diagnostics;
 mod estimate;
-mod forecast;
 mod gallery;
 mod inspect;
 mod make;
 mod merge;
-mod obstacles;
+mod obstructions;
 mod page;
 mod plots;
+mod prediction_cache;
 mod products;
 mod run;
-mod seal;
 mod shard;
 mod slicing;
 mod source;
@@ -61,29 +78,29 @@ mod tally;
 mod variant;
 
 pub use axis::{Method, ParameterRef, SweepAxis, unit_points};
-pub use constraint::Constraint;
+pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
 pub use destination::{
-    Destination, DestinationError, DestinationLock, Folder, is_dead_link, remedy_at, temporary_file,
+    Destination, DestinationError, DestinationLock, Folder, is_dangling_symlink, temporary_file, write_help,
 };
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
-pub use make::VariantOutcome;
+pub use make::{Refusal, VariantOutcome};
 pub use merge::{MergeError, merge};
-pub use obstacles::would_fail;
+pub use obstructions::obstructed_paths;
 pub use products::ProductError;
-pub use run::{Observer, Options, RunError, ShardStamp, admit, partial_folder, run};
+pub use run::{Observer, Options, RunError, ShardStamp, check_destination, partial_folder, run};
 pub use shard::{Shard, ShardError};
 pub use source::{Reach, SweepSource, read_at_most};
 pub use stamp::{Stamp, StampError};
-pub use sweep::{CountedSweep, Sweep};
+pub use sweep::{Sweep, UncheckedSweep};
 pub use table::{Cell, Column, ColumnType, Row, Schema};
 pub use table_files::{BatchTableError, TableWriter, read_rows};
 pub use tally::Tally;
 pub use variant::{Variant, Variants};
 
-/// Bytes as lower-case hexadecimal digits.
+/// Returns bytes as lower-case hexadecimal digits.
 fn hexadecimal(bytes: &[u8]) -> String {
     use std::fmt::Write;
     bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {

@@ -1,16 +1,22 @@
-//! One variant: refused, kept from an earlier run, or made.
+//! One variant: refused, reused from an earlier run, or made.
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::sync::Arc;
 
+use pinswitch_diagnostic::Diagnostic;
+
+use super::checksum::with_checksum;
+use super::constraint::Violation;
 use super::content::{ContentError, MeshMaker, PartStore, StoredPart, content_path};
 use super::destination::{Destination, DestinationError};
-use super::forecast::{Forecast, Forecasts};
+use super::diagnostics::{config_field, from_config};
 use super::inspect::Inspector;
-use super::seal::seal;
+use super::prediction_cache::{CachedPrediction, PredictionCache};
 use super::slicing::VariantSlicer;
 use super::variant::{Variant, Variants};
 use pinswitch_slicer::Slicer;
+use pinswitch_switch::config::ConfigError;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
@@ -18,25 +24,75 @@ use pinswitch_switch::output::{BuildError, OutputFile, SetError};
 use pinswitch_switch::parts::{Part, fit_on_bed, printed};
 use pinswitch_switch::prediction::Prediction;
 
-/// The table of a variant's curve.
+/// File of a variant's curve.
 const CURVE: &str = "friction.csv";
-/// Its figure, where the sweep asks for plots.
+/// File of its plot, in a sweep with plots.
 const FIGURE: &str = "friction.svg";
 
 /// What became of a variant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VariantOutcome {
-    /// Its files are at the destination; this is its manifest.
+    /// Its files are at the destination.
     Made {
-        /// The manifest's bytes.
+        /// The bytes of its manifest.
         manifest: Vec<u8>,
-        /// Whether it is left from an earlier run.
+        /// Whether an earlier run made it.
         reused: bool,
     },
-    /// It cannot be built, or a constraint forbids it.
-    Refused(String),
-    /// Making it failed.
-    Failed(String),
+    /// It cannot be built, or does not meet a constraint.
+    Refused(Refusal),
+    /// An error occurred while it was made.
+    Failed(Diagnostic),
+}
+
+/// Why a variant is refused.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Refusal {
+    /// It has the same settings as an earlier variant.
+    Repeats {
+        /// The id of the earlier variant.
+        id: String,
+    },
+    /// Its configuration cannot be built, printed or assembled.
+    Configuration(ConfigError),
+    /// It does not meet a constraint of the sweep.
+    Constraint(Violation),
+}
+
+impl Refusal {
+    /// Returns what many refusals have in common: the field or the constraint, without values.
+    pub fn kind(&self) -> String {
+        match self {
+            Self::Repeats { .. } => "repeats another variant".to_owned(),
+            Self::Configuration(error) => config_field(error),
+            Self::Constraint(violation) => format!("constraint {:?}", violation.constraint),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Repeats { id } => write!(f, "repeats {id}"),
+            Self::Configuration(error) => write!(f, "{error}"),
+            Self::Constraint(violation) => write!(f, "{violation}"),
+        }
+    }
+}
+
+impl From<Refusal> for Diagnostic {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Configuration(error) => from_config(error),
+            other => Self::new(other.to_string()),
+        }
+    }
+}
+
+impl From<ConfigError> for Refusal {
+    fn from(error: ConfigError) -> Self {
+        Self::Configuration(error)
+    }
 }
 
 /// Makes variants at a destination.
@@ -45,13 +101,13 @@ pub(super) struct VariantMaker<'a> {
     sweep_sha256: &'a str,
     destination: &'a Destination,
     contents: PartStore<'a>,
-    forecasts: Forecasts,
+    predictions: PredictionCache,
     slicer: Option<VariantSlicer<'a>>,
-    /// What looks at the variants that an earlier run may have left.
+    /// Checks the variants of an earlier run, if there can be any.
     inspector: Option<Inspector<'a>>,
 }
 
-/// The folder of a variant.
+/// Returns the folder of a variant.
 pub(super) fn variant_folder(id: &str) -> String {
     format!("variants/{id}")
 }
@@ -59,45 +115,44 @@ pub(super) fn variant_folder(id: &str) -> String {
 /// A variant that can be made.
 pub(super) struct AcceptedVariant {
     design: Design,
-    forecast: Arc<Forecast>,
-    /// The parts that the sweep asks for.
+    prediction: Arc<CachedPrediction>,
+    /// The parts of the sweep.
     parts: Vec<Part>,
 }
 
-/// A design that fulfils the constraints of a sweep, with its parts: all that can be refused is refused here, so that a
-/// dry run refuses what a run refuses.
+/// Builds the design of a variant and its parts, and checks everything that can refuse it, so that
+/// a dry run and a run refuse the same variants.
 ///
 /// # Errors
-/// The reason for which the variant is refused.
-pub(super) fn accepted(
+/// Why the variant is refused.
+pub(super) fn accept(
     variants: &Variants,
     variant: &Variant,
-    forecasts: &Forecasts,
-) -> Result<AcceptedVariant, String> {
+    predictions: &PredictionCache,
+) -> Result<AcceptedVariant, Refusal> {
     if let Some(original) = variant.repeats {
-        return Err(format!("repeats {}", variants.get(original).id));
+        return Err(Refusal::Repeats { id: variants.get(original).id });
     }
-    let design = Design::new(variant.configuration.clone()).map_err(|e| e.to_string())?;
-    let forecast = forecasts.of(&design);
+    let design = Design::new(variant.configuration.clone())?;
+    let prediction = predictions.get(&design);
     let mut constraints = variants.sweep().constraints.iter();
-    match constraints.find_map(|c| c.refusal(&design, forecast.curve(&design))) {
-        Some(reason) => Err(reason),
-        None => {
-            let mut parts = printed(&design).map_err(|e| e.to_string())?;
-            parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
-            fit_on_bed(&parts, &design).map_err(|e| e.to_string())?;
-            Ok(AcceptedVariant { design, forecast, parts })
-        }
+    let violation = constraints.find_map(|c| c.violation(&design, prediction.curve(&design)));
+    if let Some(violation) = violation {
+        return Err(Refusal::Constraint(violation));
     }
+    let mut parts = printed(&design)?;
+    parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
+    fit_on_bed(&parts, &design)?;
+    Ok(AcceptedVariant { design, prediction, parts })
 }
 
 impl<'a> VariantMaker<'a> {
-    /// A maker for `destination`; `resumed` says whether it may already hold variants of the same sweep.
+    /// A maker for `destination`; `is_resumed` if it can contain variants of the same sweep.
     pub(super) fn new(
         variants: &'a Variants,
         sweep_sha256: &'a str,
         destination: &'a Destination,
-        resumed: bool,
+        is_resumed: bool,
         mesh_maker: MeshMaker,
         slicer: Option<&'a Slicer>,
     ) -> Self {
@@ -106,45 +161,45 @@ impl<'a> VariantMaker<'a> {
             sweep_sha256,
             destination,
             contents: PartStore::new(destination, mesh_maker),
-            forecasts: Forecasts::default(),
+            predictions: PredictionCache::default(),
             slicer: slicer.map(VariantSlicer::new),
-            inspector: resumed.then(|| Inspector::new(destination)),
+            inspector: is_resumed.then(|| Inspector::new(destination)),
         }
     }
 
-    /// Makes `variant` unless it is refused or already there.
+    /// Makes `variant` unless it is refused or exists already.
     ///
     /// # Errors
-    /// [`DestinationError`] for what would stop every other variant too, such as a full disk.
+    /// An error that would fail every other variant, too, such as a full disk.
     pub(super) fn make(&self, variant: &Variant) -> Result<VariantOutcome, DestinationError> {
-        let accepted = match accepted(self.variants, variant, &self.forecasts) {
+        let accepted = match accept(self.variants, variant, &self.predictions) {
             Ok(accepted) => accepted,
-            Err(reason) => return Ok(VariantOutcome::Refused(reason)),
+            Err(refusal) => return Ok(VariantOutcome::Refused(refusal)),
         };
         if let Some(inspector) = &self.inspector
-            && let Some(manifest) = self.whole(inspector, variant, &accepted)?
+            && let Some(manifest) = self.existing_manifest(inspector, variant, &accepted)?
         {
             return Ok(VariantOutcome::Made { manifest, reused: true });
         }
         match self.build(variant, &accepted) {
             Ok(manifest) => Ok(VariantOutcome::Made { manifest, reused: false }),
-            Err(ContentError::Destination(e)) if e.is_fatal => Err(e),
+            Err(ContentError::Destination(e)) if e.is_fatal() => Err(e),
             Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
-                Ok(VariantOutcome::Refused(e.to_string()))
+                Ok(VariantOutcome::Refused(e.into()))
             }
-            Err(e) => Ok(VariantOutcome::Failed(e.to_string())),
+            Err(e) => Ok(VariantOutcome::Failed(e.into())),
         }
     }
 
     fn build(&self, variant: &Variant, accepted: &AcceptedVariant) -> Result<Vec<u8>, ContentError> {
-        let AcceptedVariant { design, forecast, parts } = accepted;
-        let kept: Vec<_> =
-            parts.iter().map(|part| self.contents.keep(part, design)).collect::<Result<_, _>>()?;
+        let AcceptedVariant { design, prediction, parts } = accepted;
+        let stored: Vec<_> =
+            parts.iter().map(|part| self.contents.store(part, design)).collect::<Result<_, _>>()?;
         let linked: Vec<_> =
-            parts.iter().zip(&kept).map(|(part, kept)| part_entry(&part.name, kept)).collect();
-        let curve = forecast.shared(design)?;
+            parts.iter().zip(&stored).map(|(part, stored)| part_entry(&part.name, stored)).collect();
+        let curve = prediction.shared(design)?;
         let plots = self.plots(design, &curve.prediction)?;
-        let facts = parts.iter().zip(kept.iter().map(|k| &k.facts));
+        let facts = parts.iter().zip(stored.iter().map(|s| &s.facts));
         let mut manifest = Manifest::new(design, facts, &curve.prediction);
         let tables = curve.files.iter().map(|(_, entry)| entry.clone());
         manifest.files.extend(linked.iter().cloned().chain(tables).chain(plots.iter().map(FileEntry::of)));
@@ -156,13 +211,13 @@ impl<'a> VariantMaker<'a> {
         if let Some(slicer) = &self.slicer {
             let parts: Vec<_> = parts
                 .iter()
-                .zip(&kept)
-                .map(|(part, kept)| (part.name.as_str(), kept.sha256.as_str()))
+                .zip(&stored)
+                .map(|(part, stored)| (part.name.as_str(), stored.sha256.as_str()))
                 .collect();
-            let stored = |sha256: &str| self.contents.stored(sha256);
-            manifest.print = Some(slicer.entry(design.configuration(), &parts, stored)?);
+            let read = |sha256: &str| self.contents.read(sha256);
+            manifest.print = Some(slicer.entry(design.configuration(), &parts, read)?);
         }
-        let bytes = seal(manifest.bytes()?);
+        let bytes = with_checksum(manifest.bytes()?);
         let folder = variant_folder(&variant.id);
         for file in curve.files.iter().map(|(file, _)| file).chain(&plots) {
             self.destination.put(&format!("{folder}/{}", file.name), &file.bytes)?;
@@ -172,12 +227,12 @@ impl<'a> VariantMaker<'a> {
                 self.destination.link(content, &format!("{folder}/{}", entry.file))?;
             }
         }
-        // A variant with a manifest is whole: it comes last.
+        // The manifest comes last: a variant with a manifest is complete.
         self.destination.put(&format!("{folder}/manifest.json"), &bytes)?;
         Ok(bytes)
     }
 
-    /// The figures of one variant, which bear its name.
+    /// Draws the plots of one variant; they contain its name.
     fn plots(&self, design: &Design, prediction: &Prediction) -> Result<Vec<OutputFile>, SetError> {
         if !self.variants.sweep().plots {
             return Ok(Vec::new());
@@ -187,9 +242,9 @@ impl<'a> VariantMaker<'a> {
         Ok(files)
     }
 
-    /// The manifest of a variant that an earlier run made, if it lists what this run would make, and all its files are
-    /// still what it says.
-    fn whole(
+    /// Returns the manifest of a variant of an earlier run, if it lists the files that this run
+    /// would make and all of them are unchanged.
+    fn existing_manifest(
         &self,
         inspector: &Inspector<'_>,
         variant: &Variant,
@@ -199,7 +254,7 @@ impl<'a> VariantMaker<'a> {
         if listing.batch.sweep_sha256 != self.sweep_sha256 || listing.batch.index != variant.index {
             return Ok(None);
         }
-        // Made while no slicer was there.
+        // The earlier run had no slicer.
         if self.slicer.is_some() && listing.print.is_none() {
             return Ok(None);
         }
@@ -217,18 +272,18 @@ impl<'a> VariantMaker<'a> {
             Some("manifest.json")
         };
         if let Some(file) = problem {
-            log::warn!("{}: {file} has changed and is made again", variant.id);
+            log::warn!("{}: {file} is missing or has changed; the variant is made again", variant.id);
             return Ok(None);
         }
         Ok(Some(bytes))
     }
 }
 
-fn part_entry(name: &str, kept: &StoredPart) -> FileEntry {
+fn part_entry(name: &str, part: &StoredPart) -> FileEntry {
     FileEntry {
         file: format!("{name}.stl"),
-        bytes: kept.bytes,
-        sha256: kept.sha256.clone(),
-        content: Some(content_path(&kept.sha256)),
+        bytes: part.bytes,
+        sha256: part.sha256.clone(),
+        content: Some(content_path(&part.sha256)),
     }
 }

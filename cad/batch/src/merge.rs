@@ -1,17 +1,20 @@
-//! Joins the tables of shards into the products of the whole sweep.
+//! Merges finished shards into the products of the whole sweep.
 
-use pinswitch_diagnostic::excerpt;
+use std::error::Error;
+
+use pinswitch_diagnostic::{Diagnostic, excerpt};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
+use super::checksum::has_valid_checksum;
 use super::destination::{Destination, DestinationError};
+use super::diagnostics::diagnostic_error;
 use super::hexadecimal;
 use super::inspect::Inspector;
 use super::make::variant_folder;
-use super::obstacles::refuse_obstacles;
+use super::obstructions::check_paths;
 use super::products::{ProductError, Products};
 use super::run::ShardStamp;
-use super::seal::is_sealed;
 use super::shard::Shard;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
@@ -19,64 +22,111 @@ use super::table::{Row, Schema};
 use super::table_files::{BatchTableError, read_rows};
 use super::tally::Tally;
 use super::variant::Variants;
-use pinswitch_switch::config::ConfigError;
 
-/// Why shards cannot be merged. Nothing is written.
-#[derive(Debug, thiserror::Error)]
+/// Why shards cannot be merged.
+#[derive(Debug)]
 pub enum MergeError {
-    /// A place holds no batch, or the target holds another one.
-    #[error(transparent)]
-    Stamp(#[from] StampError),
-    /// Two places hold different sweeps.
-    #[error("{0} and {1} hold different sweeps; merge the shards of one")]
+    /// A place is not a batch, or the target contains another one.
+    Stamp(StampError),
+    /// Two places contain different sweeps.
     DifferentSweeps(String, String),
     /// Some variants are in no shard.
-    #[error("variants {from} to {to} of {of} are in no finished shard{hint}")]
     Gap {
-        /// First one missing, from 1.
+        /// First missing variant, from 1.
         from: u64,
-        /// Last one missing.
+        /// Last missing variant.
         to: u64,
-        /// All of them.
+        /// Number of variants of the sweep.
         of: u64,
-        /// The shards to run, if they can be told.
-        hint: String,
+        /// Options of the missing shards.
+        options: String,
     },
     /// Some variants are in two shards.
-    #[error("variants {from} to {to} are both in shard {first} and in shard {second}; leave one of them out")]
     Overlap {
-        /// First one that is there twice, from 1.
+        /// First common variant, from 1.
         from: u64,
-        /// Last one.
+        /// Last common variant.
         to: u64,
-        /// A shard, with its place.
+        /// One shard with its place.
         first: String,
-        /// The other.
+        /// The other shard with its place.
         second: String,
     },
-    /// A shard's table does not hold what its stamp says.
-    #[error("shard {shard}: {}; run it again", excerpt(problem, 300))]
+    /// A file of a shard is missing, damaged or inconsistent.
     Broken {
-        /// The shard, with its place.
+        /// The shard with its place.
         shard: String,
         /// What is wrong.
         problem: String,
     },
-    /// The sweep in the stamp cannot be read.
-    #[error(transparent)]
-    Sweep(#[from] ConfigError),
+    /// The sweep in the stamp is not valid.
+    Sweep(Diagnostic),
     /// The products cannot be made.
-    #[error(transparent)]
-    Products(#[from] ProductError),
+    Products(ProductError),
     /// A place cannot be read.
-    #[error(transparent)]
-    Destination(#[from] DestinationError),
+    Destination(DestinationError),
 }
 
-/// Rows that are looked at together.
+impl MergeError {
+    fn diagnostic(&self) -> Diagnostic {
+        match self {
+            Self::Stamp(error) => error.diagnostic(),
+            Self::DifferentSweeps(first, second) => {
+                Diagnostic::new(format!("{first} and {second} contain different sweeps"))
+                    .with_help("merge the shards of one sweep")
+            }
+            Self::Gap { from, to, of, options } => {
+                Diagnostic::new(format!("variants {from} to {to} of {of} are in no finished shard"))
+                    .with_help(format!("run {options}"))
+            }
+            Self::Overlap { from, to, first, second } => Diagnostic::new(format!(
+                "variants {from} to {to} are both in shard {first} and in shard {second}"
+            ))
+            .with_help("leave one of them out"),
+            Self::Broken { shard, problem } => {
+                Diagnostic::new(format!("shard {shard}: {}", excerpt(problem, 300))).with_help("run it again")
+            }
+            Self::Sweep(error) => error.clone(),
+            Self::Products(error) => error.diagnostic(),
+            Self::Destination(error) => error.clone().into(),
+        }
+    }
+
+    fn cause(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Stamp(error) => error.source(),
+            Self::Sweep(error) => error.source(),
+            Self::Products(error) => error.source(),
+            Self::Destination(error) => error.source(),
+            Self::DifferentSweeps(..) | Self::Gap { .. } | Self::Overlap { .. } | Self::Broken { .. } => None,
+        }
+    }
+}
+
+diagnostic_error!(MergeError);
+
+impl From<StampError> for MergeError {
+    fn from(error: StampError) -> Self {
+        Self::Stamp(error)
+    }
+}
+
+impl From<ProductError> for MergeError {
+    fn from(error: ProductError) -> Self {
+        Self::Products(error)
+    }
+}
+
+impl From<DestinationError> for MergeError {
+    fn from(error: DestinationError) -> Self {
+        Self::Destination(error)
+    }
+}
+
+/// Rows that are checked in parallel.
 const CHUNK_ROWS: usize = 512;
-/// Files that an error names.
-const MAX_NAMED: usize = 3;
+/// Most files that an error lists.
+const MAX_LISTED: usize = 3;
 
 /// A finished shard and its place.
 struct FinishedShard<'a> {
@@ -89,7 +139,7 @@ impl FinishedShard<'_> {
         format!("{} of {}", self.stamp.shard, self.place.name())
     }
 
-    /// The bytes of a table of this shard, as it recorded them.
+    /// Reads a table of this shard, and checks its recorded hash.
     fn table(&self, file: &str) -> Result<Vec<u8>, MergeError> {
         let broken =
             |problem: &str| MergeError::Broken { shard: self.name(), problem: format!("{file} {problem}") };
@@ -103,112 +153,136 @@ impl FinishedShard<'_> {
     }
 }
 
-/// Merges all finished shards of `places` into `target`, which may be one of them.
+/// Merges all finished shards of `places` into `target`, which can be one of them.
 ///
 /// # Errors
-/// [`MergeError`] for gaps, overlaps, other sweeps and broken shards; nothing is written then.
+/// Gaps, overlaps, different sweeps and damaged shards; then nothing is written.
 pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, MergeError> {
-    let stamp = one_sweep(places)?;
-    let sweep = Sweep::new(&stamp.source)?;
+    let stamp = common_stamp(places)?;
+    let sweep = Sweep::new(&stamp.source).map_err(MergeError::Sweep)?;
     let variants = Variants::new(sweep, &stamp.source);
     if variants.count() != stamp.variants {
-        let problem = format!("it says {} variants, and its sweep has {}", stamp.variants, variants.count());
-        return Err(StampError::Unreadable {
-            place: places.first().map_or_else(String::new, Destination::name),
-            problem,
-        }
-        .into());
+        let problem = format!("{} variants recorded, but the sweep has {}", stamp.variants, variants.count());
+        let place = places.first().map_or_else(String::new, Destination::name);
+        return Err(StampError::Invalid { place, problem, source: None }.into());
     }
-    stamp.refuse_foreign(target)?;
-    refuse_obstacles(target, Shard::WHOLE)?;
-    let mut found = Vec::new();
-    for place in places {
-        for folder in place.folders("shards")? {
-            if let Some(bytes) = place.get(&format!("shards/{folder}/shard.json"))? {
-                let broken = |problem: String| MergeError::Broken {
-                    shard: format!("{folder} of {}", place.name()),
-                    problem,
-                };
-                let stamp: ShardStamp =
-                    serde_json::from_slice(&bytes).map_err(|e| broken(format!("shard.json: {e}")))?;
-                let range = stamp.shard.range(variants.count());
-                if !is_sealed(&bytes) || stamp.shard.folder() != folder || stamp.variants != range {
-                    return Err(broken("shard.json was changed or damaged".to_owned()));
-                }
-                found.push(FinishedShard { stamp, place });
-            }
-        }
-    }
-    found.sort_by_key(|f| (f.stamp.variants.start, f.stamp.variants.end));
-    cover(&found, &stamp)?;
+    stamp.check(target)?;
+    check_paths(target, Shard::WHOLE)?;
+    let shards = finished_shards(places, variants.count())?;
+    check_coverage(&shards, &stamp)?;
     let _lock = target.lock()?;
     let mut products = Products::new(&variants, target)?;
-    let schema = products.schema().clone();
-    let mut damage: Vec<(String, String)> = Vec::new();
-    for shard in &found {
-        let broken = |problem: String| MergeError::Broken { shard: shard.name(), problem };
-        let file = format!("shards/{}/variants.parquet", shard.stamp.shard.folder());
-        let bytes = shard.table(&file)?;
-        shard.table(&format!("shards/{}/variants.csv", shard.stamp.shard.folder()))?;
-        let rows = read_rows(bytes, &schema).map_err(|e| broken(e.to_string()))?;
-        let mut expected = shard.stamp.variants.clone();
-        let inspector = Inspector::new(shard.place);
-        let mut rows = rows.map(|row| row.map_err(|e: BatchTableError| broken(e.to_string())));
-        loop {
-            let chunk = rows.by_ref().take(CHUNK_ROWS).collect::<Result<Vec<_>, _>>()?;
-            if chunk.is_empty() {
-                break;
-            }
-            let looks = chunk.par_iter().map(|row| look(&inspector, &schema, row));
-            damage.extend(
-                looks.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().map(|file| (shard.name(), file)),
-            );
-            for row in chunk {
-                let index =
-                    expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
-                #[allow(clippy::cast_precision_loss)]
-                if schema.cell(&row, "index").number() != Some(index as f64) {
-                    return Err(broken(format!("its table lacks variant {}", index + 1)));
-                }
-                products.push(index, row)?;
-            }
-        }
-        if !expected.is_empty() {
-            return Err(broken(format!("its table lacks the last {} rows", expected.end - expected.start)));
-        }
+    let mut damaged: Vec<(String, String)> = Vec::new();
+    for shard in &shards {
+        add_rows(shard, &mut products, &mut damaged)?;
     }
-    if let Some((shard, file)) = damage.first() {
-        let problem = match damage.len() {
-            1 => format!("{file} is missing or has changed"),
-            n => {
-                let some: Vec<_> =
-                    damage.iter().skip(1).take(MAX_NAMED - 1).map(|(_, file)| file.as_str()).collect();
-                let rest = if n > MAX_NAMED { format!(" and {} more", n - MAX_NAMED) } else { String::new() };
-                format!("{file}, {}{rest} are missing or have changed", some.join(", "))
-            }
-        };
-        return Err(MergeError::Broken { shard: shard.clone(), problem });
+    if let Some(error) = damage(&damaged) {
+        return Err(error);
     }
-    stamp.put(target)?;
+    stamp.write(target)?;
     Ok(products.finish()?)
 }
 
-/// The first file of a row's variant that is missing or is not what the shard has made.
-fn look(inspector: &Inspector<'_>, schema: &Schema, row: &Row) -> Result<Option<String>, DestinationError> {
+/// Reads the records of all finished shards, sorted by their variants. A damaged record is an
+/// error.
+fn finished_shards(places: &[Destination], variants: u64) -> Result<Vec<FinishedShard<'_>>, MergeError> {
+    let mut shards = Vec::new();
+    for place in places {
+        for folder in place.folders("shards")? {
+            let Some(bytes) = place.get(&format!("shards/{folder}/shard.json"))? else { continue };
+            let broken = |problem: String| MergeError::Broken {
+                shard: format!("{folder} of {}", place.name()),
+                problem,
+            };
+            let stamp: ShardStamp =
+                serde_json::from_slice(&bytes).map_err(|e| broken(format!("shard.json: {e}")))?;
+            let is_consistent = has_valid_checksum(&bytes)
+                && stamp.shard.folder() == folder
+                && stamp.variants == stamp.shard.range(variants);
+            if !is_consistent {
+                return Err(broken("shard.json was changed or damaged".to_owned()));
+            }
+            shards.push(FinishedShard { stamp, place });
+        }
+    }
+    shards.sort_by_key(|shard| (shard.stamp.variants.start, shard.stamp.variants.end));
+    Ok(shards)
+}
+
+/// Adds the rows of a shard to the products, and its damaged files to `damaged`.
+fn add_rows(
+    shard: &FinishedShard<'_>,
+    products: &mut Products<'_>,
+    damaged: &mut Vec<(String, String)>,
+) -> Result<(), MergeError> {
+    let schema = products.schema().clone();
+    let broken = |problem: String| MergeError::Broken { shard: shard.name(), problem };
+    let folder = shard.stamp.shard.folder();
+    let bytes = shard.table(&format!("shards/{folder}/variants.parquet"))?;
+    shard.table(&format!("shards/{folder}/variants.csv"))?;
+    let rows = read_rows(bytes, &schema).map_err(|e| broken(e.to_string()))?;
+    let mut rows = rows.map(|row| row.map_err(|e: BatchTableError| broken(e.to_string())));
+    let mut expected = shard.stamp.variants.clone();
+    let inspector = Inspector::new(shard.place);
+    loop {
+        let chunk = rows.by_ref().take(CHUNK_ROWS).collect::<Result<Vec<_>, _>>()?;
+        if chunk.is_empty() {
+            break;
+        }
+        let files = chunk.par_iter().map(|row| damaged_file(&inspector, &schema, row));
+        let files = files.collect::<Result<Vec<_>, _>>()?;
+        damaged.extend(files.into_iter().flatten().map(|file| (shard.name(), file)));
+        for row in chunk {
+            let index = expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
+            #[allow(clippy::cast_precision_loss)]
+            if schema.cell(&row, "index").number() != Some(index as f64) {
+                return Err(broken(format!("its table lacks variant {}", index + 1)));
+            }
+            products.push(index, row)?;
+        }
+    }
+    if expected.is_empty() {
+        return Ok(());
+    }
+    Err(broken(format!("its table lacks the last {} rows", expected.end - expected.start)))
+}
+
+/// Returns the error for damaged files, each with its shard; the first of them are listed.
+fn damage(damaged: &[(String, String)]) -> Option<MergeError> {
+    let (shard, file) = damaged.first()?;
+    let problem = match damaged.len() {
+        1 => format!("{file} is missing or has changed"),
+        n => {
+            let others: Vec<_> =
+                damaged.iter().skip(1).take(MAX_LISTED - 1).map(|(_, file)| file.as_str()).collect();
+            let rest = if n > MAX_LISTED { format!(" and {} more", n - MAX_LISTED) } else { String::new() };
+            format!("{file}, {}{rest} are missing or have changed", others.join(", "))
+        }
+    };
+    Some(MergeError::Broken { shard: shard.clone(), problem })
+}
+
+/// Returns the first file of a row's variant that is missing or changed.
+fn damaged_file(
+    inspector: &Inspector<'_>,
+    schema: &Schema,
+    row: &Row,
+) -> Result<Option<String>, DestinationError> {
     let text = |name: &str| schema.cell(row, name).text().unwrap_or_default();
     if text("status") != "made" {
         return Ok(None);
     }
     let id = text("id");
-    let named = |file: &str| Some(format!("{}/{file}", variant_folder(id)));
-    let found = inspector.manifest(id)?;
-    let own = found.filter(|(bytes, _)| hexadecimal(&Sha256::digest(bytes)) == text("manifest_sha256"));
-    let Some((_, listing)) = own else { return Ok(named("manifest.json")) };
-    Ok(inspector.damaged(id, &listing)?.and_then(named))
+    let in_folder = |file: &str| Some(format!("{}/{file}", variant_folder(id)));
+    let manifest = inspector.manifest(id)?;
+    let unchanged =
+        manifest.filter(|(bytes, _)| hexadecimal(&Sha256::digest(bytes)) == text("manifest_sha256"));
+    let Some((_, listing)) = unchanged else { return Ok(in_folder("manifest.json")) };
+    Ok(inspector.damaged(id, &listing)?.and_then(in_folder))
 }
 
-/// The stamp that all places share.
-fn one_sweep(places: &[Destination]) -> Result<Stamp, MergeError> {
+/// Reads the stamp that all places have in common.
+fn common_stamp(places: &[Destination]) -> Result<Stamp, MergeError> {
     let mut first: Option<(Stamp, String)> = None;
     for place in places {
         let stamp = Stamp::read(place)?;
@@ -218,37 +292,35 @@ fn one_sweep(places: &[Destination]) -> Result<Stamp, MergeError> {
             Some((_, name)) => return Err(MergeError::DifferentSweeps(name.clone(), place.name())),
         }
     }
-    first.map(|(stamp, _)| stamp).ok_or_else(|| StampError::Missing { place: "nothing".to_owned() }.into())
+    first.map(|(stamp, _)| stamp).ok_or_else(|| StampError::Missing { place: String::new() }.into())
 }
 
-/// Whether the shards hold every variant once.
-fn cover(found: &[FinishedShard<'_>], stamp: &Stamp) -> Result<(), MergeError> {
+/// Checks that the shards contain every variant once.
+fn check_coverage(shards: &[FinishedShard<'_>], stamp: &Stamp) -> Result<(), MergeError> {
     let mut next = 0;
-    let mut before: Option<&FinishedShard<'_>> = None;
+    let mut previous: Option<&FinishedShard<'_>> = None;
     let gap = |from: u64, to: u64| {
-        let hint = found.first().map_or_else(
-            || "; run them with --shard K/N".to_owned(),
-            |f| format!("; run {}", f.stamp.shard.siblings(stamp.variants, from..to)),
+        let options = shards.first().map_or_else(
+            || "the shards with --shard K/N".to_owned(),
+            |first| first.stamp.shard.options_for(stamp.variants, from..to),
         );
-        MergeError::Gap { from: from + 1, to, of: stamp.variants, hint }
+        MergeError::Gap { from: from + 1, to, of: stamp.variants, options }
     };
-    for shard in found {
+    for shard in shards {
         let range = &shard.stamp.variants;
         if shard.stamp.sweep_sha256 != stamp.sweep_sha256 {
-            return Err(MergeError::Broken {
-                shard: shard.name(),
-                problem: "it belongs to another sweep".to_owned(),
-            });
+            let problem = "it belongs to another sweep".to_owned();
+            return Err(MergeError::Broken { shard: shard.name(), problem });
         }
         if range.start > next {
             return Err(gap(next, range.start));
         }
-        if let Some(first) = before.filter(|_| range.start < next) {
+        if let Some(first) = previous.filter(|_| range.start < next) {
             let (from, to) = (range.start + 1, next.min(range.end));
             return Err(MergeError::Overlap { from, to, first: first.name(), second: shard.name() });
         }
         next = range.end;
-        before = Some(shard);
+        previous = Some(shard);
     }
     if next < stamp.variants { Err(gap(next, stamp.variants)) } else { Ok(()) }
 }

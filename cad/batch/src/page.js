@@ -10,7 +10,7 @@ const make = (name, text, attributes = {}) => {
 const megabytes = bytes => (bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0) + " MB";
 const numeric = data.fields.map((_, i) => data.variants.every(v => typeof v.settings[i] === "number"));
 
-// Columns: what varies, and what it does.
+// Columns: the fields that vary, and their results.
 const columns = [
   { name: "layout", get: v => v.glyph ? v.glyph.pins_deg.length : undefined, picture: v => glyph(v), words: true },
   { name: "variant", get: v => v.id, words: true, title: true },
@@ -21,24 +21,24 @@ const columns = [
   { name: "band (N)", get: v => v.friction_n ? v.friction_n[2] - v.friction_n[1] : undefined,
     show: v => v.friction_n ? v.friction_n[1].toFixed(2) + " to " + v.friction_n[2].toFixed(2) : "" },
   { name: "threshold (N)", get: v => v.threshold_n, show: v => v.threshold_n === undefined ? "" : v.threshold_n.toFixed(2) },
-  { name: "trust", get: v => v.trust, words: true },
+  { name: "prediction", get: v => v.trust, words: true },
   { name: "printed (g)", get: v => v.printed_g, show: v => v.printed_g === undefined ? "" : v.printed_g.toFixed(2) },
   { name: "curve", get: v => v.friction_n ? v.friction_n[0] : undefined, words: true,
     picture: v => v.status === "made" ? svg(110, 34, `<path class="spark" d="${path(v, 110, 34)}"/>`) : undefined },
   { name: "files", get: v => v.status, links: true, words: true },
 ];
 const top_n = Math.max(...data.variants.flatMap(v => v.curve_n || [0]), 0.1);
-const heaviest = Math.max(...data.variants.map(v => v.loads_n ? v.loads_n[1] : 0), 0.1);
+const largest_load = Math.max(...data.variants.map(v => v.loads_n ? v.loads_n[1] : 0), 0.1);
 
 const t = data.tally;
 document.getElementById("tally").textContent =
   `${data.of} variants: ${t.made} made, ${t.refused} refused, ${t.failed} failed. ` +
-  `${t.parts} part files, ${t.distinct_parts} of them different: ${megabytes(t.part_bytes)} kept in ${megabytes(t.distinct_bytes)}.` +
-  (data.every > 1 ? ` This page shows every ${data.every}th variant; variants.csv and variants.parquet hold all.` : "");
+  `${t.parts} part files (${megabytes(t.part_bytes)}), ${t.distinct_parts} of them different (${megabytes(t.distinct_bytes)} stored).` +
+  (data.every > 1 ? ` This page shows every ${data.every}th variant; variants.csv and variants.parquet contain all of them.` : "");
 
 const path = (v, width, height) => (v.curve_n || []).map((y, i, all) => {
   const load = v.loads_n[0] + (v.loads_n[1] - v.loads_n[0]) * i / (all.length - 1);
-  return (i ? "L" : "M") + (load / heaviest * width).toFixed(1) + " " + (height - y / top_n * height).toFixed(1);
+  return (i ? "L" : "M") + (load / largest_load * width).toFixed(1) + " " + (height - y / top_n * height).toFixed(1);
 }).join("");
 const svg = (width, height, inner) => {
   const holder = make("span");
@@ -46,8 +46,8 @@ const svg = (width, height, inner) => {
   return holder.firstChild;
 };
 
-// The segment seen along the pulley's axis, to scale: shell, layer, and the pins in their grooves.
-// One scale for all, at which the widest and the highest fit into their box.
+// The segment to scale, seen along the pulley's axis: shell, layer and pins.
+// One scale for all variants, at which the widest and the highest segment fit into the box.
 const glyphScale = Math.min(...data.variants.filter(v => v.glyph).map(({ glyph: g }) => {
   const [half, outer, inner] = [g.span_deg * Math.PI / 360, g.radius_mm + g.layer_mm, g.radius_mm - g.wall_mm];
   const lowest = Math.min(outer * Math.cos(half), inner * Math.cos(half));
@@ -102,13 +102,13 @@ filters.addEventListener("submit", event => event.preventDefault());
 filters.addEventListener("input", () => { shown = PAGE; draw(); });
 
 // Table.
-let order = null, falling = false, shown = PAGE, chosen = null;
+let order = null, descending = false, shown = PAGE, chosen = null;
 const head = document.getElementById("head");
 columns.forEach(column => {
   const cell = make("th", undefined, column.words ? { class: "words" } : {});
   const button = make("button", column.name, { type: "button", title: column.full || column.name });
   button.addEventListener("click", () => {
-    falling = order === column ? !falling : false;
+    descending = order === column ? !descending : false;
     order = column;
     draw();
   });
@@ -119,7 +119,7 @@ const compare = (a, b) => {
   const [x, y] = [order.get(a), order.get(b)];
   if (x === undefined || y === undefined) return (x === undefined) - (y === undefined);
   const sign = typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y), "en", { numeric: true });
-  return falling ? -sign : sign;
+  return descending ? -sign : sign;
 };
 function draw() {
   const text = search.value.toLowerCase();
@@ -128,7 +128,7 @@ function draw() {
     (!text || (v.id + " " + v.label + " " + (v.reason || "")).toLowerCase().includes(text)) &&
     limits.every(limit => limit(v)));
   if (order) rows = [...rows].sort(compare);
-  document.getElementById("count").textContent = `${rows.length} of ${data.variants.length} shown variants match`;
+  document.getElementById("count").textContent = `${rows.length} of ${data.variants.length} variants match`;
   const body = document.getElementById("rows");
   body.replaceChildren(...rows.slice(0, shown).map(v => {
     const row = make("tr", undefined, { class: v.status + (v === chosen ? " chosen" : "") });
@@ -147,7 +147,7 @@ function draw() {
       row.append(cell);
     });
     if (v.status !== "made") {
-      // The reason takes the place of what there is not.
+      // The reason replaces the columns without values.
       while (row.children.length > 3 + data.fields.length) row.lastChild.remove();
       row.append(make("td", v.status + ": " + (v.reason || ""), { class: "words whole", colspan: columns.length - row.children.length }));
     }
@@ -160,13 +160,13 @@ function draw() {
 }
 document.getElementById("more").addEventListener("click", () => { shown += PAGE; draw(); });
 
-// What a variant's folder holds.
+// Links to a variant's folder and files.
 function links(v) {
-  const of = (text, file) => make("a", text, { href: "variants/" + v.id + "/" + file });
-  return [of("folder", ""), of("manifest", "manifest.json"), of("curve", "friction.csv")];
+  const link = (text, file) => make("a", text, { href: "variants/" + v.id + "/" + file });
+  return [link("folder", ""), link("manifest", "manifest.json"), link("curve", "friction.csv")];
 }
 
-// The chosen variant before all that match.
+// The curve of the chosen variant, with those of all matching variants.
 function detail(rows) {
   const place = document.getElementById("detail");
   place.hidden = !chosen;
@@ -179,7 +179,7 @@ function detail(rows) {
   }
   title.append(" — " + data.fields.map((name, i) => name + " = " + (numeric[i] ? +chosen.settings[i].toPrecision(6) : chosen.settings[i])).join(", "));
   const others = rows.filter(v => v.curve_n).slice(0, 300).map(v => `<path class="others" d="${path(v, 520, 150)}"/>`).join("");
-  const axes = `<text x="515" y="146" font-size="11" text-anchor="end">${heaviest.toFixed(0)} N load</text>` +
+  const axes = `<text x="515" y="146" font-size="11" text-anchor="end">${largest_load.toFixed(0)} N load</text>` +
     `<text x="3" y="11" font-size="11">${top_n.toFixed(1)} N friction</text>`;
   place.replaceChildren(title, svg(520, 150,
     `<rect width="520" height="150"/>${others}<path class="spark" d="${path(chosen, 520, 150)}"/>${axes}`));

@@ -1,4 +1,4 @@
-//! `index.html`: one self-contained page to look through a sweep, without a network or a server.
+//! `index.html`: one self-contained page to browse a sweep without a network or a server.
 
 use pinswitch_report::html::{escape, filled, json_in_script, policy};
 use serde_json::json;
@@ -6,12 +6,12 @@ use serde_json::json;
 use super::gallery::Gallery;
 use super::tally::Tally;
 
-/// The page without its data.
+/// The page's HTML with placeholders.
 const TEMPLATE: &str = include_str!("page.html");
-/// What it does.
+/// The page's script.
 const JS: &str = include_str!("page.js");
 
-/// The page of a sweep, with its plots inside.
+/// Returns the page of a sweep with its plots.
 pub(super) fn page(name: &str, gallery: &Gallery, tally: &Tally, plots: [&str; 2]) -> String {
     let data = json!({
         "name": name,

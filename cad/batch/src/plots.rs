@@ -6,21 +6,22 @@ use plotters::prelude::*;
 use super::gallery::{Gallery, GalleryEntry, SettingValue};
 use pinswitch_report::{PlotError, drawable};
 
-/// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
+/// Drawing units per pixel: the drawing library rounds to whole units, and lines must be smooth.
 const FINE: i32 = 8;
-/// Size of a panel in pixels.
+/// Size of a panel, px.
 const PANEL: (i32, i32) = (260, 190);
-/// Most panels; values beyond are put into as many classes.
+/// Most panels; more values are divided into as many classes.
 const MAX_PANELS: usize = 12;
-/// Most curves in a panel, evenly taken.
+/// Most curves in a panel, evenly spaced over the variants.
 const MAX_CURVES: usize = 40;
-/// Room for the title, and for the legend on the right, in pixels.
+/// Height of the title and width of the legend, px.
 const TITLE: i32 = 46;
 const LEGEND: i32 = 190;
-/// From low to high: even to the eye and to the colour-blind (viridis, without its palest end).
+/// Colours from low to high values, perceptually uniform also for the colour-blind (viridis without
+/// its palest end).
 const RAMP: [(f64, f64, f64); 5] =
     [(68.0, 1.0, 84.0), (59.0, 82.0, 139.0), (33.0, 145.0, 140.0), (94.0, 201.0, 98.0), (202.0, 190.0, 20.0)];
-/// Words have no order, and so have these (Okabe and Ito, told apart by the colour-blind).
+/// Colours of values without an order, distinguishable for the colour-blind (Okabe and Ito).
 const PALETTE: [(u8, u8, u8); 8] = [
     (0, 114, 178),
     (213, 94, 0),
@@ -33,26 +34,26 @@ const PALETTE: [(u8, u8, u8); 8] = [
 ];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
+type DrawResult = Result<(), Box<dyn std::error::Error>>;
 
-/// A field as classes: single values where they are few, else intervals.
+/// The values of a field as classes: single values if they are few, else intervals.
 struct Classes {
     field: Option<usize>,
     name: String,
     labels: Vec<String>,
-    /// Upper ends of intervals, or nothing for single values.
+    /// Upper ends of intervals; empty for single values.
     ends: Vec<f64>,
-    /// Whether the values are numbers, which have an order.
-    ordered: bool,
+    /// Whether the values have an order, as numbers have.
+    is_ordered: bool,
 }
 
 impl Classes {
-    /// The classes of field `field`, at most `most`; without a field, one class.
+    /// The classes of field `field`, at most `most`; one class without a field.
     #[allow(clippy::cast_precision_loss)]
     fn new(gallery: &Gallery, field: Option<usize>, most: usize) -> Self {
         let name = field.map(|i| gallery.fields[i].clone()).unwrap_or_default();
         let Some(i) = field else {
-            return Self { field, name, labels: vec![String::new()], ends: Vec::new(), ordered: true };
+            return Self { field, name, labels: vec![String::new()], ends: Vec::new(), is_ordered: true };
         };
         let mut values: Vec<&SettingValue> = Vec::new();
         for shown in gallery.made() {
@@ -64,9 +65,9 @@ impl Classes {
             return Self {
                 field,
                 name,
-                labels: vec!["none was made".to_owned()],
+                labels: vec!["no variant was made".to_owned()],
                 ends: Vec::new(),
-                ordered: true,
+                is_ordered: true,
             };
         }
         let mut numbers: Vec<f64> = values
@@ -81,24 +82,24 @@ impl Classes {
             let ends: Vec<_> = (1..=classes).map(end).collect();
             let labels =
                 (0..classes).map(|k| format!("{} to {}", short(end(k)), short(end(k + 1)))).collect();
-            return Self { field, name, labels, ends, ordered: true };
+            return Self { field, name, labels, ends, is_ordered: true };
         }
-        let ordered = numbers.len() == values.len();
-        let labels = if ordered {
+        let is_ordered = numbers.len() == values.len();
+        let labels = if is_ordered {
             numbers.into_iter().map(short).collect()
         } else {
             let mut labels: Vec<_> = values.iter().map(|v| label(v)).collect();
             labels.truncate(most.saturating_sub(1).max(1));
             if values.len() > labels.len() {
-                labels.push("others".to_owned());
+                labels.push("other".to_owned());
             }
             labels
         };
-        Self { field, name, labels, ends: Vec::new(), ordered }
+        Self { field, name, labels, ends: Vec::new(), is_ordered }
     }
 
-    /// The class of a variant.
-    fn of(&self, shown: &GalleryEntry) -> usize {
+    /// Returns the class of a variant.
+    fn class(&self, shown: &GalleryEntry) -> usize {
         let last = self.labels.len().saturating_sub(1);
         match self.field.map(|i| &shown.settings[i]) {
             None => 0,
@@ -113,7 +114,7 @@ impl Classes {
     }
 
     fn colour(&self, class: usize) -> RGBColor {
-        if !self.ordered {
+        if !self.is_ordered {
             let (red, green, blue) = PALETTE[class % PALETTE.len()];
             return RGBColor(red, green, blue);
         }
@@ -135,7 +136,7 @@ fn ramp(share: f64) -> RGBColor {
 fn label(setting: &SettingValue) -> String {
     match setting {
         SettingValue::Number(x) => short(*x),
-        SettingValue::Words(words) => words.clone(),
+        SettingValue::Text(text) => text.clone(),
     }
 }
 
@@ -143,8 +144,9 @@ fn short(x: f64) -> String {
     format!("{}", (x * 1e3).round() / 1e3)
 }
 
-/// Friction over load of every shown variant: coloured by the field with the largest effect on friction, with one panel
-/// per value of the next; a single field gives one panel.
+/// Draws friction over load of every variant in the gallery, coloured by the field with the largest
+/// effect on friction, with one panel per value of the field with the next largest effect. A single
+/// field gives one panel.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
@@ -166,7 +168,7 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
         let (body, key) = body.split_horizontally((size.0 - LEGEND) * FINE);
         legend(&key, &colours)?;
         let top = gallery.made().flat_map(|s| &s.curve_n).copied().fold(0.1, f64::max) * 1.05;
-        let heaviest = gallery.made().filter_map(|s| s.loads_n).fold(0.1, |m: f64, l| m.max(l[1]));
+        let largest_load = gallery.made().filter_map(|s| s.loads_n).fold(0.1, |m: f64, l| m.max(l[1]));
         let places = body.split_evenly((rows, columns));
         for (class, place) in (0..panels.labels.len()).zip(&places) {
             let mut chart = ChartBuilder::on(place);
@@ -175,11 +177,11 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
                 let caption = format!("{} = {}", short_field(&panels.name), panels.labels[class]);
                 chart.caption(caption, ("sans-serif", 13 * FINE));
             }
-            let mut chart = chart.build_cartesian_2d(drawable(0.0, heaviest), drawable(0.0, top))?;
+            let mut chart = chart.build_cartesian_2d(drawable(0.0, largest_load), drawable(0.0, top))?;
             mesh(&mut chart, "load (N)", "friction (N)")?;
-            let inside: Vec<_> = gallery.made().filter(|s| panels.of(s) == class).collect();
+            let inside: Vec<_> = gallery.made().filter(|s| panels.class(s) == class).collect();
             for shown in inside.iter().step_by(inside.len().div_ceil(MAX_CURVES).max(1)) {
-                let colour = colours.colour(colours.of(shown));
+                let colour = colours.colour(colours.class(shown));
                 chart.draw_series(LineSeries::new(
                     points(shown),
                     colour.mix(0.75).stroke_width(fine(3) / 2),
@@ -190,8 +192,8 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
     })
 }
 
-/// The fields, those first that explain most of the friction at the heaviest load: by the variance between the
-/// means of their classes, and as listed where that is equal.
+/// Returns the fields in the order of their effect on the friction at the largest load: the
+/// variance between the means of their classes. Equal effects keep the order of the sweep.
 #[allow(clippy::cast_precision_loss)]
 fn by_effect(gallery: &Gallery) -> Vec<usize> {
     let made: Vec<_> = gallery.made().filter_map(|s| Some((s, s.friction_n?[0]))).collect();
@@ -200,12 +202,12 @@ fn by_effect(gallery: &Gallery) -> Vec<usize> {
         let classes = Classes::new(gallery, Some(field), 8);
         let mut sums = vec![(0.0, 0.0); classes.labels.len().max(1)];
         for (shown, friction) in &made {
-            let (sum, count) = &mut sums[classes.of(shown)];
+            let (sum, count) = &mut sums[classes.class(shown)];
             *sum += friction;
             *count += 1.0;
         }
         let between: f64 = sums.iter().filter(|s| s.1 > 0.0).map(|(s, n)| n * (s / n - mean).powi(2)).sum();
-        // Rounded: what differs by the noise of a sum is equal.
+        // Effects that differ by rounding errors only are equal.
         (between * 1e6).round()
     };
     let mut ranked: Vec<_> = (0..gallery.fields.len()).map(|field| (effect(field), field)).collect();
@@ -213,29 +215,29 @@ fn by_effect(gallery: &Gallery) -> Vec<usize> {
     ranked.into_iter().map(|(_, field)| field).collect()
 }
 
-/// Height of what is said where there is nothing to draw, px.
-const WORDS: i32 = 40;
+/// Height of the text of an empty plot, px.
+const EMPTY_HEIGHT: i32 = 40;
 
-/// Friction at the heaviest load over the load from which the silicone takes over, with the band of the friction.
+/// Draws friction at the largest load over the threshold, with the band of the friction.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
 pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, PlotError> {
     let colours = Classes::new(gallery, by_effect(gallery).first().copied(), 8);
     let all: Vec<_> = gallery.made().filter_map(|s| Some((s, s.threshold_n?, s.friction_n?))).collect();
-    let height = if all.is_empty() { WORDS } else { PANEL.1 * 2 };
+    let height = if all.is_empty() { EMPTY_HEIGHT } else { PANEL.1 * 2 };
     let size = (PANEL.0 * 2 + LEGEND, height + TITLE);
-    let without = gallery.made().count() - all.len();
+    let without_threshold = gallery.made().count() - all.len();
     draw(size, |root| {
-        let note = if without > 0 {
-            format!(" ({without} do not switch within their loads)")
+        let note = if without_threshold > 0 {
+            format!(" ({without_threshold} variants have no threshold in their load range)")
         } else {
             String::new()
         };
         let body = titled(root, &format!("{name}: friction against threshold{note}"))?;
         if all.is_empty() {
-            let words = "No variant has a threshold: none of them switches within its loads.";
-            body.draw(&Text::new(words, (14 * FINE, 14 * FINE), ("sans-serif", 14 * FINE)))?;
+            let text = "No variant has a threshold in its load range.";
+            body.draw(&Text::new(text, (14 * FINE, 14 * FINE), ("sans-serif", 14 * FINE)))?;
             return Ok(());
         }
         let (body, key) = body.split_horizontally((size.0 - LEGEND) * FINE);
@@ -249,11 +251,11 @@ pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, Plo
             .build_cartesian_2d(drawable(0.0, right), drawable(0.0, top))?;
         mesh(
             &mut chart,
-            "threshold: load at which the silicone makes half of the friction (N)",
-            "friction at the heaviest load (N)",
+            "threshold: load at which silicone carries half of the friction (N)",
+            "friction at the largest load (N)",
         )?;
         for (shown, x, [middle, low, high]) in &all {
-            let colour = colours.colour(colours.of(shown));
+            let colour = colours.colour(colours.class(shown));
             let bar = [(*x, *low), (*x, *high)];
             chart.draw_series(LineSeries::new(bar, colour.mix(0.25).stroke_width(fine(1))))?;
             chart.draw_series(std::iter::once(Circle::new(
@@ -274,17 +276,17 @@ fn points(shown: &GalleryEntry) -> Vec<(f64, f64)> {
     shown.curve_n.iter().enumerate().map(|(i, y)| (from + (to - from) * i as f64 / last, *y)).collect()
 }
 
-fn draw(size: (i32, i32), paint: impl FnOnce(&Area<'_>) -> Drawn) -> Result<String, PlotError> {
-    let drawn = (fine(size.0), fine(size.1));
+fn draw(size: (i32, i32), paint: impl FnOnce(&Area<'_>) -> DrawResult) -> Result<String, PlotError> {
+    let drawing_size = (fine(size.0), fine(size.1));
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, drawn).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, drawing_size).into_drawing_area();
         let painted = root.fill(&WHITE).map_err(Into::into).and_then(|()| paint(&root));
         painted.and_then(|()| Ok(root.present()?)).map_err(|e| PlotError::new(&*e))?;
     }
     let attributes = |(width, height): (u32, u32)| format!(r#"width="{width}" height="{height}""#);
     let shown = (u32::try_from(size.0).unwrap_or(0), u32::try_from(size.1).unwrap_or(0));
-    Ok(svg.replacen(&attributes(drawn), &attributes(shown), 1))
+    Ok(svg.replacen(&attributes(drawing_size), &attributes(shown), 1))
 }
 
 fn titled<'a>(root: &Area<'a>, title: &str) -> Result<Area<'a>, Box<dyn std::error::Error>> {
@@ -293,7 +295,7 @@ fn titled<'a>(root: &Area<'a>, title: &str) -> Result<Area<'a>, Box<dyn std::err
     Ok(body)
 }
 
-fn legend(area: &Area<'_>, classes: &Classes) -> Drawn {
+fn legend(area: &Area<'_>, classes: &Classes) -> DrawResult {
     area.draw(&Text::new(
         short_field(&classes.name).to_owned(),
         (10 * FINE, 8 * FINE),
@@ -319,7 +321,7 @@ fn mesh<'a, 'b>(
     >,
     x: &str,
     y: &str,
-) -> Drawn {
+) -> DrawResult {
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -338,7 +340,7 @@ fn mesh<'a, 'b>(
     Ok(())
 }
 
-/// A field without its table.
+/// Returns the name of a field without its table.
 fn short_field(path: &str) -> &str {
     path.split_once('.').map_or(path, |(_, key)| key)
 }

@@ -1,11 +1,15 @@
-//! What a finished batch or shard leaves beside its variants: the table, and for a whole sweep the plots and the page.
+//! The products of a batch or shard in addition to its variants: the table, and for a whole sweep
+//! the plots and the page.
 
 use std::collections::{BTreeMap, HashSet};
+use std::error::Error;
 use std::path::Path;
 
+use pinswitch_diagnostic::Diagnostic;
 use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
+use super::diagnostics::diagnostic_error;
 use super::gallery::Gallery;
 use super::hexadecimal;
 use super::page::page;
@@ -16,26 +20,68 @@ use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_report::PlotError;
 
-/// The table, in both its forms.
+/// The table in both formats.
 pub(super) const TABLES: [&str; 2] = ["variants.csv", "variants.parquet"];
-/// What stands beside the table of a whole sweep: two figures and the page.
+/// Products of a whole sweep in addition to the table: two plots and the page.
 pub(super) const PRODUCTS: [&str; 3] = ["curves.svg", "threshold.svg", "index.html"];
 
 /// Why the products cannot be made.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum ProductError {
-    /// The table.
-    #[error(transparent)]
-    Table(#[from] BatchTableError),
-    /// A plot.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// The destination.
-    #[error(transparent)]
-    Destination(#[from] DestinationError),
-    /// What a shard says of itself.
-    #[error("the shard's stamp cannot be written: {0}")]
-    Stamp(#[from] serde_json::Error),
+    /// The table cannot be written.
+    Table(BatchTableError),
+    /// A plot cannot be drawn.
+    Plot(PlotError),
+    /// The destination cannot be written.
+    Destination(DestinationError),
+    /// The shard's stamp cannot be encoded.
+    Stamp(serde_json::Error),
+}
+
+impl ProductError {
+    pub(super) fn diagnostic(&self) -> Diagnostic {
+        match self {
+            Self::Table(error) => error.diagnostic(),
+            Self::Plot(error) => Diagnostic::new(error.to_string()),
+            Self::Destination(error) => error.clone().into(),
+            Self::Stamp(error) => Diagnostic::new(format!("cannot encode the shard's stamp: {error}")),
+        }
+    }
+
+    fn cause(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Table(error) => error.source(),
+            Self::Plot(error) => Some(error),
+            Self::Destination(error) => error.source(),
+            Self::Stamp(error) => Some(error),
+        }
+    }
+}
+
+diagnostic_error!(ProductError);
+
+impl From<BatchTableError> for ProductError {
+    fn from(error: BatchTableError) -> Self {
+        Self::Table(error)
+    }
+}
+
+impl From<PlotError> for ProductError {
+    fn from(error: PlotError) -> Self {
+        Self::Plot(error)
+    }
+}
+
+impl From<DestinationError> for ProductError {
+    fn from(error: DestinationError) -> Self {
+        Self::Destination(error)
+    }
+}
+
+impl From<serde_json::Error> for ProductError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Stamp(error)
+    }
 }
 
 /// Collects rows in the order of the sweep and writes the products.
@@ -48,15 +94,15 @@ pub(super) struct Products<'a> {
     table: TableWriter,
     gallery: Gallery,
     tally: Tally,
-    /// The first half of the hash of every part so far.
+    /// The first 64 bits of the hash of every part so far.
     seen: HashSet<u64>,
 }
 
 impl<'a> Products<'a> {
-    /// Starts with no rows.
+    /// Products without rows.
     ///
     /// # Errors
-    /// [`ProductError`] if temporary files cannot be made.
+    /// Temporary files that cannot be created.
     pub(super) fn new(variants: &'a Variants, destination: &'a Destination) -> Result<Self, ProductError> {
         let schema = Schema::new(variants.sweep());
         let (csv, parquet) = (destination.local_file()?, destination.local_file()?);
@@ -73,7 +119,7 @@ impl<'a> Products<'a> {
         })
     }
 
-    /// The columns of the rows.
+    /// Returns the columns of the table.
     pub(super) fn schema(&self) -> &Schema {
         &self.schema
     }
@@ -81,7 +127,7 @@ impl<'a> Products<'a> {
     /// Adds the row of the next variant.
     ///
     /// # Errors
-    /// [`ProductError`] on a full disk, for example.
+    /// A table that cannot be written, for example on a full disk.
     pub(super) fn push(&mut self, index: u64, row: Row) -> Result<(), ProductError> {
         self.count(&row);
         self.gallery.add(self.variants, index, &self.schema, &row);
@@ -107,10 +153,11 @@ impl<'a> Products<'a> {
         }
     }
 
-    /// Completes the table under `folder`, without plots and page; returns also the SHA-256 of its files, by name.
+    /// Completes the table in `folder`, without plots and page; returns also the SHA-256 of its
+    /// files by name.
     ///
     /// # Errors
-    /// [`ProductError`] on a full disk, for example.
+    /// A table that cannot be written.
     pub(super) fn finish_table(
         self,
         folder: &str,
@@ -124,10 +171,10 @@ impl<'a> Products<'a> {
         Ok((self.tally, hashes))
     }
 
-    /// Completes everything.
+    /// Completes table, plots and page.
     ///
     /// # Errors
-    /// [`ProductError`] on a full disk, for example.
+    /// A product that cannot be drawn or written.
     pub(super) fn finish(mut self) -> Result<Tally, ProductError> {
         let gallery = std::mem::take(&mut self.gallery);
         let name = self.variants.sweep().name.clone();
@@ -143,7 +190,7 @@ impl<'a> Products<'a> {
     }
 }
 
-/// SHA-256 of a file of any length.
+/// Returns the SHA-256 of a file of any length.
 fn hash_of(path: &Path) -> std::io::Result<String> {
     let mut file = std::fs::File::open(path)?;
     let (mut hash, mut buffer) = (Sha256::new(), vec![0; 1 << 16]);

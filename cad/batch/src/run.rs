@@ -1,19 +1,23 @@
-//! Runs a batch: variants in parallel, rows in order, with bounded memory, from where an earlier run was stopped.
+//! Runs a batch: variants in parallel, rows in order, in bounded memory; an interrupted run is
+//! resumed.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use pinswitch_diagnostic::Diagnostic;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::checksum::with_checksum;
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
+use super::diagnostics::diagnostic_error;
 use super::make::{VariantMaker, VariantOutcome};
-use super::obstacles::refuse_obstacles;
+use super::obstructions::check_paths;
 use super::products::{ProductError, Products};
-use super::seal::seal;
 use super::shard::Shard;
 use super::source::SweepSource;
 use super::stamp::{Stamp, StampError};
@@ -22,100 +26,159 @@ use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_slicer::Slicer;
 
-/// Variants whose rows are in memory at the same time.
+/// Most variants whose rows are in memory at the same time.
 const CHUNK_VARIANTS: u64 = 512;
 
-/// Threads for a store, where no number is given.
+/// Default number of threads for a store.
 const STORE_THREADS: usize = 16;
 
-/// How a batch is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
-    /// Which variants are made.
+    /// The variants to make.
     pub shard: Shard,
-    /// Threads; 0 takes one per processor, or 16 for a store.
+    /// Number of threads; 0 means one per processor, or 16 for a store.
     pub threads: usize,
     /// Whether the first variant that fails ends the run.
     pub fail_fast: bool,
-    /// What makes the parts.
+    /// Makes the mesh files of parts.
     pub mesh_maker: MeshMaker,
-    /// What says how long the parts print, where [`SweepSource::slice`] asks for it.
+    /// Estimates the print time of the parts if [`SweepSource::slice`] is set.
     pub slicer: Option<&'a Slicer>,
 }
 
-/// Observes a run, and may stop it.
+/// Observes a run, and can stop it.
 pub trait Observer: Sync {
-    /// One more variant is done.
+    /// Called once for each finished variant.
     fn variant_done(&self, outcome: &VariantOutcome);
-    /// Whether no further variant should be started.
+    /// Returns whether no further variant should be started.
     fn stop_requested(&self) -> bool;
 }
 
-/// Why a run did not finish. What has been written stays, and the same command resumes it.
-#[derive(Debug, thiserror::Error)]
+/// Why a run did not finish. Finished variants remain, and the same command resumes the run.
+#[derive(Debug)]
 pub enum RunError {
     /// The destination is not for this sweep.
-    #[error(transparent)]
-    Stamp(#[from] StampError),
+    Stamp(StampError),
     /// The destination cannot be written from the start.
-    #[error(transparent)]
     Unusable(DestinationError),
     /// The destination can no longer be written.
-    #[error("{source}; {done} of {of} variants are there: then give the same command again")]
     Destination {
         /// Why.
         source: DestinationError,
-        /// Variants that are done.
+        /// Number of finished variants.
         done: u64,
-        /// Variants of the run.
+        /// Number of variants of the run.
         of: u64,
     },
     /// Table, plots or page cannot be made.
-    #[error("{0}; the variants are there: the same command again makes the rest")]
-    Products(#[from] ProductError),
-    /// The user stopped it.
-    #[error("stopped: {done} of {of} variants are there; the same command again makes the rest")]
+    Products(ProductError),
+    /// The observer stopped it.
     Stopped {
-        /// Variants that are done.
+        /// Number of finished variants.
         done: u64,
-        /// Variants of the run.
+        /// Number of variants of the run.
         of: u64,
     },
-    /// A variant failed, and the run was to stop at the first failure.
-    #[error("{id}: {reason}; --fail-fast ends the run here")]
+    /// A variant failed, with [`Options::fail_fast`].
     Failed {
         /// The variant.
         id: String,
         /// Why.
-        reason: String,
+        reason: Diagnostic,
     },
     /// The threads cannot be started.
-    #[error("cannot start threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(rayon::ThreadPoolBuildError),
 }
 
-/// What `shard.json` says of a finished shard.
+impl RunError {
+    fn diagnostic(&self) -> Diagnostic {
+        const RESUME: &str = "run the same command again to resume";
+        match self {
+            Self::Stamp(error) => error.diagnostic(),
+            Self::Unusable(error) => error.clone().into(),
+            Self::Destination { source, done, of } => {
+                let help = format!("{}, then {RESUME} ({done} of {of} variants are finished)", source.help());
+                Diagnostic::from(source.clone()).with_help(help)
+            }
+            Self::Products(error) => {
+                let error = error.diagnostic();
+                let remedy = error.help().map(|help| format!("{help}, then ")).unwrap_or_default();
+                let help = format!("{remedy}{RESUME} (the variants are finished)");
+                error.with_help(help)
+            }
+            Self::Stopped { done, of } => {
+                Diagnostic::new(format!("stopped: {done} of {of} variants are finished")).with_help(RESUME)
+            }
+            Self::Failed { id, reason } => Diagnostic::new(format!("variant {id} failed: {reason}"))
+                .with_help("omit --fail-fast to make the other variants"),
+            Self::Threads(error) => {
+                Diagnostic::new(format!("cannot start threads: {error}")).with_help("give fewer --threads")
+            }
+        }
+    }
+
+    fn cause(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Stamp(error) => error.source(),
+            Self::Unusable(error) | Self::Destination { source: error, .. } => error.source(),
+            Self::Products(error) => error.source(),
+            Self::Stopped { .. } => None,
+            Self::Failed { reason, .. } => reason.source(),
+            Self::Threads(error) => Some(error),
+        }
+    }
+}
+
+diagnostic_error!(RunError);
+
+impl From<StampError> for RunError {
+    fn from(error: StampError) -> Self {
+        Self::Stamp(error)
+    }
+}
+
+impl From<DestinationError> for RunError {
+    fn from(error: DestinationError) -> Self {
+        Self::Unusable(error)
+    }
+}
+
+impl From<ProductError> for RunError {
+    fn from(error: ProductError) -> Self {
+        Self::Products(error)
+    }
+}
+
+impl From<rayon::ThreadPoolBuildError> for RunError {
+    fn from(error: rayon::ThreadPoolBuildError) -> Self {
+        Self::Threads(error)
+    }
+}
+
+/// The content of `shard.json`, the record of a finished shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardStamp {
-    /// The sweep.
+    /// [`SweepSource::digest`].
     pub sweep_sha256: String,
     /// The shard.
     pub shard: Shard,
-    /// Its variants.
+    /// The indices of its variants.
     pub variants: Range<u64>,
-    /// SHA-256 of its tables, by their names; they hold the hashes of all manifests, and these of all other files.
+    /// SHA-256 of its tables by their names. The tables contain the hashes of all manifests, and
+    /// these contain the hashes of all other files.
     pub tables: BTreeMap<String, String>,
 }
 
-/// Name of the folder for unfinished files of a shard.
+/// Returns the name of the folder for unfinished files of a shard.
 pub fn partial_folder(shard: Shard) -> String {
     format!("{}{}", super::destination::PARTIAL, shard.folder())
 }
 
-/// Makes every variant of the shard, and its products.
+/// Makes every variant of the shard and its products.
 ///
 /// # Errors
-/// [`RunError`]; whatever it is, nothing that was written is lost.
+/// [`RunError`]; files that were written remain.
 pub fn run(
     variants: &Variants,
     source: &SweepSource,
@@ -123,18 +186,18 @@ pub fn run(
     options: Options<'_>,
     observer: &dyn Observer,
 ) -> Result<Tally, RunError> {
-    // A folder with something else in it is left as it is, before anything is written there.
+    // All checks come before the first write: a folder with other files stays unchanged.
     let stamp = Stamp::new(source, variants.count());
-    stamp.refuse_foreign(destination)?;
-    refuse_obstacles(destination, options.shard)?;
-    let _lock = destination.lock().map_err(RunError::Unusable)?;
-    let resumed = stamp.put(destination)?;
+    stamp.check(destination)?;
+    check_paths(destination, options.shard)?;
+    let _lock = destination.lock()?;
+    let is_resumed = stamp.write(destination)?;
     let range = options.shard.range(variants.count());
     let maker = VariantMaker::new(
         variants,
         &stamp.sweep_sha256,
         destination,
-        resumed,
+        is_resumed,
         options.mesh_maker,
         options.slicer,
     );
@@ -170,42 +233,39 @@ pub fn run(
     let stamp =
         ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range, tables };
     let bytes = serde_json::to_vec_pretty(&stamp).map_err(ProductError::from)?;
-    destination.put(&format!("{folder}shard.json"), &seal(bytes)).map_err(ProductError::from)?;
+    let file = format!("{folder}shard.json");
+    destination.put(&file, &with_checksum(bytes)).map_err(ProductError::from)?;
     Ok(tally)
 }
 
-/// Threads of a run. A thread waits for a store most of the time: so many uploads go on at once.
+/// Returns the number of threads. A thread waits for a store most of the time, so that many uploads
+/// run at once.
 fn threads(options: Options<'_>, destination: &Destination) -> usize {
-    if options.threads > 0 || destination.links() { options.threads } else { STORE_THREADS }
+    if options.threads > 0 || destination.has_links() { options.threads } else { STORE_THREADS }
 }
 
-/// Whether a run would be let into `destination`: refuses what [`run`] refuses there before it makes anything, and leaves
-/// nothing behind. Whether a store can be written is not tried.
+/// Checks that [`run`] would accept the destination, and leaves it unchanged. It does not check
+/// whether a store can be written.
 ///
 /// # Errors
-/// [`RunError`] for a place with another sweep or other files, with something in the way, a busy one, and one that cannot
-/// be written.
-pub fn admit(
+/// A destination with another sweep, other files or an obstruction, one that is locked, and one
+/// that cannot be written.
+pub fn check_destination(
     variants: &Variants,
     source: &SweepSource,
     destination: &Destination,
     shard: Shard,
 ) -> Result<(), RunError> {
-    Stamp::new(source, variants.count()).refuse_foreign(destination)?;
-    refuse_obstacles(destination, shard)?;
-    destination.lock().map(drop).map_err(RunError::Unusable)
+    Stamp::new(source, variants.count()).check(destination)?;
+    check_paths(destination, shard)?;
+    destination.lock()?;
+    Ok(())
 }
 
-impl From<DestinationError> for RunError {
-    fn from(error: DestinationError) -> Self {
-        Self::Unusable(error)
-    }
-}
-
-/// What became of one variant of a chunk.
+/// The result of one variant of a chunk.
 enum VariantResult {
     Row(Row),
-    Failed { id: String, reason: String },
+    Failed { id: String, reason: Diagnostic },
     Fatal(DestinationError),
     NotStarted,
 }
@@ -226,11 +286,10 @@ fn make_chunk(
                 return VariantResult::NotStarted;
             }
             let variant = variants.get(index);
-            // A panic in one variant must not lose the others.
+            // A panic in one variant must not fail the others.
             let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
-                Ok(VariantOutcome::Failed(
-                    "a fault of the program; please report the configuration".to_owned(),
-                ))
+                let bug = Diagnostic::new("internal error (panic)");
+                Ok(VariantOutcome::Failed(bug.with_help("please report the configuration")))
             });
             match outcome {
                 Err(error) => {

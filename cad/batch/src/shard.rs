@@ -1,11 +1,15 @@
-//! Shards: which variants a machine makes.
+//! Shards: the block of variants that one machine makes.
 
 use std::ops::Range;
 use std::str::FromStr;
 
+use pinswitch_diagnostic::Diagnostic;
 use serde::{Deserialize, Serialize};
 
-/// Shard `number` of `of`, counted from 1: a contiguous block of the sweep, so that neighbours share parts.
+use super::diagnostics::diagnostic_error;
+
+/// Shard `number` of `of`, counted from 1: a contiguous block of the sweep, since adjacent variants
+/// share parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "UncheckedShard")]
 pub struct Shard {
@@ -13,7 +17,7 @@ pub struct Shard {
     of: u64,
 }
 
-/// A shard as a file says it, which may be none.
+/// A shard as a file contains it, not yet checked.
 #[derive(Deserialize)]
 struct UncheckedShard {
     number: u64,
@@ -24,21 +28,31 @@ impl TryFrom<UncheckedShard> for Shard {
     type Error = ShardError;
 
     fn try_from(UncheckedShard { number, of }: UncheckedShard) -> Result<Self, ShardError> {
-        let is_shard = (1..=of).contains(&number);
-        if is_shard { Ok(Self { number, of }) } else { Err(ShardError(format!("{number}/{of}"))) }
+        if (1..=of).contains(&number) { Ok(Self { number, of }) } else { Err(ShardError) }
     }
 }
 
-/// Text that is not a shard.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no shard; give K/N with K from 1 to N, as in --shard 2/8")]
-pub struct ShardError(String);
+/// A text or a pair of numbers that is not a shard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShardError;
+
+impl ShardError {
+    fn diagnostic(self) -> Diagnostic {
+        Diagnostic::new("invalid shard: expected K/N with 1 <= K <= N").with_help("write a shard such as 2/8")
+    }
+
+    fn cause(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        None
+    }
+}
+
+diagnostic_error!(ShardError);
 
 impl Shard {
-    /// The whole sweep.
+    /// The shard that is the whole sweep.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// The variants of this shard among `count`.
+    /// Returns the indices of this shard's variants among `count`.
     pub fn range(self, count: u64) -> Range<u64> {
         let cut = |k: u64| {
             let product = u128::from(count) * u128::from(k) / u128::from(self.of);
@@ -47,27 +61,28 @@ impl Shard {
         cut(self.number - 1)..cut(self.number)
     }
 
-    /// Whether this is the whole sweep.
+    /// Returns whether this is the whole sweep.
     pub fn is_whole(self) -> bool {
         self.of == 1
     }
 
-    /// The options for those of as many shards that make these variants among `count`: `--shard 2/8, --shard 3/8`.
-    pub(super) fn siblings(self, count: u64, variants: Range<u64>) -> String {
-        const NAMED: usize = 3;
-        let (mut named, mut next) = (Vec::new(), variants.start);
-        while next < variants.end && named.len() < NAMED {
-            // The first shard that ends behind it.
+    /// Returns the options for the shards that contain `variants` of `count`, if all shards are as
+    /// large as this one: `--shard 2/8, --shard 3/8`.
+    pub(super) fn options_for(self, count: u64, variants: Range<u64>) -> String {
+        const MAX_LISTED: usize = 3;
+        let (mut listed, mut next) = (Vec::new(), variants.start);
+        while next < variants.end && listed.len() < MAX_LISTED {
+            // The first shard that ends after this variant.
             let number = (u128::from(self.of) * (u128::from(next) + 1)).div_ceil(u128::from(count.max(1)));
             let shard =
                 Self { number: u64::try_from(number).map_or(self.of, |n| n.clamp(1, self.of)), of: self.of };
-            named.push(format!("--shard {shard}"));
+            listed.push(format!("--shard {shard}"));
             next = shard.range(count).end.max(next + 1);
         }
-        named.join(", ") + if next < variants.end { " and those after it" } else { "" }
+        listed.join(", ") + if next < variants.end { " and the shards after it" } else { "" }
     }
 
-    /// Name of its folder.
+    /// Returns the name of its folder.
     pub fn folder(self) -> String {
         format!("{}-of-{}", self.number, self.of)
     }
@@ -84,10 +99,7 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, ShardError> {
         let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
-        match parts {
-            Some((number, of)) => Self::try_from(UncheckedShard { number, of }),
-            None => Err(ShardError(text.to_owned())),
-        }
+        parts.map_or(Err(ShardError), |(number, of)| Self::try_from(UncheckedShard { number, of }))
     }
 }
 
@@ -98,7 +110,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn shards_cover_every_variant_once_and_evenly(count in 0u64..5000, of in 1u64..40) {
+        fn shards_divide_a_sweep_evenly(count in 0u64..5000, of in 1u64..40) {
             let ranges: Vec<_> = (1..=of).map(|number| Shard { number, of }.range(count)).collect();
             prop_assert_eq!(ranges[0].start, 0);
             prop_assert_eq!(ranges[ranges.len() - 1].end, count);
@@ -109,20 +121,20 @@ mod tests {
     }
 
     #[test]
-    fn the_shards_of_some_variants_are_named() {
+    fn missing_variants_give_shard_options() {
         let shard = |text: &str| text.parse::<Shard>().unwrap();
-        assert_eq!(shard("1/3").siblings(24, 16..24), "--shard 3/3");
-        assert_eq!(shard("1/2").siblings(4, 0..4), "--shard 1/2, --shard 2/2");
+        assert_eq!(shard("1/3").options_for(24, 16..24), "--shard 3/3");
+        assert_eq!(shard("1/2").options_for(4, 0..4), "--shard 1/2, --shard 2/2");
         assert_eq!(
-            shard("1/18446744073709551615").siblings(2, 1..2),
+            shard("1/18446744073709551615").options_for(2, 1..2),
             "--shard 18446744073709551615/18446744073709551615"
         );
-        let text = shard("1/24").siblings(24, 2..24);
-        assert_eq!(text, "--shard 3/24, --shard 4/24, --shard 5/24 and those after it");
+        let text = shard("1/24").options_for(24, 2..24);
+        assert_eq!(text, "--shard 3/24, --shard 4/24, --shard 5/24 and the shards after it");
     }
 
     #[test]
-    fn only_shards_are_shards() {
+    fn invalid_shards_are_refused() {
         assert_eq!("2/8".parse::<Shard>().unwrap().to_string(), "2/8");
         for text in ["0/8", "9/8", "2", "a/b", "-1/3", "1/0"] {
             assert!(text.parse::<Shard>().is_err(), "{text}");

@@ -1,32 +1,32 @@
-//! What a sweep is made of, as text: its own file, the configuration under it, its rows. Kept in `batch.json`, so that
-//! a batch can be resumed or merged without the files it was started from.
+//! The texts of a sweep: its own file, its base configuration and its rows. `batch.json` contains
+//! them, so that a batch can be resumed or merged without the files that it was started from.
 
-use std::io::Read;
+use std::io::{Error, ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use toml_edit::Document;
+use toml_edit::{Document, Item, TomlError};
 
+use super::diagnostics::{at_span, field_error, from_config};
 use super::hexadecimal;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, text, to_toml};
+use pinswitch_switch::config::{Configuration, Name, read, text, to_toml};
 use pinswitch_switch::templates;
 
-/// Longest sweep: every value of its lists is held in memory, at a hundred times its length.
+/// Most bytes of a sweep: every value of its lists takes about a hundred times its length in
+/// memory.
 const MAX_SWEEP_BYTES: u64 = 1 << 20;
-/// Longest table of rows, of which the places of the rows are kept.
+/// Most bytes of a table of rows, for which only the offsets of rows are kept.
 const MAX_ROWS_BYTES: u64 = 256 << 20;
 
-/// The bytes of a file that is no longer than `most`; no more than these are read of any.
+/// Reads a file of at most `most` bytes; no more than these are read from an endless one.
 ///
 /// # Errors
-/// Those of the system, and [`std::io::ErrorKind::FileTooLarge`].
+/// Those of the system, and [`ErrorKind::FileTooLarge`].
 pub fn read_at_most(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
-    let too_large = || {
-        let problem = format!("holds more than {most} bytes");
-        std::io::Error::new(std::io::ErrorKind::FileTooLarge, problem)
-    };
+    let too_large = || Error::new(ErrorKind::FileTooLarge, format!("the file has more than {most} bytes"));
     let file = std::fs::File::open(path)?;
     if file.metadata()?.len() > most {
         return Err(too_large());
@@ -44,93 +44,85 @@ pub struct SweepSource {
     pub name: String,
     /// Name of the sweep's file, for errors.
     pub file: String,
-    /// The sweep's file.
+    /// Text of the sweep's file.
     pub sweep: String,
-    /// The base configuration with its preset, as TOML.
+    /// The base configuration over its preset, as TOML.
     pub base: String,
     /// Name and text of the CSV of rows.
     pub rows: Option<(String, String)>,
-    /// Whether a slicer is asked of every variant: said by whoever runs it, not by the sweep's file.
+    /// Whether a slicer estimates the print time of every variant. The command line decides this,
+    /// not the sweep's file.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slice: bool,
 }
 
-/// The files that a sweep may name.
+/// Which files a sweep may name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reach {
-    /// Those beside it or below.
+    /// Files in the sweep's folder and below.
     #[default]
-    Beside,
-    /// Any, on the word of whoever runs it.
+    SweepFolder,
+    /// Any file.
     Anywhere,
 }
 
 impl Reach {
-    /// Whether the existing file `name` of `field` may be read by a sweep in `folder`. Links are followed first.
-    fn check(self, field: &str, name: &str, folder: &Path) -> Result<(), ConfigError> {
+    /// Checks that a sweep in `folder` may read the existing file `name` of `field`. Symlinks are
+    /// resolved first.
+    fn check(self, field: &str, name: &str, folder: &Path) -> Result<(), Diagnostic> {
         let is_below =
             || Some(folder.join(name).canonicalize().ok()?.starts_with(folder.canonicalize().ok()?));
         if self == Self::Anywhere || is_below() != Some(false) {
             return Ok(());
         }
-        Err(ConfigError {
-            remedy: "copy it beside the sweep, or allow it with --read-outside".to_owned(),
-            ..missing(field, name, "lies outside the folder of the sweep")
-        })
+        let help = "copy it to the sweep's folder, or allow it with --read-outside";
+        Err(field_error(field, Some(&format!("{name:?}")), "outside the sweep's folder", help))
     }
 }
 
 impl SweepSource {
-    /// Reads the sweep at `path` and every file that it names: beside it or below. A sweep that came from elsewhere
-    /// cannot make its reader open any other file.
+    /// Reads the sweep at `path` and every file that it names in its folder or below: a sweep from
+    /// an untrusted source cannot read any other file.
     ///
     /// # Errors
-    /// [`ConfigError`] names the file that cannot be read, or the field that names none.
-    pub fn read(path: &Path) -> Result<Self, ConfigError> {
-        Self::read_within(path, Reach::Beside)
+    /// A file that cannot be read or may not be named, with the field that names it.
+    pub fn read(path: &Path) -> Result<Self, Diagnostic> {
+        Self::read_within(path, Reach::SweepFolder)
     }
 
-    /// As [`Self::read`], with the files that it may name.
+    /// Reads the sweep at `path` and the files that it names, within `reach`.
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn read_within(path: &Path, reach: Reach) -> Result<Self, ConfigError> {
+    pub fn read_within(path: &Path, reach: Reach) -> Result<Self, Diagnostic> {
         let file = path.display().to_string();
-        let sweep = text(read_at_most(path, MAX_SWEEP_BYTES).map_err(|e| unreadable(&file, &e))?, &file)?;
-        let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
-            ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
-        })?;
+        let bytes = read_at_most(path, MAX_SWEEP_BYTES).map_err(|e| unreadable_file(&file, e))?;
+        let sweep = text(bytes, &file).map_err(from_config)?;
+        let document = parse(&sweep, &file)?;
         let item = |table: &str, key: &str| document.get(table)?.as_table_like()?.get(key);
-        let word = |table: &str, key: &str| {
+        let string = |table: &str, key: &str| {
             item(table, key).map(|item| item.as_str().unwrap_or_default().to_owned())
         };
         let at = |table: &str, key: &str| {
-            let span = item(table, key).and_then(toml_edit::Item::span);
-            let place = Place::new(&file, &sweep, span.map_or(0, |s| s.start));
-            move |e: ConfigError| e.at(place.clone())
+            let span = item(table, key).and_then(Item::span).unwrap_or_default();
+            let (file, sweep) = (&file, &sweep);
+            move |e: Diagnostic| at_span(e, file, sweep, span.clone())
         };
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        let base = match word("sweep", "base") {
+        let base = match string("sweep", "base") {
             Some(name) => read_text("sweep.base", &name, folder, reach).map_err(at("sweep", "base"))?,
             None => (String::new(), "defaults".to_owned()),
         };
-        let preset = word("sweep", "preset")
+        let preset = string("sweep", "preset")
             .map(|name| read_text("sweep.preset", &name, folder, reach).map_err(at("sweep", "preset")))
             .transpose()?;
-        let rows = word("rows", "file")
-            .map(|name| {
-                let path = folder.join(&name);
-                reach.check("rows.file", &name, folder).map_err(at("rows", "file"))?;
-                let bytes = read_at_most(&path, MAX_ROWS_BYTES).map_err(|e| {
-                    at("rows", "file")(missing("rows.file", &name, &format!("cannot be read: {e}")))
-                })?;
-                Ok((name.clone(), text(bytes, &name)?))
-            })
+        let rows = string("rows", "file")
+            .map(|name| read_rows(name, folder, reach).map_err(at("rows", "file")))
             .transpose()?;
         let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
         Ok(Self {
-            name: word("sweep", "name").unwrap_or_else(|| Name::cleaned(&stem).to_string()),
-            base: to_toml(&with_preset(&base, preset.as_ref())?),
+            name: string("sweep", "name").unwrap_or_else(|| Name::cleaned(&stem).to_string()),
+            base: to_toml(&over_preset(&base, preset.as_ref())?),
             file,
             sweep,
             rows,
@@ -138,12 +130,21 @@ impl SweepSource {
         })
     }
 
-    /// Where a span of the sweep's file begins.
-    pub(super) fn place(&self, span: Option<Range<usize>>) -> Place {
-        Place::new(&self.file, &self.sweep, span.map_or(0, |s| s.start))
+    /// Parses the sweep's file.
+    ///
+    /// # Errors
+    /// Invalid TOML.
+    pub(super) fn document(&self) -> Result<Document<String>, Diagnostic> {
+        parse(&self.sweep, &self.file)
     }
 
-    /// SHA-256 of everything that decides what the variants are, and of the program's version.
+    /// The same diagnostic at a span of the sweep's file, unless it has a file already.
+    pub(super) fn locate(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
+        at_span(diagnostic, &self.file, &self.sweep, span.unwrap_or_default())
+    }
+
+    /// Returns the SHA-256 of everything that determines the variants, including the program's
+    /// version.
     pub fn digest(&self) -> String {
         let mut hash = Sha256::new();
         let rows = self.rows.as_ref().map_or("", |(_, text)| text);
@@ -158,59 +159,69 @@ impl SweepSource {
     }
 }
 
-/// The base over the preset: what the base sets wins.
-fn with_preset(
+fn parse(sweep: &str, file: &str) -> Result<Document<String>, Diagnostic> {
+    sweep.parse().map_err(|e: TomlError| {
+        let problem = format!("syntax: {}", e.message().trim().replace('\n', ", "));
+        let error =
+            Diagnostic::new(problem).with_help("correct the line; `pinswitch init sweep` writes an example");
+        at_span(error, file, sweep, e.span().unwrap_or_default())
+    })
+}
+
+/// Reads the base and its preset; fields that the base sets take precedence.
+fn over_preset(
     (base, file): &(String, String),
     preset: Option<&(String, String)>,
-) -> Result<Configuration, ConfigError> {
-    let (over, given) = read(base, file)?;
+) -> Result<Configuration, Diagnostic> {
+    let (over, given) = read(base, file).map_err(from_config)?;
     let Some((text, name)) = preset else { return Ok(over) };
-    let (mut all, _) = read(text, name)?;
+    let (mut all, _) = read(text, name).map_err(from_config)?;
     for parameter in Configuration::PARAMETERS.iter().filter(|p| given.sets(&p.path())) {
         (parameter.set)(&mut all, &(parameter.get)(&over))
-            .map_err(|remedy| ConfigError::new(parameter.path(), "", remedy))?;
+            .map_err(|help| field_error(&parameter.path(), None, "invalid value", help))?;
     }
     Ok(all)
 }
 
-/// The text of a file beside the sweep or of a template, with its name.
-fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(String, String), ConfigError> {
+/// Reads a file in the sweep's folder, or a template; returns its name and text.
+fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(String, String), Diagnostic> {
     let path = folder.join(name);
     if path.is_file() {
         reach.check(field, name, folder)?;
-        let text = text(read_at_most(&path, MAX_SWEEP_BYTES).map_err(|e| unreadable(name, &e))?, name)?;
-        return Ok((text, name.to_owned()));
+        let bytes = read_at_most(&path, MAX_SWEEP_BYTES).map_err(|e| unreadable_file(name, e))?;
+        return Ok((text(bytes, name).map_err(from_config)?, name.to_owned()));
     }
-    templates::text(name)
-        .map(|text| (text, name.to_owned()))
-        .ok_or_else(|| missing(field, name, "is neither a file beside the sweep nor a template"))
+    let template = templates::text(name).map(|text| (text, name.to_owned()));
+    template.ok_or_else(|| {
+        let problem = "neither a file in the sweep's folder nor a template";
+        field_error(field, Some(&format!("{name:?}")), problem, RELATIVE_PATH)
+    })
 }
 
-fn missing(field: &str, name: &str, problem: &str) -> ConfigError {
-    ConfigError {
-        field: field.to_owned(),
-        value: Some(format!("{name:?}")),
-        problem: problem.to_owned(),
-        remedy: "give a path relative to the sweep's file; `pinswitch layouts` lists the templates"
-            .to_owned(),
-        changes: Vec::new(),
-        place: None,
-    }
+/// Reads the CSV of rows; returns its name and text.
+fn read_rows(name: String, folder: &Path, reach: Reach) -> Result<(String, String), Diagnostic> {
+    reach.check("rows.file", &name, folder)?;
+    let bytes = read_at_most(&folder.join(&name), MAX_ROWS_BYTES).map_err(|e| {
+        let problem = format!("cannot read the file: {e}");
+        field_error("rows.file", Some(&format!("{name:?}")), problem, RELATIVE_PATH).with_source(e)
+    })?;
+    let text = text(bytes, &name).map_err(from_config)?;
+    Ok((name, text))
 }
 
-fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
-    ConfigError {
-        field: file.to_owned(),
-        value: None,
-        problem: format!("cannot be read: {error}"),
-        remedy: match error.kind() {
-            std::io::ErrorKind::IsADirectory => "it is a folder; give a file".to_owned(),
-            std::io::ErrorKind::FileTooLarge => {
-                "put the values into a CSV, one variant a line, and name that as rows.file".to_owned()
-            }
-            _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
-        },
-        changes: Vec::new(),
-        place: None,
-    }
+/// Help for a file that a sweep names.
+const RELATIVE_PATH: &str =
+    "give a path relative to the sweep's file; `pinswitch layouts` lists the templates";
+
+/// The error for a file that the system cannot read.
+fn unreadable_file(file: &str, error: Error) -> Diagnostic {
+    let help = match error.kind() {
+        ErrorKind::IsADirectory => "give a file instead of a folder",
+        ErrorKind::FileTooLarge => {
+            "put the values into a CSV with one variant a line, and name it as rows.file"
+        }
+        _ => "give the path of a sweep; see `pinswitch batch --help`",
+    };
+    let problem = format!("cannot read the file: {error}");
+    Diagnostic::new(problem).with_location(Location::file(file)).with_help(help).with_source(error)
 }

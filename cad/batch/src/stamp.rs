@@ -1,18 +1,21 @@
-//! `batch.json`: which sweep a destination holds, with all that is needed to resume it.
+//! `batch.json`: the sweep of a destination, with everything that is needed to resume it.
 
-use pinswitch_diagnostic::excerpt;
+use std::error::Error;
+
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::{Deserialize, Serialize};
 
+use super::checksum::{has_valid_checksum, with_checksum};
 use super::destination::{Destination, DestinationError};
-use super::seal::{is_sealed, seal};
+use super::diagnostics::diagnostic_error;
 use super::source::SweepSource;
 
-/// Name of the stamp.
+/// Name of the stamp's file.
 pub(super) const STAMP: &str = "batch.json";
 /// Name and version of the stamp's schema.
 const SCHEMA: &str = "pinswitch.batch/1";
 
-/// The stamp of a destination.
+/// The stamp of a destination: the content of `batch.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     /// Name and version of this file's schema.
@@ -23,50 +26,85 @@ pub struct Stamp {
     pub sweep_sha256: String,
     /// Number of variants of the whole sweep.
     pub variants: u64,
-    /// What the sweep is made of.
+    /// The texts of the sweep.
     pub source: SweepSource,
 }
 
 /// Why a destination cannot be used for a sweep.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum StampError {
-    /// It holds another sweep.
-    #[error("{place} holds another sweep ({name:?}); give another --out, nothing was changed")]
+    /// It contains another sweep.
     OtherSweep {
         /// The destination.
         place: String,
         /// Name of the sweep there.
         name: String,
     },
-    /// It holds something else.
-    #[error("{place} holds files that are no batch; give an empty or new --out, nothing was changed")]
+    /// It contains other files.
     NotEmpty {
         /// The destination.
         place: String,
     },
-    /// It holds no batch.
-    #[error(
-        "{place} holds no batch: there is no {STAMP}; give a folder or bucket that `pinswitch batch` has written to"
-    )]
+    /// It does not contain a batch.
     Missing {
         /// The destination.
         place: String,
     },
-    /// The stamp cannot be read.
-    #[error("{place}/{STAMP}: {}; restore it, or give another --out", excerpt(problem, 240))]
-    Unreadable {
+    /// The stamp is malformed, damaged or inconsistent.
+    Invalid {
         /// The destination.
         place: String,
         /// What is wrong.
         problem: String,
+        /// The error of the JSON library.
+        source: Option<serde_json::Error>,
     },
-    /// It cannot be read or written.
-    #[error(transparent)]
-    Destination(#[from] DestinationError),
+    /// The destination cannot be read or written.
+    Destination(DestinationError),
+}
+
+impl StampError {
+    pub(super) fn diagnostic(&self) -> Diagnostic {
+        const UNCHANGED: &str = "nothing was changed";
+        match self {
+            Self::OtherSweep { place, name } => {
+                Diagnostic::new(format!("{place} contains another sweep ({name:?})"))
+                    .with_help(format!("give another --out ({UNCHANGED})"))
+            }
+            Self::NotEmpty { place } => {
+                Diagnostic::new(format!("{place} is not empty and not a batch folder ({STAMP} not found)"))
+                    .with_help(format!("give an empty or new --out ({UNCHANGED})"))
+            }
+            Self::Missing { place } => {
+                Diagnostic::new(format!("{place} is not a batch folder ({STAMP} not found)"))
+                    .with_help("give a folder or bucket that `pinswitch batch` has written")
+            }
+            Self::Invalid { place, problem, .. } => Diagnostic::new(problem)
+                .with_location(Location::file(format!("{place}/{STAMP}")))
+                .with_help("restore it, or give another --out"),
+            Self::Destination(error) => error.clone().into(),
+        }
+    }
+
+    fn cause(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Invalid { source, .. } => source.as_ref().map(|source| source as _),
+            Self::Destination(error) => error.source(),
+            Self::OtherSweep { .. } | Self::NotEmpty { .. } | Self::Missing { .. } => None,
+        }
+    }
+}
+
+diagnostic_error!(StampError);
+
+impl From<DestinationError> for StampError {
+    fn from(error: DestinationError) -> Self {
+        Self::Destination(error)
+    }
 }
 
 impl Stamp {
-    /// The stamp of a sweep.
+    /// The stamp of a sweep with this number of variants.
     pub fn new(source: &SweepSource, variants: u64) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -80,46 +118,51 @@ impl Stamp {
     /// Reads the stamp at `destination`.
     ///
     /// # Errors
-    /// [`StampError`] if there is none, or it is not as it was written.
+    /// A destination without a stamp, and a stamp that was changed since it was written.
     pub fn read(destination: &Destination) -> Result<Self, StampError> {
-        let (stamp, is_intact) = Self::found(destination)?;
+        let (stamp, is_intact) = Self::read_unchecked(destination)?;
         if is_intact {
             return Ok(stamp);
         }
         let problem = "it was changed or damaged since it was written".to_owned();
-        Err(StampError::Unreadable { place: destination.name(), problem })
+        Err(StampError::Invalid { place: destination.name(), problem, source: None })
     }
 
-    /// The stamp at `destination`, and whether it is as it was written.
-    fn found(destination: &Destination) -> Result<(Self, bool), StampError> {
+    /// Reads the stamp at `destination`; returns also whether it is unchanged since it was written.
+    fn read_unchecked(destination: &Destination) -> Result<(Self, bool), StampError> {
         let place = destination.name();
         let bytes = destination.get(STAMP)?.ok_or(StampError::Missing { place: place.clone() })?;
-        let stamp: Self = serde_json::from_slice(&bytes)
-            .map_err(|e| StampError::Unreadable { place, problem: e.to_string() })?;
-        let is_intact =
-            is_sealed(&bytes) && stamp.schema == SCHEMA && stamp.source.digest() == stamp.sweep_sha256;
+        let stamp: Self = serde_json::from_slice(&bytes).map_err(|e| StampError::Invalid {
+            place,
+            problem: e.to_string(),
+            source: Some(e),
+        })?;
+        let is_intact = has_valid_checksum(&bytes)
+            && stamp.schema == SCHEMA
+            && stamp.source.digest() == stamp.sweep_sha256;
         Ok((stamp, is_intact))
     }
 
-    /// Whether `destination` already holds this sweep, and its stamp is as it was written.
+    /// Returns whether `destination` contains this sweep already, with an intact stamp; `false` if
+    /// it is empty.
     ///
     /// # Errors
-    /// [`StampError`] if it holds anything else.
-    pub(super) fn refuse_foreign(&self, destination: &Destination) -> Result<bool, StampError> {
+    /// A destination with anything else.
+    pub(super) fn check(&self, destination: &Destination) -> Result<bool, StampError> {
         let place = destination.name();
-        let found = match Self::found(destination) {
+        let existing = match Self::read_unchecked(destination) {
             Err(StampError::Missing { .. }) if destination.is_empty()? => return Ok(false),
-            // Another shard may have stamped it since it was looked for.
-            Err(StampError::Missing { .. }) => Self::found(destination),
-            found => found,
+            // Another shard may have written the stamp in the meantime.
+            Err(StampError::Missing { .. }) => Self::read_unchecked(destination),
+            other => other,
         };
-        match found {
-            Ok((there, is_intact)) if there.sweep_sha256 == self.sweep_sha256 => {
-                Ok(is_intact && there.variants == self.variants)
+        match existing {
+            Ok((stamp, is_intact)) if stamp.sweep_sha256 == self.sweep_sha256 => {
+                Ok(is_intact && stamp.variants == self.variants)
             }
-            Ok((there, _)) => {
-                // A damaged stamp may be of any length.
-                let name = there.source.name.chars().take(80).collect();
+            Ok((stamp, _)) => {
+                // A damaged stamp may contain a name of any length.
+                let name = stamp.source.name.chars().take(80).collect();
                 Err(StampError::OtherSweep { place, name })
             }
             Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }),
@@ -127,26 +170,26 @@ impl Stamp {
         }
     }
 
-    /// Stamps an empty destination; returns whether it already held this sweep. A stamp of this sweep that was damaged
-    /// is written again.
+    /// Writes the stamp; returns whether the destination contained this sweep already. A damaged
+    /// stamp of this sweep is replaced.
     ///
     /// # Errors
-    /// [`StampError`] if it holds anything else.
-    pub fn put(&self, destination: &Destination) -> Result<bool, StampError> {
-        // Another shard may stamp it at the same time: both write the same.
-        let was_there = destination.get(STAMP)?.is_some();
-        if self.refuse_foreign(destination)? {
+    /// As [`Self::check`].
+    pub fn write(&self, destination: &Destination) -> Result<bool, StampError> {
+        // Another shard may write the stamp at the same time: both write the same bytes.
+        let existed = destination.get(STAMP)?.is_some();
+        if self.check(destination)? {
             return Ok(true);
         }
-        if was_there {
-            log::warn!("{}/{STAMP}: it was changed or damaged, and is written again", destination.name());
+        if existed {
+            log::warn!("{}/{STAMP} was changed or damaged; it is written again", destination.name());
         }
-        let unwritable = |e: serde_json::Error| StampError::Unreadable {
+        let bytes = serde_json::to_vec_pretty(self).map_err(|e| StampError::Invalid {
             place: destination.name(),
             problem: e.to_string(),
-        };
-        let bytes = serde_json::to_vec_pretty(self).map_err(unwritable)?;
-        destination.put(STAMP, &seal(bytes))?;
-        Ok(was_there)
+            source: Some(e),
+        })?;
+        destination.put(STAMP, &with_checksum(bytes))?;
+        Ok(existed)
     }
 }

@@ -1,105 +1,100 @@
-//! A sweep: a base configuration, the axes over it, and the constraints that every variant must fulfil.
+//! A sweep: a base configuration, the axes over it, and the constraints that every variant must
+//! meet.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use toml_edit::{Document, Item, TableLike};
 
-use super::axis::{self, AXIS_TABLES, SweepAxis, config_error, fields};
+use super::axis::{self, AXIS_TABLES, SweepAxis, fields};
 use super::constraint::Constraint;
+use super::diagnostics::{field_error, from_config};
 use super::source::SweepSource;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, read};
+use pinswitch_switch::config::{Configuration, Name, read};
 use pinswitch_switch::parts::PRINTED_PARTS;
 
-/// What a sweep asks for, checked.
+/// A valid sweep.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Its name.
     pub name: Name,
-    /// What every variant starts from.
+    /// The configuration that the axes change.
     pub base: Configuration,
-    /// The parts to make, in the order of [`PRINTED_PARTS`].
+    /// The parts of every variant, in the order of [`PRINTED_PARTS`].
     pub parts: Vec<&'static str>,
     /// Whether every variant gets its own `friction.svg`.
     pub plots: bool,
-    /// Whether a slicer is asked of every variant.
+    /// Whether a slicer estimates the print time of every variant.
     pub slice: bool,
-    /// The dimensions; the last varies fastest.
+    /// The axes; the last one varies fastest.
     pub axes: Vec<SweepAxis>,
-    /// What every variant must fulfil.
+    /// The conditions that every variant must meet.
     pub constraints: Vec<Constraint>,
 }
 
-/// A sweep whose variants are counted, and not looked at one by one: how many there are is known at once, whatever it
-/// asks for.
+/// A sweep whose rows are not checked yet, so that its variants can be counted in no time, however
+/// many there are.
 #[derive(Clone, Debug)]
-pub struct CountedSweep(Sweep);
+pub struct UncheckedSweep(Sweep);
 
-impl CountedSweep {
-    /// Reads a sweep and all of it that does not take time in proportion to its variants.
+impl UncheckedSweep {
+    /// Reads a sweep, except for checks that take time in proportion to its variants.
     ///
     /// # Errors
     /// As [`Sweep::new`].
-    pub fn new(source: &SweepSource) -> Result<Self, ConfigError> {
+    pub fn new(source: &SweepSource) -> Result<Self, Diagnostic> {
         Sweep::unchecked(source).map(Self)
     }
 
-    /// As [`Sweep::count`].
+    /// Returns the number of variants, as [`Sweep::count`].
     pub fn count(&self) -> Option<u64> {
         self.0.count()
     }
 
-    /// The sweep, once every row of it is checked.
+    /// Checks every row.
     ///
     /// # Errors
-    /// [`ConfigError`] names the first row that cannot be used.
-    pub fn checked(self) -> Result<Sweep, ConfigError> {
+    /// The first invalid row.
+    pub fn check(self) -> Result<Sweep, Diagnostic> {
         self.0.axes.iter().try_for_each(SweepAxis::check)?;
         Ok(self.0)
     }
 }
 
-/// Tables of a sweep and their keys; an empty list takes fields.
+/// Returns the tables of a sweep with their keys; an empty list means that the keys are fields.
 fn tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
-    let own: [(&str, &[&str]); 2] = [("sweep", &["name", "base", "preset", "parts", "plots"]), ("set", &[])];
+    let general: [(&str, &[&str]); 2] =
+        [("sweep", &["name", "base", "preset", "parts", "plots"]), ("set", &[])];
     let constraints: (&str, &[&str]) = ("constraints", &["require", "because"]);
-    own.into_iter().chain(AXIS_TABLES.iter().map(|table| (table.name, table.keys))).chain([constraints])
+    general.into_iter().chain(AXIS_TABLES.iter().map(|table| (table.name, table.keys))).chain([constraints])
 }
 
 impl Sweep {
     /// Reads and checks a sweep.
     ///
     /// # Errors
-    /// [`ConfigError`] names file, line, field, value, and what to change.
-    pub fn new(source: &SweepSource) -> Result<Self, ConfigError> {
-        CountedSweep::new(source)?.checked()
+    /// The first error, with file, line, field, value and remedy.
+    pub fn new(source: &SweepSource) -> Result<Self, Diagnostic> {
+        UncheckedSweep::new(source)?.check()
     }
 
-    fn unchecked(source: &SweepSource) -> Result<Self, ConfigError> {
-        let document: Document<String> = source
-            .sweep
-            .parse()
-            .map_err(|e: toml_edit::TomlError| ConfigError::syntax(source.place(e.span()), e.message()))?;
+    fn unchecked(source: &SweepSource) -> Result<Self, Diagnostic> {
+        let document = source.document()?;
         check_keys(source, document.as_table())?;
         let table = |name: &str| document.get(name).and_then(Item::as_table_like);
-        let located = |item: &Item| {
-            let place = source.place(item.span());
-            move |e: ConfigError| e.at(place.clone())
-        };
-        let (mut base, _) = read(&source.base, "base")?;
+        let (mut base, _) = read(&source.base, "base").map_err(from_config)?;
         for (path, item) in fields(table("set")) {
-            let field = axis::field(&path).map_err(located(item))?;
-            let value = item.as_value().ok_or_else(|| {
-                located(item)(config_error(&path, None, "is no single value", "write \"table.key\" = value"))
-            })?;
-            let value = axis::accepted(field, value).map_err(located(item))?;
-            (field.set)(&mut base, &value).map_err(|r| located(item)(ConfigError::new(&path, "", r)))?;
+            set_field(&mut base, &path, item).map_err(|e| source.locate(e, item.span()))?;
         }
         let axes = axis::axes(source, document.as_table())?;
         let sweep = table("sweep");
-        let written =
-            |key: &str| sweep.and_then(|t| t.get(key)).or(document.get("sweep")).unwrap_or(&Item::None);
+        let at_key = |key: &str| {
+            let item = sweep.and_then(|t| t.get(key)).or(document.get("sweep"));
+            let span = item.and_then(Item::span);
+            move |e: Diagnostic| source.locate(e, span.clone())
+        };
         Ok(Self {
-            name: checked_name(&source.name).map_err(located(written("name")))?,
+            name: checked_name(&source.name).map_err(at_key("name"))?,
             base,
-            parts: parts(sweep).map_err(located(written("parts")))?,
+            parts: parts(sweep).map_err(at_key("parts"))?,
             plots: sweep.and_then(|t| t.get("plots")).and_then(Item::as_bool).unwrap_or(false),
             slice: source.slice,
             axes,
@@ -107,82 +102,95 @@ impl Sweep {
         })
     }
 
-    /// The number of variants; `None` if it is beyond counting.
+    /// Returns the number of variants; `None` if it exceeds 64 bits.
     pub fn count(&self) -> Option<u64> {
-        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.count()))
+        self.axes.iter().try_fold(1u64, |n, axis| n.checked_mul(axis.count()))
     }
 }
 
-/// Every part that a configuration can ask for, in the order in which they are made.
+/// Sets one field of the base configuration.
+fn set_field(base: &mut Configuration, path: &str, item: &Item) -> Result<(), Diagnostic> {
+    let field = axis::field(path)?;
+    let value = item
+        .as_value()
+        .ok_or_else(|| field_error(path, None, "not a single value", "write \"table.key\" = value"))?;
+    let value = axis::accepted(field, value)?;
+    (field.set)(base, &value).map_err(|help| field_error(path, None, "invalid value", help))
+}
+
+/// Returns the names of all parts that a configuration can have, in the order in which they are
+/// made.
 fn part_names() -> Vec<&'static str> {
     PRINTED_PARTS.iter().map(|p| p.name).collect()
 }
 
-fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), ConfigError> {
+fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diagnostic> {
     for (name, item) in document.iter() {
-        let place = source.place(item.span());
+        let refused = |problem: &str, help: String| {
+            Err(source.locate(field_error(name, None, problem, help), item.span()))
+        };
         let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
             let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
-            return Err(
-                config_error(name, None, "is no table of a sweep", &format!("known are {known}")).at(place)
-            );
+            return refused("unknown table", format!("known are {known}"));
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
             Some(tables) => tables.iter().map(|t| t as &dyn TableLike).collect(),
             None => item.as_table_like().into_iter().collect(),
         };
         if tables.is_empty() {
-            return Err(config_error(name, None, "is no table", &format!("write [{name}]")).at(place));
+            return refused("not a table", format!("write [{name}]"));
         }
         for (key, item) in tables.iter().flat_map(|t| t.iter()).filter(|_| !keys.is_empty()) {
             if !keys.contains(&key) {
-                let place = source.place(item.span());
-                let known = format!("known are {}", keys.join(", "));
-                return Err(config_error(&format!("{name}.{key}"), None, "is no known key", &known).at(place));
+                let help = format!("known are {}", keys.join(", "));
+                let error = field_error(&format!("{name}.{key}"), None, "unknown key", help);
+                return Err(source.locate(error, item.span()));
             }
         }
     }
     Ok(())
 }
 
-/// The name goes into folders and figures.
-fn checked_name(name: &str) -> Result<Name, ConfigError> {
-    Name::new(name).map_err(|form| config_error("sweep.name", Some(&shortened(name)), "is no name", &form))
+/// Returns the sweep's name, which becomes part of folders and figures.
+fn checked_name(name: &str) -> Result<Name, Diagnostic> {
+    Name::new(name)
+        .map_err(|help| field_error("sweep.name", Some(&format!("{name:?}")), "invalid name", help))
 }
 
-/// The beginning of a text that may be of any length, in quotes.
-fn shortened(text: &str) -> String {
-    const SHOWN: usize = 80;
-    let short: String = text.chars().take(SHOWN).collect();
-    if short.len() < text.len() { format!("{short:?}...") } else { format!("{text:?}") }
-}
-
-fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, ConfigError> {
+fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, Diagnostic> {
     let Some(item) = sweep.and_then(|t| t.get("parts")) else { return Ok(part_names()) };
-    let asked: Option<Vec<&str>> = item.as_array().and_then(|list| list.iter().map(|v| v.as_str()).collect());
-    let known = format!(
-        "give a list of {}",
-        part_names().iter().map(|n| format!("{n:?}")).collect::<Vec<_>>().join(", ")
-    );
-    let asked = asked.ok_or_else(|| config_error("sweep.parts", None, "is no list of names", &known))?;
-    if let Some(unknown) = asked.iter().find(|name| !part_names().contains(name)) {
-        return Err(config_error("sweep.parts", Some(&format!("{unknown:?}")), "is no part", &known));
+    let quoted: Vec<_> = part_names().iter().map(|name| format!("{name:?}")).collect();
+    let help = format!("give a list of {}", quoted.join(", "));
+    let names: Option<Vec<&str>> = item.as_array().and_then(|list| list.iter().map(|v| v.as_str()).collect());
+    let names = names.ok_or_else(|| field_error("sweep.parts", None, "not a list of names", &help))?;
+    if let Some(unknown) = names.iter().find(|name| !part_names().contains(name)) {
+        return Err(field_error("sweep.parts", Some(&format!("{unknown:?}")), "unknown part", help));
     }
-    Ok(part_names().into_iter().filter(|name| asked.contains(name)).collect())
+    Ok(part_names().into_iter().filter(|name| names.contains(name)).collect())
 }
 
-fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<Constraint>, ConfigError> {
+fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<Constraint>, Diagnostic> {
     let Some(tables) = document.get("constraints") else { return Ok(Vec::new()) };
     let tables = tables.as_array_of_tables().ok_or_else(|| {
-        config_error("constraints", None, "is no list of tables", "write [[constraints]] before each")
-            .at(source.place(tables.span()))
+        let help = "write [[constraints]] before each";
+        source.locate(field_error("constraints", None, "not a list of tables", help), tables.span())
     })?;
     tables
         .iter()
         .map(|table| {
-            let text = table.get("require").and_then(Item::as_str).unwrap_or_default();
             let because = table.get("because").and_then(Item::as_str).map(str::to_owned);
-            Constraint::new(text, because).map_err(|e| e.at(source.place(table.span())))
+            let require = table.get("require");
+            let Some(text) = require.and_then(Item::as_str) else {
+                let help = "write a condition in quotes, such as require = \"shell.width_mm >= 12\"";
+                let error = field_error("constraints.require", None, "missing, or not a string", help);
+                return Err(source.locate(error, require.map_or(table.span(), Item::span)));
+            };
+            Constraint::new(text, because).map_err(|error| {
+                let string = require.and_then(Item::span).unwrap_or_default();
+                let diagnostic = error.to_diagnostic_in_toml(&source.file, &source.sweep, string);
+                let location = diagnostic.location().cloned().unwrap_or_else(|| Location::file(&source.file));
+                diagnostic.with_location(location.with_field("constraints.require", format!("{text:?}")))
+            })
         })
         .collect()
 }

@@ -1,4 +1,5 @@
-//! The table of all variants: one row each, whatever became of it; the columns depend on the sweep only.
+//! The table of all variants: one row each, whether made, refused or failed. The columns depend on
+//! the sweep only.
 
 use serde_json::Value as Json;
 use sha2::{Digest, Sha256};
@@ -11,47 +12,47 @@ use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{derived, toml_to_json};
 
-/// What a column holds.
+/// Type of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnType {
-    /// Words.
+    /// Text.
     Text,
-    /// A number with unit, as its name says.
+    /// A number; the column's name ends with its unit.
     Real,
     /// A count.
     Integer,
-    /// Yes or no.
+    /// True or false.
     Boolean,
 }
 
 /// One column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name; fields are called as in a configuration.
+    /// Its name; fields have the names of a configuration.
     pub name: String,
-    /// What it holds.
+    /// Its type.
     pub kind: ColumnType,
 }
 
-/// One cell; empty where a variant has no such value.
+/// One cell; empty if the variant has no such value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing.
+    /// No value.
     Empty,
-    /// Words.
+    /// Text.
     Text(String),
     /// A number.
     Real(f64),
     /// A count.
     Integer(i64),
-    /// Yes or no.
+    /// True or false.
     Boolean(bool),
 }
 
 /// A row, with one cell per column.
 pub type Row = Vec<Cell>;
 
-/// Facts of a variant's friction, with their key in the manifest.
+/// Columns of a variant's friction, by their keys in the manifest.
 const FRICTION: [(&str, ColumnType); 5] = [
     ("law", ColumnType::Text),
     ("trust", ColumnType::Text),
@@ -59,7 +60,7 @@ const FRICTION: [(&str, ColumnType); 5] = [
     ("friction_n", ColumnType::Real),
     ("threshold_n", ColumnType::Real),
 ];
-/// Facts of every part.
+/// Columns of every part.
 const PART: [(&str, ColumnType); 6] = [
     ("volume_mm3", ColumnType::Real),
     ("mass_g", ColumnType::Real),
@@ -69,7 +70,8 @@ const PART: [(&str, ColumnType); 6] = [
     ("sha256", ColumnType::Text),
 ];
 
-/// What a slicer says of printing the parts of a variant, one by one: only where one is asked.
+/// Columns of the slicer's estimate, summed over the parts of a variant; only in a sweep with a
+/// slicer.
 const PRINT: [&str; 3] = ["print_minutes", "filament_g", "filament_m"];
 
 /// The columns of a table.
@@ -81,7 +83,7 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// The columns of the table of `sweep`.
+    /// The columns for `sweep`.
     pub fn new(sweep: &Sweep) -> Self {
         let mut columns = Vec::new();
         let mut add = |name: String, kind: ColumnType| columns.push(Column { name, kind });
@@ -116,32 +118,32 @@ impl Schema {
         Self { columns, parts: sweep.parts.clone(), slice: sweep.slice }
     }
 
-    /// All columns.
+    /// Returns all columns.
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The parts that have columns.
+    /// Returns the parts that have columns.
     pub fn parts(&self) -> &[&'static str] {
         &self.parts
     }
 
-    /// Where column `name` stands.
+    /// Returns the index of column `name`.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c.name == name)
     }
 
-    /// The cell of `row` in column `name`.
+    /// Returns the cell of `row` in column `name`.
     pub fn cell<'r>(&self, row: &'r [Cell], name: &str) -> &'r Cell {
         self.position(name).and_then(|i| row.get(i)).unwrap_or(&Cell::Empty)
     }
 
-    /// The row of a variant.
+    /// Returns the row of a variant.
     pub fn row(&self, variant: &Variant, outcome: &VariantOutcome) -> Row {
         let (status, reason, manifest) = match outcome {
             VariantOutcome::Made { manifest, .. } => ("made", Cell::Empty, Some(manifest)),
-            VariantOutcome::Refused(reason) => ("refused", Cell::Text(reason.clone()), None),
-            VariantOutcome::Failed(reason) => ("failed", Cell::Text(reason.clone()), None),
+            VariantOutcome::Refused(refusal) => ("refused", Cell::Text(refusal.to_string()), None),
+            VariantOutcome::Failed(reason) => ("failed", Cell::Text(reason.to_string()), None),
         };
         let text = |t: &str| Cell::Text(t.to_owned());
         let mut row = vec![
@@ -156,7 +158,7 @@ impl Schema {
             row.push(cell(&toml_to_json(&value), kind_of(&value)));
         }
         if let Some(bytes) = manifest {
-            // Our own manifest: it is JSON.
+            // A manifest of this program is valid JSON.
             let facts: Json = serde_json::from_slice(bytes).unwrap_or_default();
             self.add_facts(&mut row, &facts);
             row.push(Cell::Text(hexadecimal(&Sha256::digest(bytes))));
@@ -195,7 +197,7 @@ impl Schema {
     }
 }
 
-/// Names of the derived dimensions, with their units.
+/// Returns the names of the derived dimensions with their units.
 fn dimensions() -> Vec<String> {
     let design = Design::new(Configuration::default());
     design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit)).collect()
@@ -211,14 +213,14 @@ fn kind_of(value: &toml_edit::Value) -> ColumnType {
 }
 
 fn cell(value: &Json, kind: ColumnType) -> Cell {
-    let found = match kind {
+    let cell = match kind {
         ColumnType::Real => value.as_f64().map(Cell::Real),
         ColumnType::Integer => value.as_i64().map(Cell::Integer),
         ColumnType::Boolean => value.as_bool().map(Cell::Boolean),
         ColumnType::Text if value.is_null() => None,
         ColumnType::Text => Some(Cell::Text(value.as_str().map_or_else(|| value.to_string(), str::to_owned))),
     };
-    found.unwrap_or(Cell::Empty)
+    cell.unwrap_or(Cell::Empty)
 }
 
 impl std::fmt::Display for Cell {
@@ -226,7 +228,7 @@ impl std::fmt::Display for Cell {
         match self {
             Self::Empty => Ok(()),
             Self::Text(text) => f.write_str(text),
-            // The shortest text that reads back to the same number.
+            // The shortest text that parses to the same number.
             Self::Real(x) => write!(f, "{x}"),
             Self::Integer(i) => write!(f, "{i}"),
             Self::Boolean(b) => write!(f, "{b}"),
@@ -235,7 +237,7 @@ impl std::fmt::Display for Cell {
 }
 
 impl Cell {
-    /// The number in it.
+    /// Returns its number.
     #[allow(clippy::cast_precision_loss)]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -245,7 +247,7 @@ impl Cell {
         }
     }
 
-    /// The words in it.
+    /// Returns its text.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Text(text) => Some(text),

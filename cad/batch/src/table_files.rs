@@ -1,5 +1,6 @@
-//! The table as CSV and as Parquet, written row by row with bounded memory, and read back from Parquet.
+//! The table as CSV and as Parquet: written row by row in bounded memory, and read from Parquet.
 
+use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,27 +19,68 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::record::Field;
 use parquet::record::reader::RowIter;
 use parquet::schema::types::{Type, TypePtr};
+use pinswitch_diagnostic::Diagnostic;
 
+use super::diagnostics::diagnostic_error;
 use super::table::{Cell, Column, ColumnType, Row, Schema};
 
-/// Rows that are held in memory and written as one group.
+/// Rows per group of the Parquet file, which are in memory together.
 const GROUP_ROWS: usize = 4096;
 
-/// The table cannot be written or read.
-#[derive(Debug, thiserror::Error)]
+/// Why a table cannot be written or read.
+#[derive(Debug)]
 pub enum BatchTableError {
-    /// CSV.
-    #[error("the table cannot be written as CSV: {0}")]
-    Csv(#[from] csv::Error),
-    /// Parquet.
-    #[error("the Parquet table cannot be written or read: {0}")]
-    Parquet(#[from] ParquetError),
-    /// A file.
-    #[error("the table cannot be written: {0}")]
-    File(#[from] std::io::Error),
+    /// The CSV cannot be written.
+    Csv(csv::Error),
+    /// The Parquet file cannot be written or read.
+    Parquet(ParquetError),
+    /// A file cannot be written.
+    File(std::io::Error),
+    /// The Parquet file is damaged, or not a table of this sweep.
+    Invalid(&'static str),
 }
 
-/// Both files of a table, being written.
+impl BatchTableError {
+    pub(super) fn diagnostic(&self) -> Diagnostic {
+        Diagnostic::new(match self {
+            Self::Csv(error) => format!("cannot write the table as CSV: {error}"),
+            Self::Parquet(error) => format!("cannot write or read the Parquet table: {error}"),
+            Self::File(error) => format!("cannot write the table: {error}"),
+            Self::Invalid(problem) => format!("invalid Parquet table: {problem}"),
+        })
+    }
+
+    fn cause(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Csv(error) => Some(error),
+            Self::Parquet(error) => Some(error),
+            Self::File(error) => Some(error),
+            Self::Invalid(_) => None,
+        }
+    }
+}
+
+diagnostic_error!(BatchTableError);
+
+impl From<csv::Error> for BatchTableError {
+    fn from(error: csv::Error) -> Self {
+        Self::Csv(error)
+    }
+}
+
+impl From<ParquetError> for BatchTableError {
+    fn from(error: ParquetError) -> Self {
+        Self::Parquet(error)
+    }
+}
+
+impl From<std::io::Error> for BatchTableError {
+    fn from(error: std::io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+/// Writer of both files of a table.
 pub struct TableWriter {
     schema: Schema,
     csv: csv::Writer<BufWriter<File>>,
@@ -47,10 +89,10 @@ pub struct TableWriter {
 }
 
 impl TableWriter {
-    /// Starts both files.
+    /// Creates both files.
     ///
     /// # Errors
-    /// [`BatchTableError`] if a file cannot be made.
+    /// A file that cannot be created.
     pub fn create(schema: &Schema, csv: &Path, parquet: &Path) -> Result<Self, BatchTableError> {
         let mut csv = csv::Writer::from_writer(BufWriter::new(File::create(csv)?));
         csv.write_record(schema.columns().iter().map(|c| c.name.as_str()))?;
@@ -69,7 +111,7 @@ impl TableWriter {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`BatchTableError`], on a full disk for example.
+    /// A file that cannot be written, for example on a full disk.
     pub fn push(&mut self, row: Row) -> Result<(), BatchTableError> {
         self.csv.write_record(row.iter().map(ToString::to_string))?;
         self.group.push(row);
@@ -79,7 +121,7 @@ impl TableWriter {
     /// Completes both files.
     ///
     /// # Errors
-    /// [`BatchTableError`], on a full disk for example.
+    /// A file that cannot be written, for example on a full disk.
     pub fn finish(mut self) -> Result<(), BatchTableError> {
         self.write_group()?;
         self.csv.flush()?;
@@ -151,25 +193,25 @@ fn parquet_schema(schema: &Schema) -> Result<TypePtr, ParquetError> {
     Type::group_type_builder("variants").with_fields(fields).build().map(Arc::new)
 }
 
-/// Rows of a Parquet table with the columns of `schema`, one after the other.
+/// Reads the rows of a Parquet table with the columns of `schema`, one by one.
 ///
 /// # Errors
-/// [`BatchTableError`] for bytes that are no such table.
+/// A damaged table, and a table with other columns.
 pub fn read_rows(
     bytes: Vec<u8>,
     schema: &Schema,
 ) -> Result<impl Iterator<Item = Result<Row, BatchTableError>> + use<>, BatchTableError> {
     let length = bytes.len() as u64;
-    let reader = unpanicked(|| SerializedFileReader::new(Bytes::from(bytes)))??;
-    check_places(reader.metadata(), length)?;
+    let reader = catch_panic(|| SerializedFileReader::new(Bytes::from(bytes)))??;
+    check_extents(reader.metadata(), length)?;
     let names: Vec<_> =
         reader.metadata().file_metadata().schema().get_fields().iter().map(|f| f.name().to_owned()).collect();
     if !names.iter().map(String::as_str).eq(schema.columns().iter().map(|c| c.name.as_str())) {
-        return Err(ParquetError::General("its columns are not those of this sweep".to_owned()).into());
+        return Err(BatchTableError::Invalid("the columns are not those of this sweep"));
     }
-    let mut rows = Some(unpanicked(|| RowIter::from_file_into(Box::new(reader)))?);
+    let mut rows = Some(catch_panic(|| RowIter::from_file_into(Box::new(reader)))?);
     let next = move || {
-        let row = unpanicked(|| rows.as_mut().and_then(Iterator::next));
+        let row = catch_panic(|| rows.as_mut().and_then(Iterator::next));
         let row = match row {
             Ok(row) => row?.map_err(BatchTableError::from),
             Err(e) => Err(e),
@@ -182,28 +224,27 @@ pub fn read_rows(
     Ok(std::iter::from_fn(next))
 }
 
-/// The Parquet library panics at some files that no writer makes: found by fuzzing (`fuzz/targets/shard_table.rs`).
-fn unpanicked<T>(read: impl FnOnce() -> T) -> Result<T, BatchTableError> {
-    catch_unwind(AssertUnwindSafe(read)).map_err(|_| damaged("it is not as any program writes it").into())
+/// Calls `read`, and turns a panic into an error: fuzzing (`fuzz/targets/shard_table.rs`) found
+/// files that no program writes, on which the Parquet library panics.
+fn catch_panic<T>(read: impl FnOnce() -> T) -> Result<T, BatchTableError> {
+    catch_unwind(AssertUnwindSafe(read)).map_err(|_| BatchTableError::Invalid("damaged data"))
 }
 
-fn damaged(problem: &str) -> ParquetError {
-    ParquetError::General(problem.to_owned())
-}
-
-/// Every column must lie within the file, in as many rows as are announced: the library trusts these numbers.
-fn check_places(metadata: &ParquetMetaData, length: u64) -> Result<(), BatchTableError> {
-    let place = |n: i64| u64::try_from(n).map_err(|_| damaged("a place in it is below zero"));
+/// Checks that every column is within the file and has as many values as rows: the library trusts
+/// these numbers.
+fn check_extents(metadata: &ParquetMetaData, length: u64) -> Result<(), BatchTableError> {
+    let unsigned =
+        |n: i64| u64::try_from(n).map_err(|_| BatchTableError::Invalid("negative offset or length"));
     for group in metadata.row_groups() {
-        place(group.num_rows())?;
+        let rows = unsigned(group.num_rows())?;
         for column in group.columns() {
             let offsets = [Some(column.data_page_offset()), column.dictionary_page_offset()];
-            let start = offsets.into_iter().flatten().map(place).collect::<Result<Vec<_>, _>>()?;
+            let start = offsets.into_iter().flatten().map(unsigned).collect::<Result<Vec<_>, _>>()?;
             let start = start.into_iter().min().unwrap_or_default();
-            let end = start.saturating_add(place(column.compressed_size())?);
-            place(column.uncompressed_size())?;
-            if place(column.num_values())? != place(group.num_rows())? || end > length {
-                return Err(damaged("a column does not lie within it").into());
+            let end = start.saturating_add(unsigned(column.compressed_size())?);
+            unsigned(column.uncompressed_size())?;
+            if unsigned(column.num_values())? != rows || end > length {
+                return Err(BatchTableError::Invalid("a column exceeds the file or its rows"));
             }
         }
     }

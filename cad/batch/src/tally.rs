@@ -1,28 +1,28 @@
-//! What a batch or a shard came to, in numbers.
+//! Totals of a batch or a shard.
 
 use serde::Serialize;
 
 /// Totals over a number of variants.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
-    /// Variants that are there.
+    /// Variants that were made, in this run or an earlier one.
     pub made: u64,
-    /// Variants that cannot be built or are forbidden.
+    /// Variants that cannot be built or do not meet a constraint.
     pub refused: u64,
     /// Variants that failed.
     pub failed: u64,
     /// Part files of all variants.
     pub parts: u64,
-    /// Different ones among them.
+    /// Different part files among them.
     pub distinct_parts: u64,
     /// Bytes of all part files.
     pub part_bytes: u64,
-    /// Bytes of the different ones.
+    /// Bytes of the different part files.
     pub distinct_bytes: u64,
 }
 
 impl Tally {
-    /// Counts a part file; `is_new` says whether it is the first of its content.
+    /// Counts a part file; `is_new` if it is the first one with its content.
     pub(super) fn count_part(&mut self, bytes: u64, is_new: bool) {
         self.parts += 1;
         self.part_bytes += bytes;

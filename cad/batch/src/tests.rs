@@ -1,4 +1,5 @@
-//! Whole runs: shards that meet in one folder or, with the feature `cloud`, in a store in memory, and meshes that fail.
+//! Whole runs: shards in one folder or, with the feature `cloud`, in a store in memory; and meshes
+//! that fail.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -23,9 +24,10 @@ fn plan() -> (Variants, SweepSource) {
     (Variants::new(Sweep::new(&source).unwrap(), &source), source)
 }
 
-struct Counted(AtomicU64);
+/// An observer that counts finished variants.
+struct Counter(AtomicU64);
 
-impl Observer for Counted {
+impl Observer for Counter {
     fn variant_done(&self, _: &VariantOutcome) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
@@ -38,7 +40,7 @@ fn options(shard: Shard, fail_fast: bool, mesh_maker: MeshMaker) -> Options<'sta
     Options { shard, threads: 2, fail_fast, mesh_maker, slicer: None }
 }
 
-/// A fresh destination: a folder that goes with the test, or a store in memory.
+/// An empty destination: a temporary folder, or a store in memory.
 struct Fresh {
     folder: tempfile::TempDir,
     #[cfg(feature = "cloud")]
@@ -54,7 +56,7 @@ impl Fresh {
         }
     }
 
-    /// The folder, as each process opens it anew.
+    /// Opens the folder, as each process does.
     fn folder(&self) -> Destination {
         Destination::open(self.folder.path().to_str().unwrap(), ".partial-test").unwrap()
     }
@@ -66,7 +68,7 @@ impl Fresh {
     }
 }
 
-/// Shells 13 mm wide cannot be made: one way or the other.
+/// Fails for shells that are 13 mm wide.
 fn fails(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
     if part.name == "shell" && design.configuration().shell.width_mm == 13.0 {
         return Err(SetError::Encoding("no paper left".to_owned()));
@@ -74,23 +76,24 @@ fn fails(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, Mesh
     mesh_file(part, design, caps)
 }
 
+/// Panics for shells that are 13 mm wide.
 fn panics(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
-    assert!(part.name != "shell" || design.configuration().shell.width_mm != 13.0, "a fault on purpose");
+    assert!(part.name != "shell" || design.configuration().shell.width_mm != 13.0, "on purpose");
     mesh_file(part, design, caps)
 }
 
 fn shards_merge_to_one_run(open: fn(&Fresh) -> Destination) {
     let (variants, source) = plan();
     let (whole, shards) = (Fresh::new(), Fresh::new());
-    let watch = Counted(AtomicU64::new(0));
+    let counter = Counter(AtomicU64::new(0));
     let tally =
-        run(&variants, &source, &open(&whole), options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
+        run(&variants, &source, &open(&whole), options(Shard::WHOLE, false, mesh_file), &counter).unwrap();
     assert_eq!((tally.made, tally.parts, tally.distinct_parts), (6, 12, 7));
     for shard in ["1/2", "2/2"] {
         let options = options(shard.parse().unwrap(), false, mesh_file);
-        run(&variants, &source, &open(&shards), options, &watch).unwrap();
+        run(&variants, &source, &open(&shards), options, &counter).unwrap();
     }
-    assert_eq!(watch.0.load(Ordering::Relaxed), 12);
+    assert_eq!(counter.0.load(Ordering::Relaxed), 12);
     let merged = merge(&[open(&shards)], &open(&shards)).unwrap();
     assert_eq!(merged, tally);
     for product in ["variants.csv", "variants.parquet", "index.html", "curves.svg", "threshold.svg"] {
@@ -111,29 +114,29 @@ fn shards_in_a_store_merge_to_one_run() {
 }
 
 #[test]
-fn a_variant_that_fails_costs_no_other() {
+fn failing_variants_do_not_fail_others() {
     let (variants, source) = plan();
     for (mesh_maker, reason) in [
         (fails as MeshMaker, "cannot put a file together: no paper left"),
-        (panics as MeshMaker, "a fault of the program; please report the configuration"),
+        (panics as MeshMaker, "internal error (panic); please report the configuration"),
     ] {
         let fresh = Fresh::new();
         let destination = fresh.folder();
-        let watch = Counted(AtomicU64::new(0));
-        let tally =
-            run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_maker), &watch).unwrap();
+        let counter = Counter(AtomicU64::new(0));
+        let tally = run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_maker), &counter)
+            .unwrap();
         assert_eq!((tally.made, tally.failed, tally.refused), (3, 3, 0));
         let table = String::from_utf8(destination.get("variants.csv").unwrap().unwrap()).unwrap();
         assert_eq!(table.matches(&format!("failed,{reason}")).count(), 3, "{table}");
-        // Mended, the same run makes the rest.
+        // The same run makes the rest once the cause is gone.
         let tally =
-            run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
+            run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_file), &counter).unwrap();
         assert_eq!((tally.made, tally.failed), (6, 0));
 
         let fresh = Fresh::new();
         let destination = fresh.folder();
-        let ended = run(&variants, &source, &destination, options(Shard::WHOLE, true, mesh_maker), &watch);
-        assert!(matches!(ended, Err(RunError::Failed { reason: r, .. }) if r == reason));
+        let result = run(&variants, &source, &destination, options(Shard::WHOLE, true, mesh_maker), &counter);
+        assert!(matches!(result, Err(RunError::Failed { reason: r, .. }) if r.to_string() == reason));
         assert!(destination.get("variants.csv").unwrap().is_none());
     }
 }

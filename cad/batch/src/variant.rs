@@ -1,4 +1,4 @@
-//! Variants: which settings each one has, and the id and label by which it is known.
+//! Variants: their settings, ids and labels.
 
 use std::collections::HashMap;
 
@@ -11,51 +11,52 @@ use super::source::SweepSource;
 use super::sweep::Sweep;
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 
-/// Letters of codes: no I, L, O or U, so that they can be read off a print, and neither M nor W, whose strokes leave
-/// less than a printed line between them where a shell has room for small letters only.
+/// Letters of codes. I, L, O and U are easily misread on a print. M and W are missing since small
+/// letters leave less than one printed line between their strokes.
 const LETTERS: &[u8; 30] = b"0123456789ABCDEFGHJKNPQRSTVXYZ";
-/// Letters of a code: as many as fit on a published shell.
-const CODE: usize = 5;
-/// Letters of a code in a sweep of more than [`MAX_SHORT_CODES`] variants: any number of 64 bits.
-const LONG_CODE: usize = 14;
-/// Variants up to which half of all short codes are free. Beyond it a code is the number of the variant in the sweep, so
-/// that nothing has to be kept in memory, and no variant is looked for that another repeats.
+/// Letters of a code: as many as fit on the shell of the paper.
+const CODE_LETTERS: usize = 5;
+/// Letters of a code in a sweep of more than [`MAX_SHORT_CODES`] variants: enough for any number of
+/// 64 bits.
+const LONG_CODE_LETTERS: usize = 14;
+/// Most variants with short codes, of which half are then free. In a larger sweep a code is the
+/// index of the variant, which needs no memory, and repeated variants are not detected.
 const MAX_SHORT_CODES: u64 = 12_000_000;
-/// Longest id: it names the variant's folder and its plot.
-const LONGEST_ID: usize = 40;
+/// Most characters of an id, which is the name of the variant's folder and the title of its plot.
+const MAX_ID_LENGTH: usize = 40;
 
 /// One variant of a sweep.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// Its place in the sweep, from 0.
+    /// Its index in the sweep, from 0.
     pub index: u64,
-    /// Its settings in words, and a code: `width12_pins5.8.11-k7qx2`.
+    /// Its settings and a code: `width12_pins5.8.11-k7qx2`.
     pub id: String,
-    /// What is engraved on its parts: the code, unless the sweep sets `label.text`.
+    /// The engraved label: the code, unless the sweep sets `label.text`.
     pub label: String,
     /// Its configuration, not yet validated.
     pub configuration: Configuration,
-    /// The variant that this one repeats.
+    /// The index of the variant with the same settings.
     pub repeats: Option<u64>,
 }
 
-/// All variants of a sweep; each is put together when it is asked for.
+/// All variants of a sweep; each is computed on request.
 #[derive(Debug)]
 pub struct Variants {
     sweep: Sweep,
     count: u64,
     /// SHA-256 of the base.
     salt: Vec<u8>,
-    /// Variants that repeat an earlier one.
+    /// Variants with the settings of an earlier one.
     repeats: HashMap<u64, u64>,
-    /// Letters of every code.
+    /// Number of letters of every code.
     letters: usize,
-    /// Codes of variants whose own code was taken.
-    moved: HashMap<u64, u64>,
+    /// Hashes of variants for which the code of the settings was in use already.
+    rehashed: HashMap<u64, u64>,
 }
 
 impl Variants {
-    /// Counts the variants and settles their codes.
+    /// Counts the variants and determines their codes.
     #[allow(clippy::cast_possible_truncation)]
     pub fn new(sweep: Sweep, source: &SweepSource) -> Self {
         let count = sweep.count().unwrap_or(u64::MAX);
@@ -67,21 +68,21 @@ impl Variants {
                 count,
                 salt,
                 repeats: HashMap::new(),
-                letters: LONG_CODE,
-                moved: HashMap::new(),
+                letters: LONG_CODE_LETTERS,
+                rehashed: HashMap::new(),
             };
         }
-        let letters = CODE;
-        let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, moved: HashMap::new() };
+        let letters = CODE_LETTERS;
+        let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, rehashed: HashMap::new() };
         let mut hashes: Vec<(u64, u64)> =
             (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
         hashes.par_sort_unstable();
-        // One bit for every code.
-        let mut taken = vec![0u64; codes(letters).div_ceil(64) as usize];
+        // One bit per code.
+        let mut used = vec![0u64; codes(letters).div_ceil(64) as usize];
         let mut take = |code: u64| {
             let (word, bit) = (code as usize / 64, 1 << (code % 64));
-            let is_free = taken[word] & bit == 0;
-            taken[word] |= bit;
+            let is_free = used[word] & bit == 0;
+            used[word] |= bit;
             is_free
         };
         let mut first = None;
@@ -92,50 +93,50 @@ impl Variants {
                 }
                 _ => first = Some((hash, index)),
             }
-            let mut turned = hash;
-            while !take(all.number(turned)) {
-                // Knuth's linear congruential generator: it goes through all numbers.
-                turned =
-                    turned.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let mut candidate = hash;
+            while !take(all.code_number(candidate)) {
+                // Knuth's linear congruential generator has the full period.
+                candidate =
+                    candidate.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             }
-            if turned != hash {
-                all.moved.insert(index, turned);
+            if candidate != hash {
+                all.rehashed.insert(index, candidate);
             }
         }
         all
     }
 
-    /// Number of variants.
+    /// Returns the number of variants.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The sweep that they come from.
+    /// Returns the sweep.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 
-    /// Fields that vary.
+    /// Returns the fields that vary.
     pub fn fields(&self) -> impl Iterator<Item = ParameterRef> + '_ {
-        self.sweep.axes.iter().flat_map(|l| l.fields.iter().copied())
+        self.sweep.axes.iter().flat_map(|axis| axis.fields.iter().copied())
     }
 
-    /// Variant `index`, which is below [`Self::count`].
+    /// Returns the variant with this index, which is below [`Self::count`].
     pub fn get(&self, index: u64) -> Variant {
         let mut configuration = self.sweep.base.clone();
         for (field, value) in self.settings(index) {
             // Every value was accepted when the sweep was read.
-            let accepted = (field.set)(&mut configuration, &value);
-            debug_assert!(accepted.is_ok());
+            let outcome = (field.set)(&mut configuration, &value);
+            debug_assert!(outcome.is_ok());
         }
-        let number = if self.letters == CODE {
-            self.number(self.moved.get(&index).copied().unwrap_or_else(|| self.hash(index)))
+        let number = if self.letters == CODE_LETTERS {
+            self.code_number(self.rehashed.get(&index).copied().unwrap_or_else(|| self.hash(index)))
         } else {
             index
         };
         let code = code(number, self.letters);
-        let words = self.words(index, LONGEST_ID - self.letters - 1);
-        let id = format!("{words}-{}", code.to_ascii_lowercase());
+        let summary = self.summary(index, MAX_ID_LENGTH - self.letters - 1);
+        let id = format!("{summary}-{}", code.to_ascii_lowercase());
         if configuration.label.text.is_empty() {
             configuration.label.text.clone_from(&code);
         }
@@ -144,25 +145,26 @@ impl Variants {
         Variant { index, id, label, configuration, repeats: self.repeats.get(&index).copied() }
     }
 
-    /// What varies, with the values of variant `index`.
+    /// Returns the fields that vary with the values of variant `index`.
     pub fn settings(&self, index: u64) -> Vec<(ParameterRef, Value)> {
         let mut rest = index;
         let mut all = Vec::new();
-        for level in self.sweep.axes.iter().rev() {
-            let row = level.row(rest % level.count());
-            rest /= level.count();
-            all.extend(level.fields.iter().copied().zip(row).rev());
+        for axis in self.sweep.axes.iter().rev() {
+            let row = axis.row(rest % axis.count());
+            rest /= axis.count();
+            all.extend(axis.fields.iter().copied().zip(row).rev());
         }
         all.reverse();
         all
     }
 
-    /// The number that the code of a hash stands for.
-    fn number(&self, hash: u64) -> u64 {
+    /// Returns the number of the code for a hash.
+    fn code_number(&self, hash: u64) -> u64 {
         hash % codes(self.letters)
     }
 
-    /// Hash of the settings: equal settings, whatever their place in the sweep, have equal hashes.
+    /// Returns the hash of the settings: equal settings have equal hashes, in whichever order the
+    /// axes are.
     fn hash(&self, index: u64) -> u64 {
         let mut settings: Vec<_> = self
             .settings(index)
@@ -175,8 +177,8 @@ impl Variants {
         hash.finalize().iter().take(8).fold(0, |sum, byte| sum << 8 | u64::from(*byte))
     }
 
-    /// The settings in words of at most `longest` characters.
-    fn words(&self, index: u64, longest: usize) -> String {
+    /// Returns the first settings as text of at most `longest` characters.
+    fn summary(&self, index: u64, longest: usize) -> String {
         let mut text = String::new();
         for (field, value) in self.settings(index) {
             let piece = format!("{}{}", short_key(field.key), short_value(&value));
@@ -190,19 +192,20 @@ impl Variants {
     }
 }
 
-/// How many codes there are of few letters.
+/// Returns the number of codes with this number of letters.
 fn codes(letters: usize) -> u64 {
     (0..letters).fold(1, |all, _| all * LETTERS.len() as u64)
 }
 
-/// A key without its unit.
+/// Returns a key without its unit.
 fn short_key(key: &str) -> String {
     const UNITS: [&str; 7] = ["_mm", "_deg", "_n", "_g", "_pct", "_a", "_cm3"];
     let stem = UNITS.iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key);
     stem.replace('_', "-")
 }
 
-/// A value for a folder's name: four decimals are enough, the code tells the rest.
+/// Returns a value for a folder's name, rounded to four decimals: the code distinguishes similar
+/// variants.
 fn short_value(value: &Value) -> String {
     let text = match value {
         Value::Float(x) => format!("{}", (x.value() * 1e4).round() / 1e4),
@@ -215,7 +218,7 @@ fn short_value(value: &Value) -> String {
     text.chars().map(|c| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '-' }).collect()
 }
 
-/// `number` in `letters` letters.
+/// Returns `number` as a code with this number of letters.
 fn code(mut number: u64, letters: usize) -> String {
     let mut code = Vec::with_capacity(letters);
     for _ in 0..letters {
@@ -245,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_are_readable_different_and_keep_when_the_sweep_grows() {
+    fn ids_stay_when_a_sweep_grows() {
         let ids = |axes: &str| -> Vec<String> {
             let all = variants(axes);
             (0..all.count()).map(|i| all.get(i).id).collect()
@@ -259,36 +262,36 @@ mod tests {
         let codes: Vec<_> = more.iter().map(|id| code(id)).collect();
         assert!(few.iter().all(|id| codes.contains(&code(id))));
         assert_eq!(more.iter().collect::<std::collections::HashSet<_>>().len(), 9);
-        assert!(more.iter().all(|id| id.len() <= LONGEST_ID));
+        assert!(more.iter().all(|id| id.len() <= MAX_ID_LENGTH));
     }
 
     #[test]
-    fn labels_differ_and_a_given_label_stays() {
+    fn labels_are_codes_unless_given() {
         let all = variants("[axes]\n\"shell.width_mm\" = { from = 10, to = 14, step = 0.01 }\n");
         let labels: std::collections::HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
         assert_eq!(labels.len(), 401);
-        assert!(labels.iter().all(|l| l.len() == CODE));
-        let own = variants("[axes]\n\"label.text\" = [\"A\", \"B\"]\n");
-        assert_eq!(own.get(1).label, "B");
+        assert!(labels.iter().all(|l| l.len() == CODE_LETTERS));
+        let given = variants("[axes]\n\"label.text\" = [\"A\", \"B\"]\n");
+        assert_eq!(given.get(1).label, "B");
     }
 
     #[test]
-    fn codes_differ_even_where_hashes_are_alike() {
-        // Of 30,000 codes out of 30^5, about 19 pairs are alike at first.
+    fn colliding_hashes_get_different_codes() {
+        // About 19 of 30,000 hashes collide in 30^5 codes.
         let all = variants("[axes]\n\"tendon.length_mm\" = { from = 100, to = 400, count = 30000 }\n");
-        assert!(!all.moved.is_empty());
+        assert!(!all.rehashed.is_empty());
         let labels: HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
         assert_eq!(labels.len(), 30_000);
     }
 
     #[test]
-    fn a_sweep_beyond_memory_is_counted_and_each_variant_can_be_had() {
+    fn sweeps_may_exceed_memory() {
         let step = |field: &str| format!("\"{field}\" = {{ from = 10, to = 12, step = 1e-6 }}\n");
         let axes: String = ["shell.width_mm", "support.plate_mm", "tendon.length_mm"].map(step).concat();
         let all = variants(&format!("[axes]\n{axes}"));
         assert_eq!(all.count(), 2_000_001 * 2_000_001 * 2_000_001);
         let ids: HashSet<_> = [0, 1, 1 << 40, all.count() - 1].map(|i| all.get(i).id).into();
-        assert!(ids.len() == 4 && ids.iter().all(|id| id.len() <= LONGEST_ID), "{ids:?}");
+        assert!(ids.len() == 4 && ids.iter().all(|id| id.len() <= MAX_ID_LENGTH), "{ids:?}");
         assert_eq!(all.get(all.count() - 1).configuration.tendon.length_mm, 12.0);
         let all = variants(
             "[sample]\nmethod = \"random\"\ncount = 10000000\n[sample.axes]\n\"shell.width_mm\" = { from = 10, to = 14 }\n\
@@ -299,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn repeated_samples_are_known() {
+    fn repeated_variants_are_detected() {
         let all = variants(
             "[sample]\nmethod = \"random\"\ncount = 20\n[sample.axes]\n\"segment.grooves\" = { from = 3, to = 5 }\n",
         );
@@ -316,7 +319,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_combination_comes_once(a in 1usize..5, b in 1usize..5, c in 1usize..5) {
+        fn combinations_occur_once(a in 1usize..5, b in 1usize..5, c in 1usize..5) {
             let axis = |field: &str, n: usize| format!("\"{field}\" = {{ from = 10, to = 12, count = {n} }}\n");
             let text = format!(
                 "[axes]\n{}{}{}",

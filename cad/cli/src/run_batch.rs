@@ -11,8 +11,9 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::failure::say;
 use super::{Failure, print, print_json, slicing};
 use pinswitch_batch::{
-    CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
-    VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch, would_fail,
+    Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally, UncheckedSweep,
+    VariantOutcome, Variants, check_destination, estimate, mesh_file, obstructed_paths, partial_folder,
+    run as run_batch,
 };
 
 /// More variants than this want --yes.
@@ -74,10 +75,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
+    let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::SweepFolder };
     let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
     source.slice = arguments.slice;
-    let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
+    let counted = UncheckedSweep::new(&source).map_err(Failure::bad_input)?;
     let count = counted.count().ok_or_else(|| {
         Failure::bad_input(format!(
             "{}: more variants than can be counted ({}); raise a step, or lower a count",
@@ -99,15 +100,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.shard
         )));
     }
-    let variants = Variants::new(counted.checked().map_err(Failure::bad_input)?, &source);
+    let variants = Variants::new(counted.check().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
     if arguments.dry_run {
         let mut failing = Vec::new();
         if arguments.out.is_some() {
             let destination = open()?;
-            admit(&variants, &source, &destination, arguments.shard).map_err(refused)?;
-            failing = would_fail(&destination, &variants, arguments.shard).map_err(Failure::failed)?;
+            check_destination(&variants, &source, &destination, arguments.shard).map_err(refused)?;
+            failing = obstructed_paths(&destination, &variants, arguments.shard).map_err(Failure::failed)?;
         }
         dry_run(arguments, &variants)?;
         return match failing.first() {

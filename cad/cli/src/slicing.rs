@@ -38,7 +38,7 @@ pub(super) fn slicing(
     // Parts and plates are sliced whichever formats are kept.
     let printable = named(&["stl", "3mf"]).map_err(Failure::failed)?;
     let printable = Set::new(built, prediction, &printable).map_err(Failure::failed)?;
-    let settings = PrintSettings::of(built.design().configuration());
+    let settings = PrintSettings::from_configuration(built.design().configuration());
     let slicer = slicer.prepared(&settings).map_err(failure)?;
     let begun = |file: &str| log::info!("slicing {file}");
     let slicing = Slicing::new(&slicer, settings, &printable.files, begun).map_err(failure)?;

@@ -1,8 +1,8 @@
-//! What a slicer writes at the end of its G-code: time and filament.
+//! Time and filament from the comments at the end of a slicer's G-code.
 
 use serde::{Deserialize, Serialize};
 
-/// What a print takes.
+/// Time and filament of a print.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PrintEstimate {
     /// Time, minutes.
@@ -28,20 +28,46 @@ impl std::iter::Sum for PrintEstimate {
     }
 }
 
-/// `value` in steps of `1 / steps`, as the slicer writes it.
+/// Rounds to multiples of `1 / steps`, as the slicer does.
 fn rounded(value: f64, steps: f64) -> f64 {
     (value * steps).round() / steps
 }
 
+/// A comment of G-code that is missing or invalid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GcodeError {
+    /// There is no comment with this name.
+    #[error("no comment \"{0}\"")]
+    Missing(&'static str),
+    /// A value that is not a duration such as `1h 2m 3s`.
+    #[error("{name} = {value:?} is not a duration")]
+    Duration {
+        /// Name of the comment.
+        name: &'static str,
+        /// Its value.
+        value: String,
+    },
+    /// A value that is not a list of finite amounts from zero.
+    #[error("{name} = {value:?} is not an amount")]
+    Amount {
+        /// Name of the comment.
+        name: &'static str,
+        /// Its value.
+        value: String,
+    },
+}
+
 impl PrintEstimate {
-    /// The estimate in the comments of a G-code file: `; estimated printing time (normal mode) = 1h 2m 3s`, `; filament used
-    /// [g] = 1.2` and `[mm]`; of several extruders, their sum.
+    /// Reads the estimate from the comments of a G-code file: `; estimated printing time (normal
+    /// mode) = 1h 2m 3s`, `; filament used [g] = 1.2` and `[mm]`. Amounts of several extruders are
+    /// added.
     ///
     /// # Errors
-    /// The comment that is missing, or that cannot be read.
-    pub fn of_gcode(gcode: &str) -> Result<Self, String> {
-        let time = comment(gcode, "estimated printing time (normal mode)")?;
-        let seconds = seconds(time).ok_or_else(|| format!("{time:?} is no duration"))?;
+    /// The first comment that is missing or invalid.
+    pub fn from_gcode(gcode: &str) -> Result<Self, GcodeError> {
+        let name = "estimated printing time (normal mode)";
+        let time = comment(gcode, name)?;
+        let seconds = seconds(time).ok_or_else(|| GcodeError::Duration { name, value: time.to_owned() })?;
         let millimetres = amount(gcode, "filament used [mm]")?;
         Ok(Self {
             print_minutes: rounded(seconds / 60.0, 1e2),
@@ -51,34 +77,35 @@ impl PrintEstimate {
     }
 }
 
-/// What a comment says of `name`.
-fn comment<'a>(gcode: &'a str, name: &str) -> Result<&'a str, String> {
-    let found = gcode.lines().rev().find_map(|line| {
+/// Returns the value of the last comment with this name.
+fn comment<'a>(gcode: &'a str, name: &'static str) -> Result<&'a str, GcodeError> {
+    let value = gcode.lines().rev().find_map(|line| {
         let (key, value) = line.strip_prefix(';')?.split_once('=')?;
         (key.trim() == name).then(|| value.trim())
     });
-    found.ok_or_else(|| format!("no comment says \"{name}\""))
+    value.ok_or(GcodeError::Missing(name))
 }
 
-/// An amount of filament: the sum over all extruders.
-fn amount(gcode: &str, name: &str) -> Result<f64, String> {
+/// Returns an amount of filament, summed over all extruders.
+fn amount(gcode: &str, name: &'static str) -> Result<f64, GcodeError> {
     let text = comment(gcode, name)?;
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
-    let sum = numbers.map_err(|_| format!("{name} = {text:?} is no number"))?.into_iter().sum::<f64>();
-    if sum.is_finite() && sum >= 0.0 { Ok(sum) } else { Err(format!("{name} = {text:?} is no amount")) }
+    let amounts: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    let sum = amounts.map(|amounts| amounts.into_iter().sum::<f64>());
+    sum.filter(|sum| sum.is_finite() && *sum >= 0.0)
+        .ok_or_else(|| GcodeError::Amount { name, value: text.to_owned() })
 }
 
-/// Seconds of `1d 2h 3m 4s`, each once, from the longest to the shortest.
+/// Returns the seconds of `1d 2h 3m 4s`: each unit at most once, from the longest to the shortest.
 fn seconds(text: &str) -> Option<f64> {
     const UNITS: [(char, u32); 4] = [('d', 86_400), ('h', 3_600), ('m', 60), ('s', 1)];
-    let mut left = UNITS.iter();
+    let mut units = UNITS.iter();
     let words: Vec<&str> = text.split_whitespace().collect();
     if words.is_empty() {
         return None;
     }
     words.into_iter().try_fold(0.0, |sum, word| {
         let unit = word.chars().last()?;
-        let (_, unit_s) = left.find(|(known, _)| *known == unit)?;
+        let (_, unit_s) = units.find(|(known, _)| *known == unit)?;
         let count: u32 = word.strip_suffix(unit)?.parse().ok()?;
         Some(sum + f64::from(count) * f64::from(*unit_s))
     })
@@ -92,32 +119,32 @@ mod tests {
                          ; filament used [g] = 3.05\n; estimated printing time (normal mode) = 1d 2h 29m 42s\n; end\n";
 
     #[test]
-    fn time_and_filament_are_read_off_the_comments() {
-        let found = PrintEstimate::of_gcode(GCODE).unwrap();
+    fn comments_give_time_and_filament() {
+        let estimate = PrintEstimate::from_gcode(GCODE).unwrap();
         let minutes = 24.0 * 60.0 + 2.0 * 60.0 + 29.7;
-        assert_eq!(found, PrintEstimate { print_minutes: minutes, filament_g: 3.05, filament_m: 1.22119 });
+        assert_eq!(estimate, PrintEstimate { print_minutes: minutes, filament_g: 3.05, filament_m: 1.22119 });
         let two = GCODE.replace("[g] = 3.05", "[g] = 3.05, 0.45");
-        assert!((PrintEstimate::of_gcode(&two).unwrap().filament_g - 3.5).abs() < 1e-12);
-        let sum: PrintEstimate = [found, found].into_iter().sum();
+        assert!((PrintEstimate::from_gcode(&two).unwrap().filament_g - 3.5).abs() < 1e-12);
+        let sum: PrintEstimate = [estimate, estimate].into_iter().sum();
         assert_eq!(sum.filament_g, 6.1);
     }
 
     #[test]
-    fn what_is_missing_or_no_number_is_said() {
-        for (from, to, said) in [
-            ("estimated", "hoped", "estimated printing time"),
-            ("29m", "29x", "is no duration"),
-            ("1d 2h 29m 42s", "2h 1d", "is no duration"),
-            ("1d 2h 29m 42s", "", "is no duration"),
-            ("1d 2h 29m 42s", "é", "is no duration"),
-            ("1d 2h", "-1d 2h", "is no duration"),
-            ("[g] = 3.05", "[g] = inf", "is no amount"),
-            ("[g] = 3.05", "[g] = -1", "is no amount"),
-            ("[mm] = 1221.19", "[mm] = many", "is no number"),
-            ("filament used [mm]", "filament", "[mm]"),
+    fn invalid_comments_are_named() {
+        for (from, to, expected) in [
+            ("estimated", "hoped", "no comment \"estimated printing time (normal mode)\""),
+            ("29m", "29x", "= \"1d 2h 29x 42s\" is not a duration"),
+            ("1d 2h 29m 42s", "2h 1d", "is not a duration"),
+            ("1d 2h 29m 42s", "", "= \"\" is not a duration"),
+            ("1d 2h 29m 42s", "é", "is not a duration"),
+            ("1d 2h", "-1d 2h", "is not a duration"),
+            ("[g] = 3.05", "[g] = inf", "filament used [g] = \"inf\" is not an amount"),
+            ("[g] = 3.05", "[g] = -1", "is not an amount"),
+            ("[mm] = 1221.19", "[mm] = many", "filament used [mm] = \"many\" is not an amount"),
+            ("filament used [mm]", "filament", "no comment \"filament used [mm]\""),
         ] {
-            let error = PrintEstimate::of_gcode(&GCODE.replace(from, to)).unwrap_err();
-            assert!(error.contains(said), "{to}: {error}");
+            let error = PrintEstimate::from_gcode(&GCODE.replace(from, to)).unwrap_err().to_string();
+            assert!(error.contains(expected), "{to}: {error}");
         }
     }
 }

@@ -1,15 +1,27 @@
-//! Asks an installed `PrusaSlicer` how long a switch prints, and how much filament it takes (cad/doc/slicing.md).
+//! Print time and filament of a switch, estimated with an installed `PrusaSlicer`
+//! (cad/doc/slicing.md).
 //!
-//! The program is found by [`find`], its settings are written by itself ([`Slicer::prepared`]), and each file that it slices
-//! comes back as a [`PrintEstimate`]; [`Slicing`] holds those of a set. G-code stays in a folder that goes away: it holds time
-//! stamps, and is made for no printer in particular.
+//! [`find`] locates the program, [`Slicer::prepared`] lets it write its settings, and
+//! [`PreparedSlicer::slice`] returns a [`PrintEstimate`] for each file. [`Slicing`] contains the
+//! estimates of a set. G-code is written to a temporary folder and deleted: it contains time
+//! stamps, and is not meant for a particular printer.
+//!
+//! ```
+//! use pinswitch_slicer::{GcodeError, PrintEstimate};
+//!
+//! let gcode = "; filament used [mm] = 1221.19\n; filament used [g] = 3.05\n\
+//!              ; estimated printing time (normal mode) = 29m 42s\n";
+//! let estimate = PrintEstimate::from_gcode(gcode)?;
+//! assert_eq!((estimate.print_minutes, estimate.filament_g), (29.7, 3.05));
+//! # Ok::<(), GcodeError>(())
+//! ```
 
 mod estimate;
 mod run;
 mod settings;
 mod slicing;
 
-pub use estimate::PrintEstimate;
+pub use estimate::{GcodeError, PrintEstimate};
 pub use run::{PROGRAM_VARIABLE, PreparedSlicer, Slicer, SlicerError, find};
 pub use settings::PrintSettings;
 pub use slicing::{SETTINGS_FILE, SLICING_FILE, SlicedFile, Slicing};

@@ -1,54 +1,100 @@
-//! The program: where it is, its settings, and one run for each file.
+//! The slicer program: its path, its settings, and one run per file.
 
+use std::error::Error;
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use pinswitch_diagnostic::{Diagnostic, Location, excerpt, neutral};
 use tempfile::TempDir;
 
-use crate::estimate::PrintEstimate;
-use crate::settings::{PrintSettings, maker, without_time};
+use crate::estimate::{GcodeError, PrintEstimate};
+use crate::settings::{PrintSettings, program_version, without_time};
 
-/// Names that the program has on a search path.
+/// Names of the program on a search path.
 const NAMES: [&str; 4] = ["prusa-slicer", "PrusaSlicer", "prusa-slicer-console.exe", "prusa-slicer.exe"];
-/// Environment variable that names the program; it goes before the search path.
+/// Environment variable with the program; it takes precedence over the search path.
 pub const PROGRAM_VARIABLE: &str = "PINSWITCH_SLICER";
-/// Most characters of what a slicer says that are passed on.
-const LONGEST: usize = 300;
+/// Most characters of a slicer's message.
+const MAX_MESSAGE: usize = 300;
 
-/// Why a slicer cannot be asked.
-#[derive(Debug, thiserror::Error)]
+/// Why a file cannot be sliced.
+#[derive(Debug)]
 #[non_exhaustive]
 pub enum SlicerError {
-    /// The variable names no program.
-    #[error(
-        "{PROGRAM_VARIABLE} = {0}: there is no such program; give the path of PrusaSlicer's program, or unset it"
-    )]
+    /// [`PROGRAM_VARIABLE`] does not name a program.
     NoProgram(String),
-    /// The program cannot be started, or its files not be written or read.
-    #[error("{program}: {source}")]
+    /// The program cannot be started, or its files cannot be written.
     Io {
         /// The program.
         program: String,
         /// Why.
         source: std::io::Error,
     },
-    /// It ended without a result.
-    #[error("{program} did not slice {file}: {said}")]
+    /// The program ended without a result.
     Refused {
         /// The program.
         program: String,
-        /// What it was given.
+        /// The file that it was given.
         file: String,
-        /// What it said.
-        said: String,
+        /// The last line of its output.
+        output: String,
+    },
+    /// The G-code lacks an estimate.
+    Gcode {
+        /// The program.
+        program: String,
+        /// The file that was sliced.
+        file: String,
+        /// The comment that is missing or invalid.
+        source: GcodeError,
     },
 }
 
 impl SlicerError {
-    /// Whether the caller's environment is at fault, rather than the slicer.
+    /// Returns whether the cause is the user's environment, rather than the slicer.
     pub const fn is_bad_input(&self) -> bool {
         matches!(self, Self::NoProgram(_))
+    }
+
+    fn diagnostic(&self) -> Diagnostic {
+        match self {
+            Self::NoProgram(name) => Diagnostic::new("no such program")
+                .with_location(Location::field(PROGRAM_VARIABLE, name.as_str()))
+                .with_help("give the path of PrusaSlicer's program, or unset the variable"),
+            Self::Io { program, source } => Diagnostic::new(format!("cannot run {program}: {source}"))
+                .with_help("install PrusaSlicer again, and make room for temporary files"),
+            Self::Refused { program, file, output } => {
+                Diagnostic::new(format!("{program} did not slice {file}: {output}"))
+            }
+            Self::Gcode { program, file, source } => {
+                Diagnostic::new(format!("{program} sliced {file} without an estimate: {source}"))
+                    .with_help("use PrusaSlicer 2.5 or later")
+            }
+        }
+    }
+}
+
+impl fmt::Display for SlicerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.diagnostic(), f)
+    }
+}
+
+impl Error for SlicerError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Io { source, .. } => Some(source),
+            Self::Gcode { source, .. } => Some(source),
+            Self::NoProgram(_) | Self::Refused { .. } => None,
+        }
+    }
+}
+
+impl From<SlicerError> for Diagnostic {
+    fn from(error: SlicerError) -> Self {
+        error.diagnostic()
     }
 }
 
@@ -58,17 +104,18 @@ pub struct Slicer {
     program: PathBuf,
 }
 
-/// The slicer that `variable` (of [`PROGRAM_VARIABLE`]) names, or else the first on the search path; `None` if there is none.
+/// Finds the slicer that `variable` (the value of [`PROGRAM_VARIABLE`]) names, or else the first
+/// one on the search path; `None` if none is installed.
 ///
 /// # Errors
-/// [`SlicerError::NoProgram`] if the variable names no file.
+/// [`SlicerError::NoProgram`] if the variable does not name a program.
 pub fn find(variable: Option<&OsStr>, search_path: Option<&OsStr>) -> Result<Option<Slicer>, SlicerError> {
     let folders: Vec<PathBuf> = search_path.map(|p| std::env::split_paths(p).collect()).unwrap_or_default();
     let on_path = |name: &Path| folders.iter().map(|folder| folder.join(name)).find(|file| file.is_file());
     match variable.filter(|v| !v.is_empty()).map(Path::new) {
         Some(named) => {
-            let found = if named.is_file() { Some(named.to_owned()) } else { on_path(named) };
-            let program = found.ok_or_else(|| SlicerError::NoProgram(named.display().to_string()))?;
+            let program = if named.is_file() { Some(named.to_owned()) } else { on_path(named) };
+            let program = program.ok_or_else(|| SlicerError::NoProgram(named.display().to_string()))?;
             Ok(Some(Slicer { program }))
         }
         None => Ok(NAMES.iter().find_map(|name| on_path(Path::new(name))).map(|program| Slicer { program })),
@@ -76,10 +123,10 @@ pub fn find(variable: Option<&OsStr>, search_path: Option<&OsStr>) -> Result<Opt
 }
 
 impl Slicer {
-    /// The slicer with settings that it writes itself.
+    /// Lets the slicer write a settings file from its options.
     ///
     /// # Errors
-    /// [`SlicerError`] if it refuses the settings.
+    /// A slicer that cannot be run, or that refuses the settings.
     pub fn prepared(self, settings: &PrintSettings) -> Result<PreparedSlicer, SlicerError> {
         let io = |source| self.io(source);
         let folder = tempfile::Builder::new().prefix("pinswitch-slicer").tempdir().map_err(io)?;
@@ -91,7 +138,7 @@ impl Slicer {
         let Ok(text) = std::fs::read_to_string(&file) else {
             return Err(self.refused("its settings", &output));
         };
-        let version = maker(&text).unwrap_or("an unknown slicer").to_owned();
+        let version = program_version(&text).unwrap_or("an unknown slicer").to_owned();
         Ok(PreparedSlicer {
             settings_text: without_time(&text),
             version,
@@ -106,7 +153,7 @@ impl Slicer {
         folder: &Path,
         options: impl Iterator<Item = &'a OsStr>,
     ) -> Result<Output, SlicerError> {
-        // Settings of whoever runs it stay out: the same call gives the same answer.
+        // An empty data folder excludes the user's settings, so that results are reproducible.
         let mut command = Command::new(&self.program);
         command.arg("--datadir").arg(folder).args(options).current_dir(folder).stdin(Stdio::null());
         command.output().map_err(|e| self.io(e))
@@ -120,23 +167,23 @@ impl Slicer {
         SlicerError::Refused {
             program: self.program.display().to_string(),
             file: file.to_owned(),
-            said: last_words(output),
+            output: last_line(output),
         }
     }
 }
 
-/// The last line that a program said, of its errors if there are any.
-fn last_words(output: &Output) -> String {
-    let lines = |bytes: &[u8]| {
+/// Returns the last line of a program's output, of standard error if it is not empty.
+fn last_line(output: &Output) -> String {
+    let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes).into_owned();
-        text.lines().rev().map(str::trim).find(|l| !l.is_empty()).map(str::to_owned)
+        text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
     };
-    let said = lines(&output.stderr).or_else(|| lines(&output.stdout));
-    let said = said.unwrap_or_else(|| format!("it said nothing, and ended with {}", output.status));
-    said.chars().filter(|c| !c.is_control()).take(LONGEST).collect()
+    let line = last(&output.stderr).or_else(|| last(&output.stdout));
+    let line = line.unwrap_or_else(|| format!("no output, {}", output.status));
+    excerpt(&neutral(&line), MAX_MESSAGE)
 }
 
-/// A slicer with its settings in a folder of its own, which goes away with it.
+/// A slicer with its settings in a temporary folder.
 #[derive(Debug)]
 pub struct PreparedSlicer {
     slicer: Slicer,
@@ -147,20 +194,21 @@ pub struct PreparedSlicer {
 }
 
 impl PreparedSlicer {
-    /// Its name and version.
+    /// Returns the slicer's name and version.
     pub fn version(&self) -> &str {
         &self.version
     }
 
-    /// The settings file that it wrote, without the time at which it did.
+    /// Returns the slicer's settings file without its time stamp.
     pub fn settings_text(&self) -> &str {
         &self.settings_text
     }
 
-    /// Slices a file (STL or 3MF, as its name ends) as its parts lie; an STL, which says nothing of a bed, in the middle of it.
+    /// Slices an STL or 3MF file, by its extension. A 3MF keeps its arrangement; an STL is sliced
+    /// in the middle of the bed.
     ///
     /// # Errors
-    /// [`SlicerError`] with what the slicer said.
+    /// [`SlicerError`] with the slicer's message.
     pub fn slice(&self, name: &str, bytes: &[u8]) -> Result<PrintEstimate, SlicerError> {
         let io = |e| self.slicer.io(e);
         let folder = tempfile::Builder::new().tempdir_in(self.folder.path()).map_err(io)?;
@@ -180,10 +228,10 @@ impl PreparedSlicer {
         ]);
         let output = self.slicer.run(folder.path(), options.into_iter())?;
         let Ok(text) = std::fs::read(&gcode) else { return Err(self.slicer.refused(name, &output)) };
-        PrintEstimate::of_gcode(&String::from_utf8_lossy(&text)).map_err(|problem| SlicerError::Refused {
+        PrintEstimate::from_gcode(&String::from_utf8_lossy(&text)).map_err(|source| SlicerError::Gcode {
             program: self.slicer.program.display().to_string(),
             file: name.to_owned(),
-            said: format!("its G-code cannot be read: {problem}"),
+            source,
         })
     }
 }
@@ -193,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_variable_goes_before_the_path() {
+    fn the_variable_precedes_the_path() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let search = Some(path.as_os_str());
@@ -202,12 +250,16 @@ mod tests {
         for name in ["prusa-slicer", "mine"] {
             std::fs::write(path.join(name), "").unwrap();
         }
-        let found = |variable: Option<&OsStr>| find(variable, search).unwrap().unwrap().program;
-        assert_eq!(found(None), path.join("prusa-slicer"));
-        assert_eq!(found(Some(OsStr::new(""))), path.join("prusa-slicer"));
-        assert_eq!(found(Some(OsStr::new("mine"))), path.join("mine"));
-        assert_eq!(found(Some(path.join("mine").as_os_str())), path.join("mine"));
+        let program = |variable: Option<&OsStr>| find(variable, search).unwrap().unwrap().program;
+        assert_eq!(program(None), path.join("prusa-slicer"));
+        assert_eq!(program(Some(OsStr::new(""))), path.join("prusa-slicer"));
+        assert_eq!(program(Some(OsStr::new("mine"))), path.join("mine"));
+        assert_eq!(program(Some(path.join("mine").as_os_str())), path.join("mine"));
         let error = find(Some(OsStr::new("absent")), search).unwrap_err();
-        assert!(error.is_bad_input() && error.to_string().contains("PINSWITCH_SLICER = absent"), "{error}");
+        assert!(
+            error.is_bad_input()
+                && error.to_string().starts_with("PINSWITCH_SLICER = absent: no such program; "),
+            "{error}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! What a whole set takes: each part by itself, and each plate.
+//! Estimates of a whole set: of each part, and of each plate.
 
 use std::fmt::Write as _;
 
@@ -10,60 +10,60 @@ use crate::settings::PrintSettings;
 use pinswitch_switch::documents::PrintEntry;
 use pinswitch_switch::output::OutputFile;
 
-/// Name of the file of a set that holds a [`Slicing`].
+/// Name of the file of a set that contains a [`Slicing`].
 pub const SLICING_FILE: &str = "slicing.json";
-/// Name of the slicer's settings beside it.
+/// Name of the file with the slicer's settings.
 pub const SETTINGS_FILE: &str = "settings.ini";
 
-/// A file of a set with what it takes to print.
+/// A file of a set with its estimate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlicedFile {
     /// The file.
     pub file: String,
-    /// What it takes.
+    /// Its estimate.
     #[serde(flatten)]
     pub estimate: PrintEstimate,
 }
 
-/// What a set takes to print.
+/// Time and filament of a set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Slicing {
     /// Name and version of this file's schema.
     pub schema: &'static str,
     /// The slicer and its version.
     pub slicer: String,
-    /// Its settings, as it wrote them.
+    /// Name of the file with all settings.
     pub settings_file: &'static str,
-    /// What it was told of them; the rest is its own default.
+    /// The settings that differ from the slicer's defaults.
     pub settings: PrintSettings,
     /// Each part, printed alone.
     pub parts: Vec<SlicedFile>,
-    /// Each plate, printed as it is.
+    /// Each plate.
     pub plates: Vec<SlicedFile>,
-    /// All plates.
+    /// The sum over all plates.
     pub total: PrintEstimate,
 }
 
 impl Slicing {
-    /// Slices the parts (STL) and plates (3MF) of a set; `settings` are those that `slicer` was prepared with, and `begun`
-    /// hears of each file before it is sliced.
+    /// Slices the parts (STL) and plates (3MF) of a set. `settings` are those with which `slicer`
+    /// was prepared; `before` is called with each file before it is sliced.
     ///
     /// # Errors
-    /// [`SlicerError`] names the first file that was not sliced.
+    /// The first file that cannot be sliced.
     pub fn new(
         slicer: &PreparedSlicer,
         settings: PrintSettings,
         files: &[OutputFile],
-        begun: impl Fn(&str),
+        before: impl Fn(&str),
     ) -> Result<Self, SlicerError> {
         let sliced = |extension: &str| -> Result<Vec<SlicedFile>, SlicerError> {
-            let wanted = files.iter().filter(|file| file.name.ends_with(extension));
-            let each = wanted.map(|file| {
-                begun(&file.name);
+            let matching = files.iter().filter(|file| file.name.ends_with(extension));
+            let estimates = matching.map(|file| {
+                before(&file.name);
                 let estimate = slicer.slice(&file.name, &file.bytes)?;
                 Ok(SlicedFile { file: file.name.clone(), estimate })
             });
-            each.collect()
+            estimates.collect()
         };
         let (parts, plates) = (sliced(".stl")?, sliced(".3mf")?);
         Ok(Self {
@@ -77,13 +77,13 @@ impl Slicing {
         })
     }
 
-    /// What a manifest says of it.
+    /// Returns the entry of a manifest.
     pub fn entry(&self) -> PrintEntry {
         let PrintEstimate { print_minutes, filament_g, filament_m } = self.total;
         PrintEntry { of: "plates", slicer: self.slicer.clone(), print_minutes, filament_g, filament_m }
     }
 
-    /// The table that a person reads.
+    /// Returns the estimates as a table for a terminal.
     pub fn table(&self) -> String {
         let s = &self.settings;
         let mut text = format!(
@@ -100,7 +100,7 @@ impl Slicing {
     }
 }
 
-/// A time in hours and minutes, rounded to minutes.
+/// Formats a time in hours and minutes, rounded to minutes.
 fn time(minutes: f64) -> String {
     let whole = minutes.round();
     let hours = (whole / 60.0).floor();
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_hours_and_minutes() {
+    fn times_are_rounded_to_minutes() {
         for (minutes, text) in [(0.2, "0 min"), (59.4, "59 min"), (59.6, "1 h 00 min"), (137.2, "2 h 17 min")]
         {
             assert_eq!(time(minutes), text);

@@ -1,29 +1,29 @@
-//! `[axes]`: every combination of the values of its fields, the last of which varies fastest.
+//! `[axes]`: every combination of the values of its fields; the last field varies fastest.
 
+use pinswitch_diagnostic::Diagnostic;
 use toml_edit::Item;
 
 use super::values;
 use super::{AxisTable, SweepAxis, fields};
 use crate::source::SweepSource;
-use pinswitch_switch::config::ConfigError;
 
 /// The table of a grid.
 pub(super) const TABLE: AxisTable = AxisTable { name: "axes", keys: &[], level: 1, read };
 
-fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
+fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, Diagnostic> {
     fields(table.as_table_like())
         .into_iter()
-        .map(|(path, item)| axis(&path, item).map_err(|e| e.at(source.place(item.span()))))
+        .map(|(path, item)| axis(&path, item).map_err(|e| source.locate(e, item.span())))
         .collect()
 }
 
-/// The axis of one field.
+/// Reads the axis of one field.
 ///
 /// # Errors
-/// [`ConfigError`] for values that the field does not accept, an empty or repeating list, or a bad range.
-fn axis(path: &str, item: &Item) -> Result<SweepAxis, ConfigError> {
+/// Values that the field does not accept, an empty or repeating list, and an invalid range.
+fn axis(path: &str, item: &Item) -> Result<SweepAxis, Diagnostic> {
     let field = super::field(path)?;
-    let series = (values::kind(field, item)?.every_value)(field, item)?;
+    let series = (values::notation(field, item)?.series)(field, item)?;
     Ok(SweepAxis::new(vec![field], series.count, move |index| vec![(series.at)(index)]))
 }
 
@@ -31,14 +31,14 @@ fn axis(path: &str, item: &Item) -> Result<SweepAxis, ConfigError> {
 mod tests {
     use super::*;
 
-    fn values(path: &str, text: &str) -> Result<Vec<String>, String> {
+    fn values(path: &str, text: &str) -> Result<Vec<String>, Diagnostic> {
         let item = Item::Value(text.parse().unwrap());
-        let level = axis(path, &item).map_err(|e| e.to_string())?;
-        Ok((0..level.count()).map(|i| level.row(i)[0].to_string()).collect())
+        let axis = axis(path, &item)?;
+        Ok((0..axis.count()).map(|i| axis.row(i)[0].to_string()).collect())
     }
 
     #[test]
-    fn lists_and_ranges_give_their_values() {
+    fn lists_and_ranges_have_values() {
         assert_eq!(values("shell.width_mm", "[10, 12.5]").unwrap(), ["10.0", "12.5"]);
         assert_eq!(values("layout.pins", "[[5, 8], []]").unwrap(), ["[5, 8]", "[]"]);
         let steps = values("shell.width_mm", "{ from = 10, to = 10.35, step = 0.1 }").unwrap();
@@ -49,37 +49,37 @@ mod tests {
     }
 
     #[test]
-    fn bad_axes_say_what_to_change() {
+    fn invalid_axes_are_refused_with_help() {
         for (path, text, expected) in [
-            ("shell.with_mm", "[1]", "shell.with_mm is no known field; did you mean \"shell.width_mm\"?"),
-            ("switch.name", "[\"a\"]", "switch.name is set by the batch itself"),
+            ("shell.with_mm", "[1]", "shell.with_mm: unknown field; did you mean \"shell.width_mm\"?"),
+            ("switch.name", "[\"a\"]", "switch.name: a sweep cannot set the name"),
             (
                 "support.slots",
                 "{ from = 1, to = 2, step = 1 }",
-                "support.slots takes no numbers, so no range",
+                "support.slots: range over a field that does not take numbers; give a list of values",
             ),
             (
                 "shell.width_mm",
                 "{ from = 16, to = 10, step = 1 }",
-                "shell.width_mm = 16 to 10 runs backwards",
+                "shell.width_mm = 16 to 10: from is above to; write from = 10, to = 16",
             ),
-            ("shell.width_mm", "[]", "shell.width_mm = [] is an empty axis"),
-            ("shell.width_mm", "[12, 12.0]", "shell.width_mm = 12.0 stands twice"),
-            ("shell.width_mm", "[-3]", "shell.width_mm = -3 is not accepted"),
-            ("shell.width_mm", "12", "shell.width_mm = 12 is no axis"),
-            ("shell.width_mm", "{ from = 10, to = 12 }", "shell.width_mm has neither step nor count"),
-            ("shell.width_mm", "{ from = 10, to = 12, step = 0 }", "shell.width_mm.step = 0 leads nowhere"),
-            ("shell.width_mm", "{ from = 10, to = 12, by = 1 }", "shell.width_mm.by is no key of a range"),
-            ("shell.width_mm", "{ from = 10, to = 200, step = 1 }", "shell.width_mm = 200.0 is not accepted"),
+            ("shell.width_mm", "[]", "shell.width_mm = []: empty axis; give at least one value"),
+            ("shell.width_mm", "[12, 12.0]", "shell.width_mm = 12.0: duplicate value"),
+            ("shell.width_mm", "[-3]", "shell.width_mm = -3: invalid value; give a number"),
+            ("shell.width_mm", "12", "shell.width_mm = 12: neither a list nor a range; write a list"),
+            ("shell.width_mm", "{ from = 10, to = 12 }", "shell.width_mm: range without step or count"),
+            ("shell.width_mm", "{ from = 10, to = 12, step = 0 }", "shell.width_mm.step = 0: not above 0"),
+            ("shell.width_mm", "{ from = 10, to = 12, by = 1 }", "shell.width_mm.by: unknown key of a range"),
+            ("shell.width_mm", "{ from = 10, to = 200, step = 1 }", "shell.width_mm = 200.0: invalid value"),
             (
                 "segment.grooves",
                 "{ from = 3, to = 5, count = 9 }",
-                "segment.grooves = 9 values from 3 to 5 holds",
+                "segment.grooves.count = 9: only 3 different values from 3 to 5; lower count to 3",
             ),
-            ("segment.grooves", "{ from = 3, to = 5, step = 0.5 }", "segment.grooves = 3.5 is not accepted"),
+            ("segment.grooves", "{ from = 3, to = 5, step = 0.5 }", "segment.grooves = 3.5: invalid value"),
         ] {
             let error = values(path, text).unwrap_err();
-            assert!(error.starts_with(expected), "{error}");
+            assert!(error.to_string().starts_with(expected), "{error}");
         }
     }
 }

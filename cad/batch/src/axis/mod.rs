@@ -1,33 +1,36 @@
-//! Axes of a sweep: the values that one field takes, or that several take together.
+//! Axes of a sweep: the values of one field, or of several fields together.
 //!
-//! A new way to write the values of a field is a file in `values` and its line there; a new table that lays axes is a file
-//! here and its line in `axis_tables!`.
+//! A new notation for the values of a field is a file in `values` with a line there. A new table
+//! with axes is a file here with a line in `axis_tables!`.
 
 mod values;
 
 use std::sync::Arc;
 
+use pinswitch_diagnostic::Diagnostic;
 use toml_edit::{Item, TableLike, Value};
 
-use super::source::SweepSource;
+use crate::diagnostics::field_error;
+use crate::source::SweepSource;
+use pinswitch_switch::config::Configuration;
 use pinswitch_switch::config::parameter::Parameter;
-use pinswitch_switch::config::{ConfigError, Configuration};
 
 pub use sample::{Method, unit_points};
 
 /// A parameter of the configuration.
 pub type ParameterRef = &'static Parameter<Configuration>;
 
-/// One dimension of a sweep: fields, and the values that they take together, row by row. Rows are put together when they
-/// are asked for: an axis of millions takes no memory.
+/// One dimension of a sweep: fields, and the values that they take together, row by row.
+///
+/// Rows are computed on request: an axis of millions of rows takes no memory.
 #[derive(Clone)]
 pub struct SweepAxis {
     /// The fields that vary.
     pub fields: Vec<ParameterRef>,
     count: u64,
     row: Arc<dyn Fn(u64) -> Vec<Value> + Send + Sync>,
-    /// What is left to check, row by row, once it is known that there are not too many.
-    check: Option<Arc<dyn Fn() -> Result<(), ConfigError> + Send + Sync>>,
+    /// Checks every row; deferred until the number of rows is known to be acceptable.
+    check: Option<Arc<dyn Fn() -> Result<(), Diagnostic> + Send + Sync>>,
 }
 
 impl SweepAxis {
@@ -39,25 +42,25 @@ impl SweepAxis {
         Self { fields, count, row: Arc::new(row), check: None }
     }
 
-    /// The same, with values that are still to be checked.
-    fn checked_by(self, check: impl Fn() -> Result<(), ConfigError> + Send + Sync + 'static) -> Self {
+    /// The same axis with values that [`Self::check`] checks.
+    fn with_check(self, check: impl Fn() -> Result<(), Diagnostic> + Send + Sync + 'static) -> Self {
         Self { check: Some(Arc::new(check)), ..self }
     }
 
-    /// Whether every row can be used. Takes time in proportion to their number.
+    /// Checks every row, in time proportional to their number.
     ///
     /// # Errors
-    /// [`ConfigError`] names the first value that its field does not accept.
-    pub(super) fn check(&self) -> Result<(), ConfigError> {
+    /// The first value that its field does not accept.
+    pub(super) fn check(&self) -> Result<(), Diagnostic> {
         self.check.as_ref().map_or(Ok(()), |check| check())
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// One value per field; `index` is below [`Self::count`].
+    /// Returns one value per field; `index` is below [`Self::count`].
     pub fn row(&self, index: u64) -> Vec<Value> {
         (self.row)(index)
     }
@@ -70,16 +73,16 @@ impl std::fmt::Debug for SweepAxis {
     }
 }
 
-/// A table of a sweep that lays axes.
+/// A table of a sweep that defines axes.
 pub(super) struct AxisTable {
     /// Its name.
     pub(super) name: &'static str,
-    /// Its keys; an empty list takes fields.
+    /// Its keys; an empty list means that its keys are fields.
     pub(super) keys: &'static [&'static str],
-    /// Its place among the axes: the table of the highest level varies fastest.
+    /// Its order among the axes: the table with the highest level varies fastest.
     level: u8,
-    /// The axes that it lays.
-    read: fn(&SweepSource, &Item) -> Result<Vec<SweepAxis>, ConfigError>,
+    /// Reads its axes.
+    read: fn(&SweepSource, &Item) -> Result<Vec<SweepAxis>, Diagnostic>,
 }
 
 /// Declares the files of the tables and their list.
@@ -87,7 +90,7 @@ macro_rules! axis_tables {
     ($($file:ident;)*) => {
         $(mod $file;)*
 
-        /// Every table that lays axes, in the order in which messages name them.
+        /// Every table that defines axes, in the order of messages.
         pub(super) const AXIS_TABLES: &[AxisTable] = &[$($file::TABLE),*];
     };
 }
@@ -98,11 +101,11 @@ axis_tables! {
     rows;
 }
 
-/// The axes of a sweep, the slowest first.
+/// Reads the axes of a sweep, the slowest first.
 ///
 /// # Errors
-/// [`ConfigError`] for what is wrong in a table, a field that varies twice, or no axis.
-pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<SweepAxis>, ConfigError> {
+/// An invalid table, a field that varies twice, and a sweep without axes.
+pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<SweepAxis>, Diagnostic> {
     let mut tables: Vec<&AxisTable> = AXIS_TABLES.iter().collect();
     tables.sort_by_key(|table| table.level);
     let mut axes = Vec::new();
@@ -111,27 +114,27 @@ pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<Sw
             axes.extend((table.read)(source, item)?);
         }
     }
-    no_field_twice(&axes).map_err(|e| e.at(source.place(None)))?;
+    check_fields_differ(&axes).map_err(|e| source.locate(e, None))?;
     if axes.is_empty() {
-        let problem = format!("is empty: no {}", table_names("or"));
-        return Err(config_error("sweep", None, &problem, "name at least one field with its values")
-            .at(source.place(None)));
+        let problem = format!("the sweep has no axes ({})", table_names("or"));
+        let error = Diagnostic::new(problem).with_help("add at least one field with its values");
+        return Err(source.locate(error, None));
     }
     Ok(axes)
 }
 
-fn no_field_twice(axes: &[SweepAxis]) -> Result<(), ConfigError> {
-    let all: Vec<_> = axes.iter().flat_map(|l| l.fields.iter().map(|f| f.path())).collect();
+fn check_fields_differ(axes: &[SweepAxis]) -> Result<(), Diagnostic> {
+    let all: Vec<_> = axes.iter().flat_map(|axis| axis.fields.iter().map(|f| f.path())).collect();
     match all.iter().enumerate().find(|(i, path)| all[..*i].contains(path)) {
         Some((_, path)) => {
-            let remedy = format!("keep it in one of {}, and name it once", table_names("and"));
-            Err(config_error(path, None, "varies twice", &remedy))
+            let help = format!("keep it in one of {}, and only once", table_names("and"));
+            Err(field_error(path, None, "the field varies twice", help))
         }
         None => Ok(()),
     }
 }
 
-/// The tables in words, such as `[axes], [sample] and [rows]`.
+/// Returns the tables as text, such as `[axes], [sample] and [rows]`.
 fn table_names(conjunction: &str) -> String {
     let names: Vec<_> = AXIS_TABLES.iter().map(|table| format!("[{}]", table.name)).collect();
     match names.split_last() {
@@ -140,13 +143,14 @@ fn table_names(conjunction: &str) -> String {
     }
 }
 
-/// Fields of a table, whether written `"shell.width_mm" = ..` or as `[axes.shell] width_mm = ..`.
+/// Returns the fields of a table, whether written `"shell.width_mm" = ..` or as `[axes.shell]
+/// width_mm = ..`.
 pub(super) fn fields(table: Option<&dyn TableLike>) -> Vec<(String, &Item)> {
     let mut all = Vec::new();
     for (key, item) in table.into_iter().flat_map(|t| t.iter()) {
         match item.as_table_like() {
-            // A range is a table too: its keys are no fields of a section.
-            Some(inner) if !key.contains('.') && !values::is_written(item) => {
+            // A range is a table, too: its keys are not fields of a section.
+            Some(inner) if !key.contains('.') && !values::is_range_or_list(item) => {
                 all.extend(inner.iter().map(|(k, item)| (format!("{key}.{k}"), item)));
             }
             _ => all.push((key.to_owned(), item)),
@@ -155,19 +159,15 @@ pub(super) fn fields(table: Option<&dyn TableLike>) -> Vec<(String, &Item)> {
     all
 }
 
-/// The field called `path`.
+/// Returns the field with this path.
 ///
 /// # Errors
-/// [`ConfigError`] for a field that does not exist, or that a batch sets itself.
-pub(super) fn field(path: &str) -> Result<ParameterRef, ConfigError> {
+/// An unknown field, and a field that the batch sets itself.
+pub(super) fn field(path: &str) -> Result<ParameterRef, Diagnostic> {
     let all = Configuration::PARAMETERS;
     if path == "switch.name" {
-        return Err(config_error(
-            path,
-            None,
-            "is set by the batch itself, to each variant's id",
-            "leave it out",
-        ));
+        let problem = "a sweep cannot set the name (each variant's name is its id)";
+        return Err(field_error(path, None, problem, "remove it"));
     }
     all.iter().find(|p| p.path() == path).ok_or_else(|| {
         let near = all
@@ -175,17 +175,13 @@ pub(super) fn field(path: &str) -> Result<ParameterRef, ConfigError> {
             .map(|p| p.path())
             .max_by(|a, b| strsim::jaro_winkler(path, a).total_cmp(&strsim::jaro_winkler(path, b)));
         let near = near.unwrap_or_default();
-        config_error(
-            path,
-            None,
-            "is no known field",
-            &format!("did you mean \"{near}\"? templates/reference.toml lists all"),
-        )
+        let help = format!("did you mean \"{near}\"? templates/reference.toml lists all fields");
+        field_error(path, None, "unknown field", help)
     })
 }
 
-/// Whether `field` takes numbers, and if so whether they are whole.
-pub(super) fn numeric(field: ParameterRef) -> Option<bool> {
+/// Returns whether the numbers of `field` are whole; `None` if it does not take numbers.
+pub(super) fn is_whole(field: ParameterRef) -> Option<bool> {
     match (field.get)(&Configuration::default()) {
         Value::Integer(_) => Some(true),
         Value::Float(_) => Some(false),
@@ -193,26 +189,15 @@ pub(super) fn numeric(field: ParameterRef) -> Option<bool> {
     }
 }
 
-/// `value`, if `field` accepts it; in the field's own type.
+/// Converts `value` to the type of the field.
 ///
 /// # Errors
-/// [`ConfigError`] with the accepted range.
-pub(super) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, ConfigError> {
+/// A value that the field does not accept, with the accepted range.
+pub(super) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, Diagnostic> {
     let mut scratch = Configuration::default();
-    (field.set)(&mut scratch, value).map_err(|remedy| {
-        ConfigError::new(field.path(), value.clone().decorated("", "").to_string(), remedy)
+    (field.set)(&mut scratch, value).map_err(|help| {
+        let value = value.clone().decorated("", "").to_string();
+        field_error(&field.path(), Some(&value), "invalid value", help)
     })?;
     Ok((field.get)(&scratch))
-}
-
-/// An error in an axis.
-pub(super) fn config_error(field: &str, value: Option<&str>, problem: &str, remedy: &str) -> ConfigError {
-    ConfigError {
-        field: field.to_owned(),
-        value: value.map(|v| v.trim().to_owned()),
-        problem: problem.to_owned(),
-        remedy: remedy.to_owned(),
-        changes: Vec::new(),
-        place: None,
-    }
 }

@@ -1,63 +1,68 @@
-//! `[sample]`: seeded samples, Latin hypercube (McKay, Beckman and Conover 1979) and plain random.
+//! `[sample]`: seeded samples, either a Latin hypercube (McKay, Beckman and Conover 1979) or
+//! independent random points.
 
 use std::sync::OnceLock;
 
+use pinswitch_diagnostic::Diagnostic;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use toml_edit::{Item, TableLike};
 
 use super::values::{self, Sampler};
-use super::{AxisTable, SweepAxis, config_error, fields};
+use super::{AxisTable, SweepAxis, fields};
+use crate::diagnostics::field_error;
 use crate::source::SweepSource;
-use pinswitch_switch::config::ConfigError;
 
-/// The table of a sample: one axis of as many rows as it has points.
+/// The table of a sample: one axis with a row for each point.
 pub(super) const TABLE: AxisTable =
     AxisTable { name: "sample", keys: &["method", "count", "seed", "axes"], level: 2, read };
 
-/// Number of points beyond which a count is taken for a typing error.
+/// Most points; a larger count is taken for a typing error.
 const MAX_COUNT: usize = 10_000_000;
 
-/// How points are drawn.
+/// Sampling method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Every axis is cut into as many strata as there are points, and each stratum holds one point.
+    /// Each axis is divided into as many strata as there are points, and each stratum contains one
+    /// point.
     LatinHypercube,
-    /// Every coordinate on its own.
+    /// Independent, uniformly distributed coordinates.
     Random,
 }
 
-/// Points of the unit cube; the same seed gives the same points on every machine. Nothing is drawn before the first is
-/// asked for, and only the order of the strata is kept: four bytes a point and axis.
+/// Points of the unit cube. The same seed gives the same points on every machine.
+///
+/// Points are generated on request; only the order of the strata is kept, in four bytes per point
+/// and axis.
 #[derive(Debug)]
 struct UnitPoints {
     method: Method,
     count: usize,
     axes: usize,
     seed: u64,
-    draws: OnceLock<Vec<AxisDraw>>,
+    axis_draws: OnceLock<Vec<AxisDraw>>,
 }
 
 /// The coordinates along one axis.
 #[derive(Debug)]
 struct AxisDraw {
-    /// The stratum of every point; empty if there are none.
+    /// The stratum of every point; empty for independent points.
     strata: Vec<u32>,
-    /// The generator where the first coordinate is drawn.
+    /// The generator in front of the first coordinate.
     random: ChaCha8Rng,
 }
 
-/// Words of the generator that a coordinate takes.
+/// Words of the generator per coordinate.
 const WORDS_PER_COORDINATE: u128 = 2;
 
 impl UnitPoints {
     fn new(method: Method, count: usize, axes: usize, seed: u64) -> Self {
-        Self { method, count, axes, seed, draws: OnceLock::new() }
+        Self { method, count, axes, seed, axis_draws: OnceLock::new() }
     }
 
-    fn draws(&self) -> &[AxisDraw] {
-        self.draws.get_or_init(|| {
+    fn axis_draws(&self) -> &[AxisDraw] {
+        self.axis_draws.get_or_init(|| {
             let mut random = ChaCha8Rng::seed_from_u64(self.seed);
             (0..self.axes)
                 .map(|_| {
@@ -74,7 +79,7 @@ impl UnitPoints {
         })
     }
 
-    /// Point `index`, which is below the count.
+    /// Returns the point with this index, which is below the count.
     fn point(&self, index: u64) -> Vec<f64> {
         let coordinate = |draw: &AxisDraw| {
             let mut random = draw.random.clone();
@@ -86,70 +91,68 @@ impl UnitPoints {
                 None => within,
             }
         };
-        self.draws().iter().map(coordinate).collect()
+        self.axis_draws().iter().map(coordinate).collect()
     }
 }
 
-/// `count` points of the unit cube in `axes` dimensions; the same seed gives the same points on every machine.
+/// Returns `count` points of the unit cube in `axes` dimensions. The same seed gives the same
+/// points on every machine.
 pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
     let points = UnitPoints::new(method, count, axes, seed);
     (0..count as u64).map(|index| points.point(index)).collect()
 }
 
-fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
+fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, Diagnostic> {
     let Some(table) = item.as_table_like() else { return Ok(Vec::new()) };
-    let axis = sampled(table).map_err(|e| e.at(source.place(item.span())))?;
+    let axis = axis(table).map_err(|e| source.locate(e, item.span()))?;
     Ok(vec![axis])
 }
 
-fn sampled(table: &dyn TableLike) -> Result<SweepAxis, ConfigError> {
+fn axis(table: &dyn TableLike) -> Result<SweepAxis, Diagnostic> {
     let whole = |key: &str| table.get(key).and_then(Item::as_integer);
     let method = match table.get("method").and_then(Item::as_str) {
         Some("latin-hypercube") | None => Method::LatinHypercube,
         Some("random") => Method::Random,
         Some(other) => {
             let value = format!("{other:?}");
-            let remedy = "give \"latin-hypercube\" or \"random\"";
-            return Err(config_error("sample.method", Some(&value), "is no method", remedy));
+            let help = "give \"latin-hypercube\" or \"random\"";
+            return Err(field_error("sample.method", Some(&value), "unknown method", help));
         }
     };
     let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
     if count > MAX_COUNT {
         let value = count.to_string();
-        return Err(config_error("sample.count", Some(&value), "is over ten million", "lower it"));
+        let problem = format!("more than {MAX_COUNT} points");
+        return Err(field_error("sample.count", Some(&value), problem, "lower it"));
     }
     let seed = whole("seed").unwrap_or(0).unsigned_abs();
     let axes = fields(table.get("axes").and_then(Item::as_table_like));
     sample(method, count, seed, axes.iter().map(|(path, item)| (path.as_str(), *item)))
 }
 
-/// The rows of a sample over `axes`: lists are choices, ranges are continuous, on a grid if they give `step`.
+/// Samples `axes`: lists are choices; ranges are continuous, or a grid if they have a `step`.
 ///
 /// # Errors
-/// [`ConfigError`] for an axis that cannot be sampled.
+/// An axis that cannot be sampled, and a sample without points or axes.
 fn sample<'a>(
     method: Method,
     count: usize,
     seed: u64,
     axes: impl Iterator<Item = (&'a str, &'a Item)>,
-) -> Result<SweepAxis, ConfigError> {
+) -> Result<SweepAxis, Diagnostic> {
     let mut fields = Vec::new();
     let mut samplers: Vec<Sampler> = Vec::new();
     for (path, item) in axes {
         let field = super::field(path)?;
-        samplers.push((values::kind(field, item)?.sampler)(field, item)?);
+        samplers.push((values::notation(field, item)?.sampler)(field, item)?);
         fields.push(field);
     }
     if fields.is_empty() || count == 0 {
-        return Err(config_error(
-            "sample",
-            None,
-            "is empty",
-            "give count and at least one field under [sample.axes]",
-        ));
+        let error = Diagnostic::new("the sample has no points or no axes");
+        return Err(error.with_help("give sample.count and at least one field under [sample.axes]"));
     }
     let points = UnitPoints::new(method, count, fields.len(), seed);
-    // Whatever lies between the ends of a range is accepted: the axes were looked at when they were read.
+    // The ends of every range were checked above, and all values between them are valid.
     Ok(SweepAxis::new(fields, count as u64, move |index| {
         points.point(index).iter().zip(&samplers).map(|(share, sampler)| sampler(*share)).collect()
     }))
@@ -162,7 +165,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_latin_hypercube_puts_one_point_in_every_stratum(count in 1usize..60, axes in 1usize..6, seed: u64) {
+        fn each_stratum_contains_one_point(count in 1usize..60, axes in 1usize..6, seed: u64) {
             let points = unit_points(Method::LatinHypercube, count, axes, seed);
             for axis in 0..axes {
                 let mut strata: Vec<_> = points.iter().map(|p| (p[axis] * count as f64) as usize).collect();
@@ -172,8 +175,8 @@ mod tests {
         }
     }
 
-    /// As points were drawn when all of them were kept: their bytes stay.
-    fn drawn_in_order(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
+    /// The same points, generated all at once in their order.
+    fn points_in_order(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut points = vec![vec![0.0; axes]; count];
         for axis in 0..axes {
@@ -193,28 +196,31 @@ mod tests {
     }
 
     #[test]
-    fn points_asked_for_one_by_one_are_those_drawn_in_order() {
+    fn single_points_equal_the_sequence() {
         for method in [Method::LatinHypercube, Method::Random] {
             for (count, axes, seed) in [(1, 1, 0), (2, 3, 9), (17, 4, 1), (1000, 2, 5)] {
-                assert_eq!(unit_points(method, count, axes, seed), drawn_in_order(method, count, axes, seed));
+                assert_eq!(
+                    unit_points(method, count, axes, seed),
+                    points_in_order(method, count, axes, seed)
+                );
             }
         }
     }
 
     #[test]
-    fn the_seed_decides() {
-        let draw = |seed| unit_points(Method::Random, 5, 2, seed);
-        assert_eq!(draw(1), draw(1));
-        assert_ne!(draw(1), draw(2));
+    fn seeds_determine_points() {
+        let points = |seed| unit_points(Method::Random, 5, 2, seed);
+        assert_eq!(points(1), points(1));
+        assert_ne!(points(1), points(2));
     }
 
     #[test]
-    fn values_lie_in_their_ranges_and_on_their_grid() {
+    fn samples_respect_ranges_and_grids() {
         let width: Item = Item::Value("{ from = 10, to = 12.3, step = 0.5 }".parse().unwrap());
         let slots: Item = Item::Value("[\"all\", \"occupied\"]".parse().unwrap());
         let axes = [("shell.width_mm", &width), ("support.slots", &slots)];
-        let level = sample(Method::LatinHypercube, 40, 3, axes.into_iter()).unwrap();
-        let rows: Vec<_> = (0..level.count()).map(|i| level.row(i)).collect();
+        let axis = sample(Method::LatinHypercube, 40, 3, axes.into_iter()).unwrap();
+        let rows: Vec<_> = (0..axis.count()).map(|i| axis.row(i)).collect();
         for row in &rows {
             let x = row[0].as_float().unwrap();
             assert!((10.0..=12.0).contains(&x) && (x * 2.0).fract() == 0.0, "{x}");

@@ -1,5 +1,6 @@
-//! The object stores of the three clouds, by URL and by the variables that their own tools read.
+//! The object stores of three clouds, by URL and the environment variables of their own tools.
 
+use std::error::Error;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -10,48 +11,60 @@ use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreScheme, RetryConfig};
 use url::Url;
 
-/// How often a request is repeated, after pauses of 0.1 s, 0.2 s and so on; then the run stops, to be taken up later.
+use super::{DestinationError, unknown_store};
+
+/// Retries of a request, after pauses of 0.1 s, 0.2 s and so on; then the run stops, and can be
+/// resumed.
 const RETRIES: usize = 5;
-/// Longest time that repeating goes on.
+/// Longest time for all retries of a request.
 const RETRY_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Builds a store: the URL, the variables of its cloud that it knows, and how to repeat.
+/// Builds a store from its URL and the known variables of its cloud.
 macro_rules! store {
     ($builder:ty, $key:ty, $prefix:literal, $url:expr) => {{
         let builder = <$builder>::new().with_url($url.to_string()).with_retry(retry());
         let known = variables($prefix).filter_map(|(name, value)| Some((name.parse::<$key>().ok()?, value)));
         let builder = known.fold(builder, |builder, (key, value)| builder.with_config(key, value));
-        builder.build().map(|store| Arc::new(store) as Arc<dyn ObjectStore>).map_err(|e| e.to_string())
+        builder
+            .build()
+            .map(|store| Arc::new(store) as Arc<dyn ObjectStore>)
+            .map_err(|e| invalid_url($url.as_str(), e))
     }};
 }
 
-/// The store and the place in it that `text` names, such as `s3://bucket/sweep`.
+/// Opens the store of a URL such as `s3://bucket/sweep`; returns it with the path in it.
 ///
 /// # Errors
-/// Why there is none.
-pub(super) fn open(text: &str) -> Result<(Arc<dyn ObjectStore>, Path), String> {
-    // Who does the encryption is settled once for the process, before a client is made: only the first call takes effect.
+/// A URL of an unknown store, and a store with invalid settings.
+pub(super) fn open(text: &str) -> Result<(Arc<dyn ObjectStore>, Path), DestinationError> {
+    // The provider of encryption is set once per process, before the first client; later calls have
+    // no effect.
     let _ = rustls::crypto::ring::default_provider().install_default();
-    let url = Url::parse(text).map_err(|e| e.to_string())?;
-    let (scheme, place) = ObjectStoreScheme::parse(&url).map_err(|e| e.to_string())?;
+    let url = Url::parse(text).map_err(|e| invalid_url(text, e))?;
+    let (scheme, path) = ObjectStoreScheme::parse(&url).map_err(|e| invalid_url(text, e))?;
     let store = match scheme {
         ObjectStoreScheme::AmazonS3 => store!(AmazonS3Builder, AmazonS3ConfigKey, "AWS_", url),
         ObjectStoreScheme::GoogleCloudStorage => {
             store!(GoogleCloudStorageBuilder, GoogleConfigKey, "GOOGLE_", url)
         }
         ObjectStoreScheme::MicrosoftAzure => store!(MicrosoftAzureBuilder, AzureConfigKey, "AZURE_", url),
-        _ => Err("it is no store".to_owned()),
+        _ => Err(unknown_store(text, "unknown store")),
     };
-    Ok((store?, place))
+    Ok((store?, path))
+}
+
+/// The error of a URL or of the settings of its store.
+fn invalid_url(url: &str, error: impl Error + Send + Sync + 'static) -> DestinationError {
+    unknown_store(url, error.to_string()).with_source(error)
 }
 
 fn retry() -> RetryConfig {
     RetryConfig { max_retries: RETRIES, retry_timeout: RETRY_TIMEOUT, ..RetryConfig::default() }
 }
 
-/// The variables with this prefix, in lower case, as the keys of a store are named.
+/// Returns the environment variables with this prefix, in lower case like the keys of a store.
 fn variables(prefix: &'static str) -> impl Iterator<Item = (String, String)> {
-    // A variable that is no text concerns no store.
+    // Variables of stores are UTF-8.
     std::env::vars_os()
         .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)))
         .filter(move |(name, _)| name.starts_with(prefix))

@@ -1,4 +1,4 @@
-//! A folder of this machine, or of a network: temporary files beside the batch, renames, hard links, and a lock.
+//! A local or network folder: temporary files in the same folder, renames, hard links, and a lock.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{DestinationError, PARTIAL};
 
-/// A folder, with a folder inside it for files that are not yet whole.
+/// A folder with a subfolder for unfinished files.
 #[derive(Debug)]
 pub struct Folder {
     pub(super) root: PathBuf,
@@ -17,41 +17,41 @@ pub struct Folder {
 
 /// A lock on a destination; dropping it removes the folder for unfinished files.
 #[derive(Debug)]
-pub struct DestinationLock(Option<HeldFolder>);
+pub struct DestinationLock(Option<LockedFolder>);
 
 /// A locked folder.
 #[derive(Debug)]
-struct HeldFolder {
-    /// Held until all else is dropped.
+struct LockedFolder {
+    /// Keeps the lock until the folder is removed.
     _file: File,
     partial: PathBuf,
-    /// Folders that were made for the lock, the innermost first.
-    made: Vec<PathBuf>,
+    /// Folders that were created for the lock, the innermost first.
+    created: Vec<PathBuf>,
 }
 
 impl DestinationLock {
+    /// The lock of a destination that needs none.
     #[cfg(feature = "cloud")]
-    /// For a destination that needs none.
-    pub(super) fn not_needed() -> Self {
+    pub(super) fn unlocked() -> Self {
         Self(None)
     }
 }
 
 impl Drop for DestinationLock {
     fn drop(&mut self) {
-        if let Some(held) = &self.0 {
-            // What cannot be removed is removed by the next run.
-            let _ = std::fs::remove_dir_all(&held.partial);
-            for folder in &held.made {
-                // Only an empty one goes.
+        if let Some(locked) = &self.0 {
+            // The next run removes the remaining files.
+            let _ = std::fs::remove_dir_all(&locked.partial);
+            for folder in &locked.created {
+                // Fails for a folder that is not empty, as intended.
                 let _ = std::fs::remove_dir(folder);
             }
         }
     }
 }
 
-/// `Ok(None)` for a missing file, or one whose folder is something else.
-fn found<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
+/// Returns `Ok(None)` for a missing file, or one whose folder is not a folder.
+fn if_exists<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
     match outcome {
         Ok(value) => Ok(Some(value)),
         Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(None),
@@ -59,7 +59,8 @@ fn found<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
     }
 }
 
-/// Temporary files are private; what takes a name is an ordinary file.
+/// A builder of temporary files with the permissions of ordinary files: temporary files are private
+/// by default.
 #[cfg(unix)]
 pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
@@ -67,77 +68,76 @@ pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-/// What takes a name is an ordinary file.
+/// A builder of temporary files.
 #[cfg(not(unix))]
 pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     tempfile::Builder::new()
 }
 
-/// Whether `path` is, or lies in, a link that leads nowhere or to itself: the system says only that something is there.
-pub fn is_dead_link(path: &Path) -> bool {
-    let is_link = |path: &Path| std::fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink());
+/// Returns whether `path` or a parent of it is a dangling or cyclic symlink; for these, the system
+/// reports only that a file exists.
+pub fn is_dangling_symlink(path: &Path) -> bool {
+    let is_link = |path: &Path| std::fs::symlink_metadata(path).is_ok_and(|file| file.is_symlink());
     path.ancestors().any(|path| is_link(path) && std::fs::metadata(path).is_err())
 }
 
-/// What to do about the file or folder at `path`, which cannot be written.
-pub fn remedy_at(path: &Path, error: &std::io::Error) -> &'static str {
-    if is_dead_link(path) { "remove it, or give another --out" } else { remedy(error) }
-}
-
-pub(crate) fn remedy(error: &std::io::Error) -> &'static str {
+/// Returns the remedy for a file or folder at `path` that cannot be written.
+pub fn write_help(path: &Path, error: &std::io::Error) -> &'static str {
+    if is_dangling_symlink(path) {
+        return "remove it, or give another --out";
+    }
     match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
-            "a file stands where a folder must be: move it away, or give another --out"
+            "a file is in place of a folder: move it away, or give another --out"
         }
-        ErrorKind::IsADirectory => {
-            "a folder stands where a file must be: move it away, or give another --out"
-        }
-        ErrorKind::WouldBlock => "wait for it or end it, or give another --out",
-        ErrorKind::NotFound => "make its folder, or give another --out",
+        ErrorKind::IsADirectory => "a folder is in place of a file: move it away, or give another --out",
+        ErrorKind::WouldBlock => "wait for the other run or end it, or give another --out",
+        ErrorKind::NotFound => "create its folder, or give another --out",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or give another --out",
-        ErrorKind::InvalidFilename => "give a shorter --out, without characters that the system refuses",
+        ErrorKind::InvalidFilename => "give a shorter --out without characters that the system refuses",
         _ => "give an --out that can be written",
     }
 }
 
 impl Folder {
-    /// The folder `root`, whether it is there or not.
+    /// The folder `root`, which need not exist.
     pub(super) fn new(root: &str, partial: &str) -> Self {
         let root = PathBuf::from(root);
         Self { partial: root.join(partial), root, counter: AtomicU64::new(0) }
     }
 
-    pub(super) fn failed(&self, name: &str, error: &std::io::Error) -> DestinationError {
+    /// The error of a system call on file `name`; an empty name is the folder itself.
+    pub(super) fn error(&self, name: &str, error: std::io::Error) -> DestinationError {
         use ErrorKind::{PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
         let is_fatal =
             matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
-        let place = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
-        let problem = if is_dead_link(&place) {
-            "cannot use it: a link that leads nowhere stands there".to_owned()
+        let path = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
+        let problem = if is_dangling_symlink(&path) {
+            "the path is a dangling symlink".to_owned()
         } else {
-            format!("cannot use it: {error}")
+            format!("cannot use the path: {error}")
         };
-        let remedy = remedy_at(&place, error);
-        DestinationError { place: place.display().to_string(), problem, remedy, is_fatal }
+        let help = write_help(&path, &error);
+        DestinationError::new(path.display().to_string(), problem, help, is_fatal).with_source(error)
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {
-        found(std::fs::read(self.root.join(name)))
+        if_exists(std::fs::read(self.root.join(name)))
     }
 
     pub(super) fn size(&self, name: &str) -> std::io::Result<Option<u64>> {
-        Ok(found(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.len()))
+        Ok(if_exists(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.len()))
     }
 
     pub(super) fn put(&self, name: &str, bytes: &[u8]) -> std::io::Result<()> {
         let scratch = self.scratch();
         let written = File::create(&scratch).and_then(|mut file| file.write_all(bytes));
-        let moved = written.and_then(|()| place(&scratch, &self.root.join(name)));
-        if moved.is_err() {
-            // On a full disk the space is freed at once.
+        let renamed = written.and_then(|()| rename(&scratch, &self.root.join(name)));
+        if renamed.is_err() {
+            // Frees space on a full disk.
             let _ = std::fs::remove_file(&scratch);
         }
-        moved
+        renamed
     }
 
     pub(super) fn link(&self, content: &str, name: &str) -> std::io::Result<()> {
@@ -151,14 +151,15 @@ impl Folder {
         };
         match linked {
             Err(e) if matches!(e.kind(), ErrorKind::StorageFull | ErrorKind::NotADirectory) => Err(e),
-            // An older file is there, the number of links is at its limit, or the file system has no hard links.
+            // An older file exists, the limit of links is reached, or the file system has no hard
+            // links.
             Err(_) => {
                 let scratch = self.scratch();
                 if std::fs::hard_link(&content, &scratch).is_err() {
                     std::fs::copy(&content, &scratch)?;
                 }
-                place(&scratch, &target)?;
-                // Renaming a link onto another link of the same file does nothing, and leaves both.
+                rename(&scratch, &target)?;
+                // Renaming a link to another link of the same file does nothing, and leaves both.
                 let _ = std::fs::remove_file(&scratch);
                 Ok(())
             }
@@ -181,25 +182,29 @@ impl Folder {
         file.persist(&target).map(drop).map_err(|e| e.error)
     }
 
-    /// Whether `name` is a folder; `None` if there is nothing.
+    /// Returns whether `name` is a folder; `None` if it does not exist.
     pub(super) fn is_folder(&self, name: &str) -> std::io::Result<Option<bool>> {
-        Ok(found(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.is_dir()))
+        Ok(if_exists(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.is_dir()))
     }
 
-    /// What stands directly in `folder`, and whether it is a folder.
+    /// Lists the entries of `folder`, each with whether it is a folder.
     pub(super) fn entries(&self, folder: &str) -> std::io::Result<Vec<(String, bool)>> {
-        let Some(entries) = found(std::fs::read_dir(self.root.join(folder)))? else { return Ok(Vec::new()) };
+        let Some(entries) = if_exists(std::fs::read_dir(self.root.join(folder)))? else {
+            return Ok(Vec::new());
+        };
         let named = entries.filter_map(Result::ok);
         Ok(named.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
     }
 
     pub(super) fn folders(&self, folder: &str) -> std::io::Result<Vec<String>> {
-        let Some(entries) = found(std::fs::read_dir(self.root.join(folder)))? else { return Ok(Vec::new()) };
+        let Some(entries) = if_exists(std::fs::read_dir(self.root.join(folder)))? else {
+            return Ok(Vec::new());
+        };
         let folders = entries.filter_map(Result::ok).filter(|e| e.path().is_dir());
         Ok(folders.map(|e| e.file_name().to_string_lossy().into_owned()).collect())
     }
 
-    /// Whether there is nothing but unfinished files.
+    /// Returns whether the folder contains unfinished files at most.
     pub(super) fn is_empty(&self) -> std::io::Result<bool> {
         let entries = match std::fs::read_dir(&self.root) {
             Err(e) if e.kind() == ErrorKind::NotFound => return Ok(true),
@@ -209,19 +214,22 @@ impl Folder {
         Ok(names.all(|name| name.to_string_lossy().starts_with(PARTIAL)))
     }
 
-    /// `None` if another process holds the same shard. Unfinished files of a killed run are removed.
+    /// Locks the folder for one shard, and removes unfinished files of a killed run; `None` if
+    /// another process has the lock.
     pub(super) fn lock(&self) -> std::io::Result<Option<DestinationLock>> {
-        let there = |path: &&Path| path.as_os_str().is_empty() || path.exists();
-        let made: Vec<_> = self.root.ancestors().take_while(|p| !there(p)).map(Path::to_owned).collect();
+        let exists = |path: &&Path| path.as_os_str().is_empty() || path.exists();
+        let created: Vec<_> =
+            self.root.ancestors().take_while(|path| !exists(path)).map(Path::to_owned).collect();
         std::fs::create_dir_all(&self.partial)?;
         let path = self.partial.join("lock");
-        let lock = File::create(&path)?;
-        if lock.try_lock().is_err() {
+        let file = File::create(&path)?;
+        if file.try_lock().is_err() {
             return Ok(None);
         }
-        // A run that ended just now has removed the file that was opened here: it locks nothing any more.
-        let held = same_file::Handle::from_file(lock.try_clone()?)?;
-        if same_file::Handle::from_path(&path).ok().as_ref() != Some(&held) {
+        // A run that ended in the meantime has removed the file that was opened here: locking it
+        // has no effect.
+        let opened = same_file::Handle::from_file(file.try_clone()?)?;
+        if same_file::Handle::from_path(&path).ok().as_ref() != Some(&opened) {
             return Ok(None);
         }
         for entry in std::fs::read_dir(&self.partial)?.filter_map(Result::ok) {
@@ -229,17 +237,17 @@ impl Folder {
                 std::fs::remove_file(entry.path())?;
             }
         }
-        Ok(Some(DestinationLock(Some(HeldFolder { _file: lock, partial: self.partial.clone(), made }))))
+        Ok(Some(DestinationLock(Some(LockedFolder { _file: file, partial: self.partial.clone(), created }))))
     }
 
-    /// A name for a file that is not yet whole.
+    /// Returns the path of a new unfinished file.
     fn scratch(&self) -> PathBuf {
         self.partial.join(self.counter.fetch_add(1, Ordering::Relaxed).to_string())
     }
 }
 
-/// Renames, and makes the folder only when it turns out to be missing.
-fn place(scratch: &Path, target: &Path) -> std::io::Result<()> {
+/// Renames a file, and creates the target's folder if it is missing.
+fn rename(scratch: &Path, target: &Path) -> std::io::Result<()> {
     match std::fs::rename(scratch, target) {
         Err(e) if e.kind() == ErrorKind::NotFound => {
             target.parent().map_or(Ok(()), std::fs::create_dir_all)?;

@@ -1,4 +1,5 @@
-//! Where a batch is written: a folder, or an object store. Every file appears whole or not at all.
+//! Destinations of a batch: a folder, or an object store. A file is written completely or not at
+//! all.
 
 #[cfg(feature = "cloud")]
 mod cloud;
@@ -6,61 +7,95 @@ mod folder;
 #[cfg(feature = "cloud")]
 mod store;
 
+use std::error::Error;
 #[cfg(feature = "cloud")]
 use std::sync::Arc;
 
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
+use pinswitch_diagnostic::{Diagnostic, Location};
 
-pub(crate) use folder::remedy;
-pub use folder::{DestinationLock, Folder, is_dead_link, remedy_at, temporary_file};
+pub use folder::{DestinationLock, Folder, is_dangling_symlink, temporary_file, write_help};
 #[cfg(feature = "cloud")]
 pub use store::Store;
 
-/// Prefix of folders for files that are not yet whole.
+/// Prefix of folders for unfinished files.
 pub(super) const PARTIAL: &str = ".partial-";
 
-/// A place that cannot be read or written.
-#[derive(Debug, thiserror::Error)]
-#[error("{place}: {problem}; {remedy}")]
+/// A path of a destination that cannot be read or written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{diagnostic}")]
 pub struct DestinationError {
-    /// The file, with its destination.
-    pub place: String,
-    /// What went wrong.
-    pub problem: String,
-    /// What to do about it.
-    pub remedy: &'static str,
-    /// Whether every other file would fail too: a full disk, a read-only folder.
-    pub is_fatal: bool,
+    diagnostic: Diagnostic,
+    help: &'static str,
+    is_fatal: bool,
 }
 
-/// A destination of files, named by relative paths with `/`.
+impl DestinationError {
+    /// An error at a file with its destination; `is_fatal` if every other file would fail, too.
+    fn new(path: String, problem: impl Into<String>, help: &'static str, is_fatal: bool) -> Self {
+        let diagnostic = Diagnostic::new(problem).with_location(Location::file(path)).with_help(help);
+        Self { diagnostic, help, is_fatal }
+    }
+
+    /// The error of temporary files on this machine.
+    pub(super) fn temporary(error: std::io::Error) -> Self {
+        let problem = format!("cannot use the temporary folder: {error}");
+        let help = "make room for temporary files on this machine";
+        let diagnostic = Diagnostic::new(problem).with_help(help).with_source(error);
+        Self { diagnostic, help, is_fatal: true }
+    }
+
+    fn with_source(self, source: impl Error + Send + Sync + 'static) -> Self {
+        Self { diagnostic: self.diagnostic.with_source(source), ..self }
+    }
+
+    /// Returns the remedy.
+    pub fn help(&self) -> &'static str {
+        self.help
+    }
+
+    /// Returns whether every other file would fail, too, as on a full disk or in a read-only
+    /// folder.
+    pub fn is_fatal(&self) -> bool {
+        self.is_fatal
+    }
+}
+
+impl From<DestinationError> for Diagnostic {
+    fn from(error: DestinationError) -> Self {
+        error.diagnostic
+    }
+}
+
+/// A destination of files, which have relative paths with `/`.
 #[derive(Debug)]
 pub enum Destination {
-    /// A folder of this machine, or of a network.
+    /// A local or network folder.
     Folder(Folder),
-    /// An object store; equal files are kept once and named by the manifests.
+    /// An object store. Equal files are stored once, and manifests contain their paths.
     #[cfg(feature = "cloud")]
     Store(Store),
 }
 
 /// Forwards a call to the folder or the store, and adds the file's name to its error.
-macro_rules! ask {
-    ($destination:expr, $name:expr, $place:ident => $answer:expr) => {
+macro_rules! forward {
+    ($destination:expr, $name:expr, $place:ident => $call:expr) => {
         match $destination {
-            Destination::Folder($place) => $answer.map_err(|e| $place.failed($name, &e)),
+            Destination::Folder($place) => $call.map_err(|e| $place.error($name, e)),
             #[cfg(feature = "cloud")]
-            Destination::Store($place) => $answer.map_err(|e| $place.failed($name, &e)),
+            Destination::Store($place) => $call.map_err(|e| $place.error($name, e)),
         }
     };
 }
 
 impl Destination {
-    /// A folder's path, also as a `file://` URL, or, with the feature `cloud`, a URL such as `s3://bucket/sweep`.
-    /// `partial` names the folder for files that are not yet whole: one per running process.
+    /// Opens the path or `file://` URL of a folder or, with the feature `cloud`, a URL such as
+    /// `s3://bucket/sweep`. `partial` is the name of the folder for unfinished files, which no
+    /// other running process uses.
     ///
     /// # Errors
-    /// [`DestinationError`] for a URL of no known store.
+    /// A URL of an unknown store.
     pub fn open(text: &str, partial: &str) -> Result<Self, DestinationError> {
         match text.strip_prefix("file://") {
             Some(path) => Ok(Self::Folder(Folder::new(&folder_of_url(text, path)?, partial))),
@@ -71,77 +106,76 @@ impl Destination {
 
     #[cfg(not(feature = "cloud"))]
     fn open_store(text: &str) -> Result<Self, DestinationError> {
-        Err(no_store(text, "this build writes to folders only"))
+        Err(unknown_store(text, "this build supports folders only"))
     }
 
     #[cfg(feature = "cloud")]
     fn open_store(text: &str) -> Result<Self, DestinationError> {
-        let (store, prefix) = cloud::open(text).map_err(|problem| no_store(text, &problem))?;
+        let (store, prefix) = cloud::open(text)?;
         Self::in_store(text, store, prefix)
     }
 
-    /// The prefix of a store that is already open.
+    /// A prefix of a store that is already open.
     ///
     /// # Errors
-    /// [`DestinationError`] if the threads that a cloud store needs cannot be started.
+    /// Threads that cannot be started; a cloud store needs one.
     #[cfg(feature = "cloud")]
     pub fn in_store(
         url: &str,
         store: Arc<dyn ObjectStore>,
         prefix: StorePath,
     ) -> Result<Self, DestinationError> {
-        let failed = |e: std::io::Error| DestinationError {
-            place: url.to_owned(),
-            problem: e.to_string(),
-            remedy: "let this process start threads",
-            is_fatal: true,
-        };
-        Store::new(url, store, prefix).map(Self::Store).map_err(failed)
+        Store::new(url, store, prefix).map(Self::Store).map_err(|e| {
+            let problem = format!("cannot start a thread: {e}");
+            DestinationError::new(url.to_owned(), problem, "allow this process to start threads", true)
+                .with_source(e)
+        })
     }
 
-    /// Whether equal files are linked, so that each variant's folder holds its parts; otherwise manifests name them.
-    pub fn links(&self) -> bool {
+    /// Returns whether equal files are linked, so that each variant's folder contains its parts;
+    /// otherwise manifests contain their paths.
+    pub fn has_links(&self) -> bool {
         matches!(self, Self::Folder(_))
     }
 
-    /// The whole file `name`; `None` if there is none.
+    /// Reads file `name`; `None` if it does not exist.
     ///
     /// # Errors
-    /// [`DestinationError`] for a file that is there but cannot be read.
+    /// A file that exists and cannot be read.
     pub fn get(&self, name: &str) -> Result<Option<Vec<u8>>, DestinationError> {
-        ask!(self, name, place => place.get(name))
+        forward!(self, name, place => place.get(name))
     }
 
-    /// The size of file `name` in bytes; `None` if there is none.
+    /// Returns the size of file `name` in bytes; `None` if it does not exist.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be determined.
+    /// A size that cannot be determined.
     pub fn size(&self, name: &str) -> Result<Option<u64>, DestinationError> {
-        ask!(self, name, place => place.size(name))
+        forward!(self, name, place => place.size(name))
     }
 
-    /// Writes file `name`, replacing an older one.
+    /// Writes file `name`, and replaces an older one.
     ///
     /// # Errors
-    /// [`DestinationError`]; the older file is untouched.
+    /// A file that cannot be written; the older file is unchanged.
     pub fn put(&self, name: &str, bytes: &[u8]) -> Result<(), DestinationError> {
-        ask!(self, name, place => place.put(name, bytes))
+        forward!(self, name, place => place.put(name, bytes))
     }
 
-    /// Makes `name` the same file as `content`: a hard link, or a copy where the file system refuses one.
+    /// Makes `name` a hard link to `content`, or a copy if the file system does not support links.
     ///
     /// # Errors
-    /// [`DestinationError`] if neither is possible.
+    /// A file that cannot be linked or copied.
     pub fn link(&self, content: &str, name: &str) -> Result<(), DestinationError> {
         match self {
-            Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.failed(name, &e)),
-            // Manifests name the content: a second object would cost storage twice.
+            Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.error(name, e)),
+            // Manifests contain the path of the content: a second object would double the storage.
             #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(()),
         }
     }
 
-    /// Whether two names are links to one file; no two objects of a store are.
+    /// Returns whether two names are links to one file; objects of a store never are.
     pub fn is_same(&self, one: &str, other: &str) -> bool {
         match self {
             Self::Folder(folder) => folder.is_same(one, other),
@@ -150,49 +184,48 @@ impl Destination {
         }
     }
 
-    /// A file on this machine, to be filled and then handed to [`Self::put_file`].
+    /// Creates a file on this machine, to be written and passed to [`Self::put_file`].
     ///
     /// # Errors
-    /// [`DestinationError`] if none can be made.
+    /// A file that cannot be created.
     pub fn local_file(&self) -> Result<tempfile::NamedTempFile, DestinationError> {
-        let made = match self {
-            Self::Folder(folder) => folder.local_file(),
+        match self {
+            Self::Folder(folder) => folder.local_file().map_err(|e| folder.error("a temporary file", e)),
             #[cfg(feature = "cloud")]
-            Self::Store(_) => tempfile::NamedTempFile::new(),
-        };
-        made.map_err(|e| self.local_error("a temporary file", &e))
+            Self::Store(_) => tempfile::NamedTempFile::new().map_err(DestinationError::temporary),
+        }
     }
 
     /// Moves a finished local file to `name`.
     ///
     /// # Errors
-    /// [`DestinationError`]; an older file is untouched.
+    /// A file that cannot be written; an older file is unchanged.
     pub fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> Result<(), DestinationError> {
         match self {
-            Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.failed(name, &e)),
+            Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.error(name, e)),
             #[cfg(feature = "cloud")]
             Self::Store(_) => {
-                let bytes = std::fs::read(file.path()).map_err(|e| self.local_error(name, &e))?;
+                let bytes = std::fs::read(file.path()).map_err(DestinationError::temporary)?;
                 self.put(name, &bytes)
             }
         }
     }
 
-    /// Names of the folders directly under `folder`.
+    /// Returns the names of the folders in `folder`, sorted.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be determined.
+    /// A folder that cannot be read.
     pub fn folders(&self, folder: &str) -> Result<Vec<String>, DestinationError> {
-        let mut names = ask!(self, folder, place => place.folders(folder))?;
+        let mut names = forward!(self, folder, place => place.folders(folder))?;
         names.sort();
         Ok(names)
     }
 
-    /// Refuses `name` if it is there, and a folder or not as `is_folder` says; a store has no folders, and nothing in the
-    /// way.
+    /// Refuses an existing `name` that is a folder, if `is_folder`, or that is not. A store has no
+    /// folders, and no obstructions.
     ///
     /// # Errors
-    /// [`DestinationError`] as for a system call that failed with `kind`.
+    /// The error of a system call that fails with `kind`.
     pub(super) fn refuse_if(
         &self,
         name: &str,
@@ -201,57 +234,57 @@ impl Destination {
     ) -> Result<(), DestinationError> {
         match self {
             Self::Folder(folder) => match folder.is_folder(name) {
-                Ok(there) if there == Some(is_folder) => Err(folder.failed(name, &kind.into())),
+                Ok(existing) if existing == Some(is_folder) => Err(folder.error(name, kind.into())),
                 Ok(_) => Ok(()),
-                Err(e) => Err(folder.failed(name, &e)),
+                Err(e) => Err(folder.error(name, e)),
             },
             #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(()),
         }
     }
 
-    /// What stands directly in `folder`, and whether it is a folder; a store has nothing in the way.
+    /// Lists the entries of `folder`, each with whether it is a folder; none for a store, which has
+    /// no obstructions.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be determined.
+    /// A folder that cannot be read.
     pub(super) fn entries(&self, folder: &str) -> Result<Vec<(String, bool)>, DestinationError> {
         match self {
-            Self::Folder(place) => place.entries(folder).map_err(|e| place.failed(folder, &e)),
+            Self::Folder(place) => place.entries(folder).map_err(|e| place.error(folder, e)),
             #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(Vec::new()),
         }
     }
 
-    /// Whether nothing is there yet.
+    /// Returns whether the destination is empty or does not exist.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be determined.
+    /// A destination that cannot be read.
     pub fn is_empty(&self) -> Result<bool, DestinationError> {
-        ask!(self, "", place => place.is_empty())
+        forward!(self, "", place => place.is_empty())
     }
 
-    /// Locks the destination for this process: no other process writes the same shard at the same time, and what a killed
-    /// run left half written is removed. The lock ends with the process, however that ends.
+    /// Locks the destination, so that a concurrent run of the same shard fails immediately, and
+    /// removes unfinished files of a killed run. The system releases the lock when the process
+    /// ends, even if it is killed.
     ///
     /// # Errors
-    /// [`DestinationError`] if another process holds it, or nothing can be written there.
+    /// A destination that another process has locked, or that cannot be written.
     pub fn lock(&self) -> Result<DestinationLock, DestinationError> {
         let folder = match self {
             Self::Folder(folder) => folder,
-            // Objects appear whole, and shards have names of their own.
+            // Objects are written completely, and shards write different objects.
             #[cfg(feature = "cloud")]
-            Self::Store(_) => return Ok(DestinationLock::not_needed()),
+            Self::Store(_) => return Ok(DestinationLock::unlocked()),
         };
-        let claim = folder.lock().map_err(|e| folder.failed("", &e))?;
-        claim.ok_or_else(|| DestinationError {
-            place: self.name(),
-            problem: "another run is writing the same shard here".to_owned(),
-            remedy: "wait for it or end it, or give another --out",
-            is_fatal: true,
+        let lock = folder.lock().map_err(|e| folder.error("", e))?;
+        lock.ok_or_else(|| {
+            let help = "wait for it or end it, or give another --out";
+            DestinationError::new(self.name(), "another run is writing the same shard here", help, true)
         })
     }
 
-    /// Its name, as given.
+    /// Returns its path or URL, as given.
     pub fn name(&self) -> String {
         match self {
             Self::Folder(folder) => folder.root.display().to_string(),
@@ -259,38 +292,23 @@ impl Destination {
             Self::Store(store) => store.url.clone(),
         }
     }
-
-    fn local_error(&self, name: &str, error: &std::io::Error) -> DestinationError {
-        match self {
-            Self::Folder(folder) => folder.failed(name, error),
-            #[cfg(feature = "cloud")]
-            Self::Store(store) => DestinationError {
-                place: format!("{}/{name}", store.url),
-                problem: error.to_string(),
-                remedy: "make room for temporary files on this machine",
-                is_fatal: true,
-            },
-        }
-    }
 }
 
-/// The folder that the `path` of a `file://` URL names: absolute, with its escapes undone.
+/// Returns the folder of a `file://` URL with this `path`: absolute, with escapes decoded.
 fn folder_of_url(url: &str, path: &str) -> Result<String, DestinationError> {
     if !path.starts_with('/') {
-        return Err(no_store(url, "a file:// URL names a folder from the root, such as file:///data/sweep"));
+        return Err(unknown_store(url, "a file:// URL needs an absolute path, such as file:///data/sweep"));
     }
     let decoded = percent_encoding::percent_decode_str(path).decode_utf8();
-    decoded.map(Into::into).map_err(|e| no_store(url, &format!("its escapes are no text: {e}")))
+    decoded
+        .map(Into::into)
+        .map_err(|e| unknown_store(url, format!("escapes are not UTF-8: {e}")).with_source(e))
 }
 
-/// The error for a URL that no store answers to.
-fn no_store(text: &str, problem: &str) -> DestinationError {
-    DestinationError {
-        place: text.to_owned(),
-        problem: problem.to_owned(),
-        remedy: "give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://",
-        is_fatal: true,
-    }
+/// The error for a URL that is not a destination.
+fn unknown_store(url: &str, problem: impl Into<String>) -> DestinationError {
+    let help = "give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://";
+    DestinationError::new(url.to_owned(), problem, help, true)
 }
 
 #[cfg(test)]
@@ -316,11 +334,11 @@ mod tests {
     }
 
     #[test]
-    fn every_destination_keeps_and_gives_files() {
+    fn destinations_store_files() {
         let folder = tempfile::tempdir().unwrap();
         for place in all(folder.path()) {
             assert!(place.is_empty().unwrap());
-            let claim = place.lock().unwrap();
+            let lock = place.lock().unwrap();
             assert_eq!(place.get("a/b").unwrap(), None);
             place.put("a/b", b"one").unwrap();
             place.put("a/b", b"two").unwrap();
@@ -334,30 +352,30 @@ mod tests {
             assert_eq!(place.get("t.csv").unwrap().as_deref(), Some(&b"table"[..]));
             place.link("a/b", "v/c").unwrap();
             place.link("a/b", "v/c").unwrap();
-            assert_eq!(place.size("v/c").unwrap(), place.links().then_some(3));
-            drop(claim);
+            assert_eq!(place.size("v/c").unwrap(), place.has_links().then_some(3));
+            drop(lock);
             assert!(!place.is_empty().unwrap());
         }
     }
 
     #[test]
-    fn a_folder_is_claimed_once_and_swept() {
+    fn one_run_locks_a_folder() {
         let folder = tempfile::tempdir().unwrap();
         let open = |partial| Destination::open(folder.path().to_str().unwrap(), partial).unwrap();
         let partial = folder.path().join(".partial-1-of-2");
         std::fs::create_dir(&partial).unwrap();
-        std::fs::write(partial.join("7"), "half, by a run that was killed").unwrap();
-        let claim = open(".partial-1-of-2").lock().unwrap();
+        std::fs::write(partial.join("7"), "half of a file, from a killed run").unwrap();
+        let lock = open(".partial-1-of-2").lock().unwrap();
         assert!(!partial.join("7").exists());
         let second = open(".partial-1-of-2").lock();
         assert!(second.unwrap_err().to_string().contains("another run is writing the same shard"));
         assert!(open(".partial-2-of-2").lock().is_ok());
-        drop(claim);
+        drop(lock);
         assert!(!partial.exists() && open(".partial-1-of-2").lock().is_ok());
     }
 
     #[test]
-    fn file_urls_name_absolute_folders_and_their_escapes_are_undone() {
+    fn file_urls_are_decoded() {
         for url in ["file://", "file://data", "file:///%ff"] {
             let error = Destination::open(url, "").unwrap_err().to_string();
             assert!(error.starts_with(&format!("{url}: ")), "{error}");

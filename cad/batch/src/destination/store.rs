@@ -7,8 +7,8 @@ use object_store::{Error, ObjectStore, ObjectStoreExt};
 
 use super::DestinationError;
 
-/// Characters of a store's answer that an error repeats.
-const SHOWN: usize = 240;
+/// Most characters of a store's answer in an error.
+const MAX_ANSWER: usize = 240;
 
 /// A prefix of an object store.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// The prefix of a store that is already open.
+    /// A prefix of a store that is already open.
     pub(super) fn new(url: &str, store: Arc<dyn ObjectStore>, prefix: Path) -> std::io::Result<Self> {
         Ok(Self {
             url: url.to_owned(),
@@ -30,37 +30,33 @@ impl Store {
         })
     }
 
-    pub(super) fn failed(&self, name: &str, error: &Error) -> DestinationError {
-        // Servers answer in lines and pages: their first words tell.
-        let words = error.to_string();
-        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-        let problem = match words.char_indices().nth(SHOWN) {
-            Some((end, _)) => format!("{}...", &words[..end]),
-            None => words,
+    /// The error of a request for object `name`.
+    pub(super) fn error(&self, name: &str, error: Error) -> DestinationError {
+        // Servers answer with lines or pages; the first words are the message.
+        let answer = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        let problem = match answer.char_indices().nth(MAX_ANSWER) {
+            Some((end, _)) => format!("{}...", &answer[..end]),
+            None => answer,
         };
-        DestinationError {
-            place: format!("{}/{name}", self.url),
-            problem,
-            remedy: "see that the store answers and what its variables (AWS_...) say",
-            is_fatal: true,
-        }
+        let help = "check that the store is reachable, and its variables (AWS_..., GOOGLE_..., AZURE_...)";
+        DestinationError::new(format!("{}/{name}", self.url), problem, help, true)
     }
 
     pub(super) fn get(&self, name: &str) -> Result<Option<Vec<u8>>, Error> {
-        let bytes = self.wait(async { self.store.get(&self.at(name)).await?.bytes().await });
-        Ok(found(bytes)?.map(|bytes| bytes.to_vec()))
+        let bytes = self.wait(async { self.store.get(&self.path(name)).await?.bytes().await });
+        Ok(if_exists(bytes)?.map(|bytes| bytes.to_vec()))
     }
 
     pub(super) fn size(&self, name: &str) -> Result<Option<u64>, Error> {
-        Ok(found(self.wait(self.store.head(&self.at(name))))?.map(|facts| facts.size))
+        Ok(if_exists(self.wait(self.store.head(&self.path(name))))?.map(|facts| facts.size))
     }
 
     pub(super) fn put(&self, name: &str, bytes: &[u8]) -> Result<(), Error> {
-        self.wait(self.store.put(&self.at(name), bytes.to_vec().into())).map(drop)
+        self.wait(self.store.put(&self.path(name), bytes.to_vec().into())).map(drop)
     }
 
     pub(super) fn folders(&self, folder: &str) -> Result<Vec<String>, Error> {
-        let list = self.wait(self.store.list_with_delimiter(Some(&self.at(folder))))?;
+        let list = self.wait(self.store.list_with_delimiter(Some(&self.path(folder))))?;
         Ok(list.common_prefixes.iter().filter_map(|p| p.filename().map(str::to_owned)).collect())
     }
 
@@ -69,21 +65,22 @@ impl Store {
         Ok(list.objects.is_empty() && list.common_prefixes.is_empty())
     }
 
-    fn at(&self, name: &str) -> Path {
+    /// Returns the path of an object.
+    fn path(&self, name: &str) -> Path {
         name.split('/')
             .filter(|part| !part.is_empty())
             .fold(self.prefix.clone(), |path, part| path.join(part))
     }
 
-    /// Blocks until the future is ready. Folders and memory need no runtime; clouds do.
-    fn wait<T>(&self, answer: impl Future<Output = T>) -> T {
-        let _inside = self.runtime.enter();
-        futures_executor::block_on(answer)
+    /// Blocks until a request is complete, in the runtime that cloud stores need.
+    fn wait<T>(&self, request: impl Future<Output = T>) -> T {
+        let _guard = self.runtime.enter();
+        futures_executor::block_on(request)
     }
 }
 
-/// `Ok(None)` for an object that is not there.
-fn found<T>(outcome: Result<T, Error>) -> Result<Option<T>, Error> {
+/// Returns `Ok(None)` for a missing object.
+fn if_exists<T>(outcome: Result<T, Error>) -> Result<Option<T>, Error> {
     match outcome {
         Ok(value) => Ok(Some(value)),
         Err(Error::NotFound { .. }) => Ok(None),

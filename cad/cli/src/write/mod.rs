@@ -10,7 +10,7 @@ mod steps;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use pinswitch_batch::{is_dead_link, remedy_at, temporary_file};
+use pinswitch_batch::{is_dangling_symlink, temporary_file, write_help};
 use pinswitch_switch::output::OutputFile;
 
 use folder_lock::{FolderLock, Waiting};
@@ -27,7 +27,7 @@ const OURS: &str = ".pinswitch-";
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The system does not let us.
-    #[error("{}: cannot write: {}; {}", path.display(), reason(path, source), remedy_at(path, source))]
+    #[error("{}: cannot write: {}; {}", path.display(), reason(path, source), write_help(path, source))]
     System {
         /// The file or folder.
         path: PathBuf,
@@ -57,7 +57,7 @@ impl From<WriteError> for Failure {
 /// What is in the way; what the system says of it ("File exists") would not tell.
 fn reason(path: &Path, error: &std::io::Error) -> String {
     match error.kind() {
-        _ if is_dead_link(path) => "a link that leads nowhere stands there".to_owned(),
+        _ if is_dangling_symlink(path) => "a link that leads nowhere stands there".to_owned(),
         ErrorKind::NotFound => "the folder for it is not there".to_owned(),
         ErrorKind::AlreadyExists => "something stands there already".to_owned(),
         _ => error.to_string(),
@@ -168,7 +168,7 @@ mod tests {
             }
         }
         let said = write_file(&at("no/such.png"), b"new").unwrap_err().to_string();
-        assert!(said.contains("the folder for it is not there; make its folder"), "{said}");
+        assert!(said.contains("the folder for it is not there; create its folder"), "{said}");
         std::fs::create_dir_all(at("s/manifest.json")).unwrap();
         let said = SetFolder::lock(&at("s")).unwrap().check_source(&SourceEntry::new("x")).unwrap_err();
         let said = said.to_string();
@@ -200,6 +200,6 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         std::fs::create_dir(folder.path().join("b")).unwrap();
         let error = write_file(&folder.path().join("b"), b"one").unwrap_err().to_string();
-        assert!(error.contains("a folder stands where a file must be"), "{error}");
+        assert!(error.contains("a folder is in place of a file"), "{error}");
     }
 }

@@ -1,31 +1,31 @@
-//! Ways to write the values of one field: one file per kind, and its line in the list below. Grids take every value,
-//! samples the value at a coordinate.
+//! Notations for the values of one field: one file each, with a line in the list below. Grids take
+//! every value, samples take the value at a coordinate.
 
 mod range;
 
+use pinswitch_diagnostic::Diagnostic;
 use toml_edit::{Item, Value};
 
 use super::ParameterRef;
-use pinswitch_switch::config::ConfigError;
 
-/// A way to write the values of one field.
-pub(super) struct ValueKind {
-    /// Whether the values are written in this way.
-    pub(super) is_written: fn(&Item) -> bool,
+/// A notation for the values of one field.
+pub(super) struct Notation {
+    /// Whether the values are in this notation.
+    pub(super) matches: fn(&Item) -> bool,
     /// All values in their order, for a grid.
-    pub(super) every_value: fn(ParameterRef, &Item) -> Result<Series, ConfigError>,
+    pub(super) series: fn(ParameterRef, &Item) -> Result<Series, Diagnostic>,
     /// The value at a coordinate, for a sample.
-    pub(super) sampler: fn(ParameterRef, &Item) -> Result<Sampler, ConfigError>,
+    pub(super) sampler: fn(ParameterRef, &Item) -> Result<Sampler, Diagnostic>,
 }
 
 /// The value at a coordinate of 0 to 1.
 pub(super) type Sampler = Box<dyn Fn(f64) -> Value + Send + Sync>;
 
-/// Values in their order, each put together when it is asked for.
+/// Values in their order, each computed on request.
 pub(super) struct Series {
-    /// How many.
+    /// Their number.
     pub(super) count: u64,
-    /// The value of a number below that.
+    /// The value with an index below the count.
     pub(super) at: Box<dyn Fn(u64) -> Value + Send + Sync>,
 }
 
@@ -35,32 +35,33 @@ impl Series {
     }
 }
 
-/// Declares the files of the kinds and their list.
-macro_rules! value_kinds {
+/// Declares the files of the notations and their list.
+macro_rules! notations {
     ($($file:ident;)*) => {
         $(mod $file;)*
 
-        /// Every kind; the first that is written counts.
-        const KINDS: &[ValueKind] = &[$($file::KIND),*];
+        /// Every notation; the first that matches is used.
+        const NOTATIONS: &[Notation] = &[$($file::NOTATION),*];
     };
 }
 
-value_kinds! {
+notations! {
     list;
     step;
     count;
     span;
 }
 
-/// Whether `item` is written as values of any kind, rather than as a table of fields.
-pub(super) fn is_written(item: &Item) -> bool {
-    KINDS.iter().any(|kind| (kind.is_written)(item))
+/// Returns whether `item` is in a notation for values, rather than a table of fields.
+pub(super) fn is_range_or_list(item: &Item) -> bool {
+    NOTATIONS.iter().any(|notation| (notation.matches)(item))
 }
 
-/// The kind in which the values of `field` are written.
+/// Returns the notation of the values of `field`.
 ///
 /// # Errors
-/// [`ConfigError`] says how to write a list or a range.
-pub(super) fn kind(field: ParameterRef, item: &Item) -> Result<&'static ValueKind, ConfigError> {
-    KINDS.iter().find(|kind| (kind.is_written)(item)).ok_or_else(|| range::not_written(field, item))
+/// An unknown notation, with how to write a list or a range.
+pub(super) fn notation(field: ParameterRef, item: &Item) -> Result<&'static Notation, Diagnostic> {
+    let found = NOTATIONS.iter().find(|notation| (notation.matches)(item));
+    found.ok_or_else(|| range::unknown_notation(field, item))
 }

@@ -1,22 +1,23 @@
 //! `{ from = 10, to = 12 }`: every value between two ends, for samples only.
 
+use pinswitch_diagnostic::Diagnostic;
 use toml_edit::Item;
 
 use super::range::{Range, has_key};
 use super::step::on_grid;
-use super::{Sampler, Series, ValueKind};
-use crate::axis::{ParameterRef, config_error};
-use pinswitch_switch::config::ConfigError;
+use super::{Notation, Sampler, Series};
+use crate::axis::ParameterRef;
+use crate::diagnostics::field_error;
 
-pub(super) const KIND: ValueKind =
-    ValueKind { is_written: |item| has_key(item, "from"), every_value, sampler };
+pub(super) const NOTATION: Notation = Notation { matches: |item| has_key(item, "from"), series, sampler };
 
-fn every_value(field: ParameterRef, item: &Item) -> Result<Series, ConfigError> {
+fn series(field: ParameterRef, item: &Item) -> Result<Series, Diagnostic> {
     Range::read(field, item)?;
-    Err(config_error(&field.path(), None, "has neither step nor count", "add step = ... or count = ..."))
+    let help = "add step = ... or count = ...";
+    Err(field_error(&field.path(), None, "range without step or count", help))
 }
 
-fn sampler(field: ParameterRef, item: &Item) -> Result<Sampler, ConfigError> {
+fn sampler(field: ParameterRef, item: &Item) -> Result<Sampler, Diagnostic> {
     let range = Range::read(field, item)?;
-    Ok(if range.whole { on_grid(range, 1.0) } else { Box::new(move |share| range.value(range.at(share))) })
+    Ok(if range.is_whole { on_grid(range, 1.0) } else { Box::new(move |share| range.value(range.at(share))) })
 }

@@ -1,5 +1,5 @@
-//! What stands in the way of a batch: a folder where a file must be, or a file where a folder must be. Found before
-//! anything is made, so that a dry run and the run refuse the same.
+//! Obstructions: a folder at the path of a file, or a file at the path of a folder. They are
+//! checked before anything is made, so that a dry run and a run refuse the same destinations.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -10,21 +10,21 @@ use super::shard::Shard;
 use super::stamp::STAMP;
 use super::variant::Variants;
 
-/// Refuses a destination with something in the way of what `shard` writes. What is in the way of a single variant lets that
-/// one fail, and no other.
+/// Refuses a destination with an obstruction at a path that `shard` writes. An obstruction at a
+/// path of a single variant fails that variant only.
 ///
 /// # Errors
-/// [`DestinationError`] names the first file or folder that stands in the way.
-pub(super) fn refuse_obstacles(destination: &Destination, shard: Shard) -> Result<(), DestinationError> {
+/// The first obstructed path.
+pub(super) fn check_paths(destination: &Destination, shard: Shard) -> Result<(), DestinationError> {
     let (mut folders, mut files) = (vec!["variants".to_owned(), "parts".to_owned()], vec![STAMP.to_owned()]);
     if shard.is_whole() {
         files.extend(TABLES.iter().chain(&PRODUCTS).map(|name| (*name).to_owned()));
     } else {
-        let own = format!("shards/{}", shard.folder());
-        files.extend(TABLES.iter().chain(&["shard.json"]).map(|name| format!("{own}/{name}")));
-        folders.extend(["shards".to_owned(), own]);
+        let shard_folder = format!("shards/{}", shard.folder());
+        files.extend(TABLES.iter().chain(&["shard.json"]).map(|name| format!("{shard_folder}/{name}")));
+        folders.extend(["shards".to_owned(), shard_folder]);
     }
-    // The parts lie in folders named by the first two digits of their hashes.
+    // Parts are in folders with the first two digits of their hashes.
     folders.extend((0..=u8::MAX).map(|byte| format!("parts/{byte:02x}")));
     for folder in &folders {
         destination.refuse_if(folder, false, ErrorKind::NotADirectory)?;
@@ -35,46 +35,48 @@ pub(super) fn refuse_obstacles(destination: &Destination, shard: Shard) -> Resul
     Ok(())
 }
 
-/// What would let single variants of `shard` fail, and no other: the names of what stands in the place of a variant's
-/// folder, of one of its files, or of a part.
+/// Returns the paths of `shard` that are obstructed and would fail single variants: variants'
+/// folders, their files, and parts.
 ///
 /// # Errors
-/// [`DestinationError`] if a folder cannot be read.
-pub fn would_fail(
+/// A folder that cannot be read.
+pub fn obstructed_paths(
     destination: &Destination,
     variants: &Variants,
     shard: Shard,
 ) -> Result<Vec<String>, DestinationError> {
-    let is_ours = |name: &str| {
+    let is_output = |name: &str| {
         ["manifest.json", "friction.csv", "friction.svg"].contains(&name) || name.ends_with(".stl")
     };
-    let mut found = Vec::new();
-    let (mut suspects, mut names) = (Vec::new(), HashSet::new());
+    let mut obstructed = Vec::new();
+    let (mut candidates, mut names) = (Vec::new(), HashSet::new());
     for (id, is_folder) in destination.entries("variants")? {
         let place = format!("variants/{id}");
         let inside = if is_folder { destination.entries(&place)? } else { Vec::new() };
-        let wrong = inside.into_iter().filter(|(name, is_folder)| *is_folder && is_ours(name));
-        let wrong: Vec<String> = wrong.map(|(name, _)| format!("{place}/{name}")).collect();
-        if !is_folder || !wrong.is_empty() {
+        let folders = inside.into_iter().filter(|(name, is_folder)| *is_folder && is_output(name));
+        let folders: Vec<String> = folders.map(|(name, _)| format!("{place}/{name}")).collect();
+        if !is_folder || !folders.is_empty() {
             names.insert(id.clone());
-            suspects.push((id, if is_folder { wrong } else { vec![place] }));
+            candidates.push((id, if is_folder { folders } else { vec![place] }));
         }
     }
     if !names.is_empty() {
-        // Of a stray file it is only known now whether it has the name of a variant.
-        let own = shard.range(variants.count()).map(|index| variants.get(index).id);
-        let in_the_way: HashSet<String> = own.filter(|id| names.contains(id)).collect();
-        let all = suspects.into_iter().filter(|(id, _)| in_the_way.contains(id));
-        found.extend(all.flat_map(|(_, places)| places));
+        // A stray file obstructs only if it has the name of a variant of this shard.
+        let ids = shard.range(variants.count()).map(|index| variants.get(index).id);
+        let obstructed_ids: HashSet<String> = ids.filter(|id| names.contains(id)).collect();
+        let of_shard = candidates.into_iter().filter(|(id, _)| obstructed_ids.contains(id));
+        obstructed.extend(of_shard.flat_map(|(_, paths)| paths));
     }
     for (folder, _) in destination.entries("parts")?.into_iter().filter(|(_, is_folder)| *is_folder) {
         let place = format!("parts/{folder}");
-        let wrong =
-            destination.entries(&place)?.into_iter().filter(|(name, is_folder)| *is_folder && is_ours(name));
-        found.extend(wrong.map(|(name, _)| format!("{place}/{name}")));
+        let folders = destination
+            .entries(&place)?
+            .into_iter()
+            .filter(|(name, is_folder)| *is_folder && is_output(name));
+        obstructed.extend(folders.map(|(name, _)| format!("{place}/{name}")));
     }
-    found.sort();
-    Ok(found)
+    obstructed.sort();
+    Ok(obstructed)
 }
 
 #[cfg(test)]
@@ -82,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whatever_has_the_wrong_kind_is_named_and_nothing_else_is() {
+    fn obstructed_paths_are_refused() {
         let shard: Shard = "1/2".parse().unwrap();
         let refused = |name: &str, is_folder: bool, shard: Shard| {
             let place = tempfile::tempdir().unwrap();
@@ -94,7 +96,7 @@ mod tests {
                 std::fs::write(&path, "x").unwrap()
             }
             let destination = Destination::open(place.path().to_str().unwrap(), ".partial-x").unwrap();
-            refuse_obstacles(&destination, shard).err().map(|e| e.to_string())
+            check_paths(&destination, shard).err().map(|e| e.to_string())
         };
         for (name, is_folder, shard) in [
             ("variants.csv", true, Shard::WHOLE),

@@ -1,4 +1,4 @@
-//! Predictions that variants share: many variants differ in nothing that the tendon feels.
+//! Shared predictions: many variants have the same contact and loads.
 
 use std::hash::{Hash, Hasher};
 use std::sync::{Arc, OnceLock};
@@ -12,30 +12,30 @@ use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{OutputFile, SetError};
 use pinswitch_switch::prediction::{Prediction, predicted_curve};
 
-/// Forecasts kept in the cache, about 15 kB each with their table.
-const CACHED_FORECASTS: usize = 64;
+/// Predictions in the cache, about 15 kB each with their table.
+const CACHED_PREDICTIONS: usize = 64;
 
-/// All that a prediction depends on: the contact and the loads.
+/// The inputs of a prediction: the contact and the loads.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct ForecastKey {
+pub(super) struct PredictionKey {
     contact: Contact,
     loads_n: [f64; 2],
     points: usize,
 }
 
-impl ForecastKey {
-    pub(super) fn of(design: &Design) -> Self {
+impl PredictionKey {
+    pub(super) fn from_design(design: &Design) -> Self {
         let f = &design.configuration().friction;
         let loads_n = [f.load_min_n, f.load_max_n];
         Self { contact: design.contact().clone(), loads_n, points: f.points }
     }
 }
 
-// A contact holds no number that is not finite, so that every key equals itself.
-impl Eq for ForecastKey {}
+// All numbers of a contact are finite, so that every key equals itself.
+impl Eq for PredictionKey {}
 
-impl Hash for ForecastKey {
-    /// What sweeps vary most; equality looks at all of it.
+impl Hash for PredictionKey {
+    /// Hashes the quantities that sweeps vary most; equality compares all of them.
     fn hash<H: Hasher>(&self, state: &mut H) {
         let bed = self.contact.bed();
         let numbers = [bed.contact_radius_mm, bed.layer_mm, bed.layer_width_mm, bed.modulus_mpa];
@@ -44,34 +44,34 @@ impl Hash for ForecastKey {
     }
 }
 
-/// The prediction for every design with one key, each step made when it is first asked for.
+/// The prediction for every design with one key; each step is computed on first use.
 #[derive(Default)]
-pub(super) struct Forecast {
+pub(super) struct CachedPrediction {
     curve: OnceLock<FrictionCurve>,
     shared: OnceLock<SharedCurve>,
 }
 
-/// What manifests and folders of variants with one forecast hold alike.
+/// The curve that manifests and folders of all variants with one key contain.
 pub(super) struct SharedCurve {
-    /// The curve with the other laws beside it.
+    /// The curve with those of the other laws.
     pub prediction: Prediction,
     /// The curve as a table.
     pub files: Vec<(OutputFile, FileEntry)>,
 }
 
-impl Forecast {
-    /// The curve; `design` is one of those with this forecast's key.
+impl CachedPrediction {
+    /// Returns the curve; `design` has the key of this prediction.
     pub(super) fn curve(&self, design: &Design) -> &FrictionCurve {
         self.curve.get_or_init(|| predicted_curve(design))
     }
 
-    /// The curve with all that follows from it; `design` is one of those with this forecast's key.
+    /// Returns the curve with its table; `design` has the key of this prediction.
     ///
     /// # Errors
-    /// [`SetError`] if the table cannot be made.
+    /// [`SetError`] if the table cannot be encoded.
     pub(super) fn shared(&self, design: &Design) -> Result<&SharedCurve, SetError> {
-        if let Some(known) = self.shared.get() {
-            return Ok(known);
+        if let Some(cached) = self.shared.get() {
+            return Ok(cached);
         }
         let prediction = Prediction::with_curve(design, self.curve(design).clone());
         let files = curve_files(design, &prediction, false)?;
@@ -84,21 +84,21 @@ impl Forecast {
     }
 }
 
-/// Forecasts by what they depend on.
-pub(super) struct Forecasts(Cache<ForecastKey, Arc<Forecast>>);
+/// Predictions by their inputs.
+pub(super) struct PredictionCache(Cache<PredictionKey, Arc<CachedPrediction>>);
 
-impl Default for Forecasts {
+impl Default for PredictionCache {
     fn default() -> Self {
-        Self(Cache::new(CACHED_FORECASTS))
+        Self(Cache::new(CACHED_PREDICTIONS))
     }
 }
 
-impl Forecasts {
-    /// The forecast of `design`, not yet made if it is the first with its key.
-    pub(super) fn of(&self, design: &Design) -> Arc<Forecast> {
-        let key = ForecastKey::of(design);
+impl PredictionCache {
+    /// Returns the prediction of `design`, still to be computed if it is the first with its key.
+    pub(super) fn get(&self, design: &Design) -> Arc<CachedPrediction> {
+        let key = PredictionKey::from_design(design);
         self.0.get(&key).unwrap_or_else(|| {
-            let new = Arc::new(Forecast::default());
+            let new = Arc::new(CachedPrediction::default());
             self.0.insert(key, new.clone());
             new
         })
@@ -111,21 +111,25 @@ mod tests {
     use pinswitch_switch::config::{Configuration, assign};
 
     #[test]
-    fn equal_contacts_share_a_forecast_and_only_they() {
+    fn equal_contacts_share_a_prediction() {
         let design = |assignments: &[&str]| {
             let mut c = Configuration::default();
             assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
             Design::new(c).unwrap()
         };
-        let forecasts = Forecasts::default();
-        let base = forecasts.of(&design(&["layout.pins=[5, 8, 11]"]));
-        let alike = |other: &str| {
+        let cache = PredictionCache::default();
+        let base = cache.get(&design(&["layout.pins=[5, 8, 11]"]));
+        let is_shared = |other: &str| {
             let design = design(&["layout.pins=[5, 8, 11]", other]);
-            let found = forecasts.of(&design);
-            assert_eq!(found.shared(&design).unwrap().prediction.curve, predicted_curve(&design), "{other}");
-            Arc::ptr_eq(&base, &found)
+            let prediction = cache.get(&design);
+            assert_eq!(
+                prediction.shared(&design).unwrap().prediction.curve,
+                predicted_curve(&design),
+                "{other}"
+            );
+            Arc::ptr_eq(&base, &prediction)
         };
-        assert!(alike("tendon.length_mm=250") && alike("shell.wall_mm=5.5"));
+        assert!(is_shared("tendon.length_mm=250") && is_shared("shell.wall_mm=5.5"));
         for other in [
             "layout.pins=[3, 8]",
             "shell.outer_radius_mm=21",
@@ -135,7 +139,7 @@ mod tests {
             "friction.points=51",
             "friction.six_single_threshold=4",
         ] {
-            assert!(!alike(other), "{other}");
+            assert!(!is_shared(other), "{other}");
         }
     }
 }

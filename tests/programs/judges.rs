@@ -1,5 +1,5 @@
-//! Programs that nobody here wrote judge our parts, and our oracle judges meshes that nobody here made. The judges lie
-//! in `../shared/tools`; where they are absent, or not installed, the tests say so and pass.
+//! External programs judge our parts, and `check` judges external meshes. The judges are in
+//! `../shared/tools`; where they are absent or not installed, the tests print `SKIPPED` and pass.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::harness::{beside_repository, done, ended, files, say_skipped};
 
-/// Exit code of the judges where none of those asked for is installed.
+/// Exit code of the judges if none of the requested ones is installed.
 pub(crate) const NONE_COULD_RUN: i32 = 3;
 
 /// The Python that `../shared/tools/setup_judges.sh` installs the judges into.
@@ -20,9 +20,9 @@ pub(crate) fn judges_python() -> Option<&'static Path> {
     python.exists().then_some(python)
 }
 
-/// Whether all that the judges complain of is that bodies touch, as those of an assembly do: the analyser of boolean arguments
-/// counts it as self-interference. Everything else must hold: the file reads, is valid, its shells are closed, and no two bodies
-/// overlap.
+/// Whether the only complaint of the judges is that bodies touch, as those of an assembly do: the
+/// analyser of boolean arguments counts that as self-interference. The file must still be readable
+/// and valid, with closed shells and without overlaps.
 pub(crate) fn only_touches(said: &str) -> bool {
     said.lines()
         .filter(|l| l.contains(" FAIL "))
@@ -30,7 +30,7 @@ pub(crate) fn only_touches(said: &str) -> bool {
 }
 
 #[test]
-fn slicers_and_mesh_checkers_accept_the_three_layouts() {
+fn mesh_judges_accept_the_three_layouts() {
     let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
     let installed = Command::new("prusa-slicer").arg("--help").output().is_ok_and(|o| o.status.success());
     if !installed {
@@ -38,7 +38,8 @@ fn slicers_and_mesh_checkers_accept_the_three_layouts() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // Parts but for the supports and their labels are equal between the layouts: the others add those that differ.
+    // Except for supports and labels, parts are equal between the layouts: the others add those
+    // that differ.
     for (layout, parts) in [
         (
             "three-double",
@@ -70,7 +71,7 @@ fn slicers_and_mesh_checkers_accept_the_three_layouts() {
 }
 
 #[test]
-fn our_oracle_finds_every_defect_of_the_test_meshes() {
+fn check_finds_every_defect() {
     let Some(maker) = beside_repository("tools/make_test_meshes.py") else { return };
     let folder = tempfile::tempdir().unwrap();
     let Some(venv) = judges_python() else { return };
@@ -90,7 +91,7 @@ fn our_oracle_finds_every_defect_of_the_test_meshes() {
 
 /// Slicers, lib3mf's strict reader and OCCT judge the three layouts, where they are installed.
 #[test]
-fn readers_of_3mf_and_step_accept_the_three_layouts() {
+fn package_and_step_readers_accept_the_layouts() {
     let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
     let Some(python) = judges_python() else { return };
     for layout in ["six-single", "three-double", "three-single"] {
@@ -129,10 +130,10 @@ fn readers_of_3mf_and_step_accept_the_three_layouts() {
     }
 }
 
-/// The installed slicer slices every plate as it lies, and says what printing takes: the set's own masses, within what walls and
-/// infill round.
+/// The installed slicer slices every plate without rearranging it; its filament matches the masses
+/// of the set, up to rounding of walls and infill.
 #[test]
-fn the_installed_slicer_tells_time_and_filament() {
+fn the_slicer_reports_time_and_filament() {
     let path = std::env::var_os("PATH").unwrap_or_default();
     if !std::env::split_paths(&path).any(|folder| folder.join("prusa-slicer").is_file()) {
         return say_skipped("prusa-slicer is not installed");
@@ -161,7 +162,7 @@ fn the_installed_slicer_tells_time_and_filament() {
     for (sliced, part) in list(&slicing["parts"]).iter().zip(list(&manifest["parts"])) {
         assert_eq!(sliced["file"], part["file"]);
         let share = grams(sliced) / part["mass_g"].as_f64().unwrap();
-        // The skirt comes on top.
+        // The skirt adds to it.
         assert!((0.9..1.6).contains(&share), "{sliced} of {} g", part["mass_g"]);
         assert!(sliced["print_minutes"].as_f64().unwrap() > 1.0);
     }

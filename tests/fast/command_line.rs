@@ -261,7 +261,7 @@ fn check_names_what_is_wrong() {
     };
     let (code, text) = check(&["check", "holed.stl"]);
     assert!(
-        code == Some(1) && text.contains("NOT VALID") && text.contains("3 edges have one facet only"),
+        code == Some(1) && text.contains("NOT VALID") && text.contains("3 edges have only one facet"),
         "{text}"
     );
     let (code, text) = check(&["check", "cut.stl"]);

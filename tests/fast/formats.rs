@@ -1,4 +1,4 @@
-//! Files beside the STL: what they hold, that their bytes repeat, and what programs that nobody here wrote say of them.
+//! Files of a set other than STL: their content, and that their bytes repeat.
 
 use crate::harness::{done, files};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ fn generate(folder: &Path, arguments: &[&str]) -> BTreeMap<String, Vec<u8>> {
 }
 
 #[test]
-fn all_formats_repeat_byte_for_byte_and_are_listed() {
+fn all_formats_repeat_and_are_listed() {
     let (a, b) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let first = generate(a.path(), &["three-single", "--format", "all"]);
     assert_eq!(first, generate(b.path(), &["three-single", "--format", "all"]));
@@ -36,7 +36,7 @@ fn all_formats_repeat_byte_for_byte_and_are_listed() {
 }
 
 #[test]
-fn a_chosen_format_comes_alone() {
+fn a_chosen_format_is_written_alone() {
     let folder = tempfile::tempdir().unwrap();
     let files = generate(folder.path(), &["three-double", "--format", "3mf"]);
     let names: Vec<_> = files.keys().map(String::as_str).collect();
@@ -52,7 +52,7 @@ fn unknown_formats_are_refused() {
 }
 
 #[test]
-fn the_package_names_its_parts_and_carries_the_curve() {
+fn the_package_contains_parts_and_curve() {
     let folder = tempfile::tempdir().unwrap();
     let files = generate(folder.path(), &["three-double", "--format", "stl,3mf"]);
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(&files["assembly.3mf"])).unwrap();
@@ -68,12 +68,12 @@ fn the_package_names_its_parts_and_carries_the_curve() {
     assert_eq!(model.matches("<object ").count(), parts);
     assert_eq!(model.matches("<item ").count(), parts);
     assert!(model.contains(r#"name="shell" partnumber="three-double/shell""#));
-    assert!(model.contains("pins = [5, 8, 11]"), "the configuration travels along");
+    assert!(model.contains("pins = [5, 8, 11]"), "the configuration is in the package");
 }
 
-/// Each step of the assembly with a picture of its own, whatever the switch is made of.
+/// Each step of the assembly has its own picture, whatever parts the switch has.
 #[test]
-fn every_step_of_the_guide_has_its_picture() {
+fn every_step_of_the_guide_has_a_picture() {
     let rig = [
         "three-double",
         "--set",
@@ -99,7 +99,7 @@ fn every_step_of_the_guide_has_its_picture() {
             let name = format!("step-{number}.png");
             assert!(assembly.contains(&format!("   ![Step {number}]({name})")), "{source:?}: {name}");
             assert!(files[&name].starts_with(b"\x89PNG"), "{source:?}: {name}");
-            assert!(!seen.contains(&&files[&name]), "{source:?}: {name} shows what another step shows");
+            assert!(!seen.contains(&&files[&name]), "{source:?}: {name} is the picture of another step");
             seen.push(&files[&name]);
         }
         assert!(!files.contains_key(&format!("step-{}.png", steps + 1)), "{source:?}");
@@ -107,19 +107,19 @@ fn every_step_of_the_guide_has_its_picture() {
 }
 
 #[test]
-fn step_files_hold_true_planes_and_cylinders() {
+fn step_files_contain_planes_and_cylinders() {
     let folder = tempfile::tempdir().unwrap();
     let files = generate(folder.path(), &["three-double", "--format", "step"]);
     for (name, bytes) in files.iter().filter(|(name, _)| name.ends_with(".step")) {
         let text = std::str::from_utf8(bytes).unwrap();
         assert!(text.contains("CYLINDRICAL_SURFACE") && text.contains("CIRCLE"), "{name}");
         assert!(!text.contains("B_SPLINE"), "{name}");
-        assert!(text.contains("'1970-01-01T00:00:00'"), "{name}: a time stamp of its own");
+        assert!(text.contains("'1970-01-01T00:00:00'"), "{name}: another time stamp");
     }
 }
 
 #[test]
-fn the_guide_speaks_in_numbers_of_this_set() {
+fn the_guide_has_the_numbers_of_its_set() {
     let folder = tempfile::tempdir().unwrap();
     let files =
         generate(folder.path(), &["three-double", "--set", "pins.diameter_mm=0.9", "--format", "guide"]);

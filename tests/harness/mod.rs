@@ -3,6 +3,8 @@
 #![allow(dead_code)]
 
 pub(crate) mod preview;
+#[path = "../../cad/solid/src/files/step/step_file.rs"]
+pub(crate) mod step_file;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

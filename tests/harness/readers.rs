@@ -19,8 +19,7 @@ use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_friction::Substrate;
 use pinswitch_simulation::{Plan, simulate};
-use pinswitch_solid::files::{read_step, read_stl, read_three_mf, stl_bytes};
-use pinswitch_solid::profile::ChordTolerance;
+use pinswitch_solid::files::{read_stl, read_three_mf, stl_bytes};
 use pinswitch_solid::validity::{Expectation, examine};
 use pinswitch_switch::ask::Ask;
 use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
@@ -47,7 +46,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 17] = [
+pub const READERS: [Reader; 16] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -62,7 +61,6 @@ pub const READERS: [Reader; 17] = [
     Reader { name: "sweep", judge: sweep },
     Reader { name: "stl", judge: stl },
     Reader { name: "three_mf", judge: three_mf },
-    Reader { name: "step", judge: step },
     Reader { name: "shard_table", judge: shard_table },
     Reader { name: "batch_files", judge: batch_files },
 ];
@@ -409,20 +407,6 @@ fn three_mf(bytes: &[u8]) -> Result<Reading, String> {
     Ok(Reading::Accepted)
 }
 
-/// A STEP file, whose solids are then examined as an STL is.
-fn step(bytes: &[u8]) -> Result<Reading, String> {
-    let tolerance = ChordTolerance::new(0.05).map_err(|e| e.to_string())?;
-    let file = match read_step(&String::from_utf8_lossy(bytes), tolerance) {
-        Ok(file) => file,
-        Err(e) => return refused(&e),
-    };
-    require(!file.solids.is_empty(), || "a STEP without solids".to_owned())?;
-    for solid in file.solids.iter().filter(|s| s.mesh.triangles.len() < 20_000) {
-        examine(&solid.mesh, &Expectation::default());
-    }
-    Ok(Reading::Accepted)
-}
-
 /// The sweep of the batches that are judged: two variants of one part.
 const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set]\n\"friction.points\" = 2\n\
                            [axes]\n\"tendon.length_mm\" = [200, 300]\n";
@@ -510,7 +494,13 @@ impl Shards {
         let place = open(&folder.path().join("b"))?;
         for shard in ["1/2", "2/2"] {
             let shard = shard.parse().map_err(|e: pinswitch_batch::ShardError| e.to_string())?;
-            let options = Options { shard, threads: 1, fail_fast: true, mesh_maker: mesh_file, slicer: None };
+            let options = Options {
+                shard,
+                threads: 1,
+                fail_fast: true,
+                mesh_maker: mesh_file,
+                slicer: None,
+            };
             run(&variants, &source, &place, options, &Nobody).map_err(|e| e.to_string())?;
         }
         let mut files = Vec::new();

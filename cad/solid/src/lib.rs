@@ -1,11 +1,18 @@
-//! Exact solids of lines and arcs at heights, their meshes, what makes a mesh valid, and the files of any solid.
+//! Exact solids of lines and arcs at heights, their meshes, the examination of meshes, and files of
+//! any solid.
 //!
-//! It knows nothing of switches, friction or configurations, and does no input or output: numbers and text go in, and
-//! meshes, bytes and findings come out.
+//! The crate does not depend on switches, friction or configurations, and does no input or output:
+//! it computes meshes, bytes and findings from numbers and text.
 //!
-//! [`profile`] → [`solid`] → [`mesh`] → [`validity`] → [`files`]: an exact contour of lines and arcs becomes contours at
-//! heights with walls and caps, these a mesh within a chord tolerance, and the mesh is examined before it is written.
-//! STEP and DXF come from the exact solid.
+//! | module | content |
+//! | --- | --- |
+//! | [`profile`] | [`Contour`](profile::Contour): closed contours of exact lines and arcs, and their flattening |
+//! | [`solid`] | [`Solid`](solid::Solid): contours at heights with walls and caps, its volume and its mesh |
+//! | [`mesh`] | [`Mesh`](mesh::Mesh): indexed triangles |
+//! | [`validity`] | [`examine`](validity::examine): faults of a mesh |
+//! | [`verification`] | [`verify`](verification::verify): comparison of a mesh with that of a second kernel |
+//! | [`files`] | STL, 3MF and GLB from meshes, STEP and DXF from exact solids |
+//! | [`render`] | pictures of meshes |
 //!
 //! ```
 //! use pinswitch_solid::files::{StepPart, step_part, stl_bytes};
@@ -13,7 +20,7 @@
 //! use pinswitch_solid::solid::Solid;
 //! use pinswitch_solid::validity::{Expectation, examine};
 //!
-//! // A washer: material lies to the left of every contour, so the hole runs clockwise.
+//! // A washer. Material is to the left of every contour, so that the hole runs clockwise.
 //! let outline = Contour::circle(Point2::origin(), 8.0);
 //! let hole = Contour::circle(Point2::origin(), 4.2).reversed();
 //! let washer = Solid::prism(&outline, &[hole], 0.0, 1.6, 0.0)?;
@@ -31,8 +38,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `cad/doc/meshes.md` explains why a mesh is valid, and what each check proves; `cad/examples/own_part.rs` and
-//! `cad/examples/check_stl.rs` are programs to start from.
+//! `cad/doc/meshes.md` explains why a mesh is valid and what each check proves.
+//! `cad/examples/own_part.rs` and `cad/examples/check_stl.rs` are example programs.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -44,3 +51,4 @@ pub mod profile;
 pub mod render;
 pub mod solid;
 pub mod validity;
+pub mod verification;

@@ -5,65 +5,66 @@ pub type Point3 = nalgebra::Point3<f64>;
 /// A displacement in space, in millimetres.
 pub type Vector3 = nalgebra::Vector3<f64>;
 
-/// A triangle mesh; triangles run counter-clockwise seen from outside.
+/// A triangle mesh. Seen from outside, triangles are counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertices in millimetres.
     pub positions: Vec<Point3>,
-    /// Vertex numbers of each triangle.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// A mesh from vertices and triangles.
+    /// Creates a mesh from vertices and triangles.
     pub fn new(positions: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Self {
         Self { positions, triangles }
     }
 
-    /// The corners of triangle `t`.
+    /// Returns the corners of triangle `t`.
     pub fn corners(&self, t: [u32; 3]) -> [Point3; 3] {
         let [a, b, c] = t;
         [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
-    /// Corners of every triangle.
+    /// Returns the corners of every triangle.
     pub fn facets(&self) -> impl Iterator<Item = [Point3; 3]> + '_ {
         self.triangles.iter().map(|t| self.corners(*t))
     }
 
-    /// Volume in mm³ by the divergence theorem along x, y and z. The three agree if the mesh is closed.
+    /// Returns the volume in mm³ by the divergence theorem along x, y and z. The three are equal
+    /// for a closed mesh.
     pub fn axis_volumes_mm3(&self) -> [f64; 3] {
         axis_volumes_about(self.middle(), self.facets())
     }
 
-    /// Volume in mm³, the mean of the three axis integrals.
+    /// Returns the volume in mm³, the mean of the three axis integrals.
     pub fn volume_mm3(&self) -> f64 {
         mean(self.axis_volumes_mm3())
     }
 
-    /// Middle of the bounding box; the origin without vertices.
+    /// Centre of the bounding box; the origin without vertices.
     pub(crate) fn middle(&self) -> Point3 {
         self.bounds().map_or(Point3::origin(), |(low, high)| nalgebra::center(&low, &high))
     }
 
-    /// Surface in mm².
+    /// Returns the area of the surface in mm².
     pub fn surface_mm2(&self) -> f64 {
         self.facets().map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
     }
 
-    /// Lower and upper corner of the bounding box; `None` without vertices.
+    /// Returns the lower and upper corner of the bounding box; `None` without vertices.
     pub fn bounds(&self) -> Option<(Point3, Point3)> {
         self.positions.iter().map(|p| (*p, *p)).reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
     }
 
-    /// The mesh moved by `by`.
+    /// Returns the mesh translated by `by`.
     #[must_use]
     pub fn translated(mut self, by: Vector3) -> Self {
         self.positions.iter_mut().for_each(|p| *p += by);
         self
     }
 
-    /// The mesh turned half round about the y axis.
+    /// Returns the mesh rotated by 180 degrees about the y axis.
     #[must_use]
     pub fn flipped_about_y(mut self) -> Self {
         self.positions.iter_mut().for_each(|p| *p = Point3::new(-p.x, p.y, -p.z));
@@ -71,8 +72,9 @@ impl Mesh {
     }
 }
 
-/// Volume in mm³ of a closed surface along x, y and z, measured from `middle`: from the middle of its bounding box, a
-/// part far from the origin loses no digits.
+/// Volume in mm³ of a closed surface by the divergence theorem along x, y and z, relative to
+/// `middle`. Relative to the centre of its bounding box, a part far from the origin loses no
+/// digits.
 pub(crate) fn axis_volumes_about(middle: Point3, facets: impl Iterator<Item = [Point3; 3]>) -> [f64; 3] {
     let mut sums = Vector3::zeros();
     for [a, b, c] in facets {
@@ -83,7 +85,7 @@ pub(crate) fn axis_volumes_about(middle: Point3, facets: impl Iterator<Item = [P
     [sums.x, sums.y, sums.z]
 }
 
-/// The mean of what is measured along three axes.
+/// The mean of three axis integrals.
 pub(crate) fn mean(axes: [f64; 3]) -> f64 {
     axes.iter().sum::<f64>() / 3.0
 }

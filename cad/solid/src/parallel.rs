@@ -1,16 +1,18 @@
-//! The only place of this crate that knows threads; without the feature `parallel` its functions are plain loops.
+//! Parallel loops. Without the feature `parallel`, they run on one thread.
 //!
-//! Chunks have a fixed size and their results come back in order, so nothing found depends on the number of threads.
+//! Chunks have a fixed size and their results are in order, so that results do not depend on the
+//! number of threads.
 
 use std::ops::Range;
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-/// Items of one chunk. A mesh with fewer is left to one thread: handing it out would take longer than the work.
+/// Items per chunk. Fewer are processed on one thread: starting tasks would take longer than the
+/// work.
 const CHUNK: usize = 4096;
 
-/// `work` on the numbers below `len`, chunk by chunk, with the results in the order of the chunks.
+/// Calls `work` on chunks of the range `0..len`; returns the results in the order of the chunks.
 pub(crate) fn in_chunks<R: Send>(len: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     if len <= CHUNK {
         return vec![work(0..len)];
@@ -23,7 +25,7 @@ pub(crate) fn in_chunks<R: Send>(len: usize, work: impl Fn(Range<usize>) -> R + 
     return chunks.map(chunk).collect();
 }
 
-/// Both results, worked out at the same time if there are `len` items enough for two threads.
+/// Calls both functions, in parallel if `len` items are more than a chunk.
 pub(crate) fn both<A: Send, B: Send>(
     len: usize,
     a: impl FnOnce() -> A + Send,
@@ -37,7 +39,7 @@ pub(crate) fn both<A: Send, B: Send>(
     (a(), b())
 }
 
-/// Sorts without keeping the order of equal items; items that are equal must be alike.
+/// Sorts without keeping the order of equal items, which must be identical.
 pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
     #[cfg(feature = "parallel")]
     if items.len() > CHUNK {

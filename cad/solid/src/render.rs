@@ -1,4 +1,4 @@
-//! Pictures of parts: a small software renderer with a depth buffer and four samples per pixel, two along each side.
+//! Pictures of parts: a software renderer with a depth buffer and two by two samples per pixel.
 
 use nalgebra::{Rotation3, Unit};
 
@@ -7,18 +7,18 @@ use crate::mesh::{Mesh, Point3, Vector3};
 /// A body to draw.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Its triangles.
+    /// Mesh.
     pub mesh: Mesh,
-    /// Its colour: red, green, blue.
+    /// Colour: red, green, blue.
     pub colour: [u8; 3],
 }
 
-/// Where the camera stands: looking at the middle of everything, without perspective.
+/// Direction of the camera, which looks at the centre of all bodies in parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Turn about the z axis, degrees.
+    /// Angle about the z axis, degrees.
     pub turn_deg: f64,
-    /// Height above the horizon, degrees.
+    /// Elevation above the horizon, degrees.
     pub rise_deg: f64,
 }
 
@@ -33,25 +33,25 @@ pub struct Picture {
     pub pixels: Vec<u8>,
 }
 
-/// Samples per pixel, along each side.
+/// Samples per pixel along each axis.
 const SAMPLES: usize = 2;
-/// Rows of samples that are drawn at a time: they fit in the processor's cache.
+/// Rows of samples per band, which fits in the processor's cache.
 const BAND_SAMPLES: usize = 16 * SAMPLES;
-/// Share of the picture that is left free around the bodies.
+/// Margin around the bodies as a share of the picture.
 const MARGIN: f64 = 0.06;
 const BACKGROUND: [f32; 3] = [250.0, 250.0, 248.0];
-/// Depth of a sample that nothing covers.
+/// Depth of a background sample.
 const NOTHING: f32 = f32::NEG_INFINITY;
-/// Step in depth, mm, at which an edge shows.
+/// Difference in depth, mm, above which an edge is drawn.
 const EDGE_MM: f32 = 0.35;
-/// Brightness of an edge.
+/// Brightness of an edge relative to its face.
 const EDGE_SHADE: f32 = 0.35;
 
 impl Picture {
-    /// The picture as PNG.
+    /// Returns the picture as PNG.
     ///
     /// # Errors
-    /// The encoder's error; memory does not fail.
+    /// That of the encoder; writing to memory does not fail.
     pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
@@ -84,7 +84,7 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
     for (number, faces_of_band) in by_band(&faces, rows).into_iter().enumerate() {
         let first = number * BAND_SAMPLES;
         let last = (first + BAND_SAMPLES).min(rows);
-        // One row more than is shown: an edge is seen against the sample below.
+        // One more row than is shown: edges depend on the sample below.
         band.clear(first, (last + 1).min(rows));
         for face in faces_of_band {
             band.fill(&faces[face as usize], face);
@@ -94,13 +94,14 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
     Picture { width, height, pixels }
 }
 
-/// A triangle that faces the camera, in samples of the picture, with its depth as a plane.
+/// A triangle that faces the camera, in sample coordinates, with its depth as a plane.
 struct Face {
-    /// Corners from the highest to the lowest: across and down.
+    /// Corners from the highest to the lowest, as column and row.
     corners: [[f64; 2]; 3],
-    /// How far across the sides run for each row: highest to lowest corner, highest to middle, middle to lowest.
+    /// Change in column per row of the sides: highest to lowest corner, highest to middle, middle
+    /// to lowest.
     slopes: [f64; 3],
-    /// Depth in mm at the picture's origin, and its slope across and down.
+    /// Depth in mm at the origin of the picture, and its slopes per column and row.
     depth: [f64; 3],
     colour: [f32; 3],
 }
@@ -141,12 +142,12 @@ fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> Ve
     .collect()
 }
 
-/// Numbers of the faces that each band of rows shows, in the order of the faces.
+/// Indices of the faces in each band of rows, ascending.
 #[allow(clippy::cast_possible_truncation)]
 fn by_band(faces: &[Face], rows: usize) -> Vec<Vec<u32>> {
     let mut bands = vec![Vec::new(); rows.div_ceil(BAND_SAMPLES)];
     for (number, face) in (0u32..).zip(faces) {
-        // The first row of a band also belongs to the band above it.
+        // The first row of a band is also the last of the band above.
         let (highest, lowest) = face.rows();
         let first = first_from(highest - 1.0, rows).saturating_sub(1) / BAND_SAMPLES;
         let last = first_from(lowest, rows) / BAND_SAMPLES;
@@ -158,7 +159,7 @@ fn by_band(faces: &[Face], rows: usize) -> Vec<Vec<u32>> {
 }
 
 impl Face {
-    /// `None` for a triangle that is seen edge on.
+    /// Creates a face; `None` for a triangle seen edge-on.
     fn new([a, b, c]: [Point3; 3], colour: [f32; 3]) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);
         let area = ab.x * ac.y - ab.y * ac.x;
@@ -170,7 +171,7 @@ impl Face {
         let mut corners = [a, b, c].map(|p| [p.x, p.y]);
         corners.sort_by(|p, q| p[1].total_cmp(&q[1]));
         let [top, middle, bottom] = corners;
-        // A side along a row is never met by one.
+        // No row intersects a side along a row.
         let slope = |p: [f64; 2], q: [f64; 2]| if q[1] > p[1] { (q[0] - p[0]) / (q[1] - p[1]) } else { 0.0 };
         Some(Self {
             corners,
@@ -180,13 +181,14 @@ impl Face {
         })
     }
 
-    /// The row of its highest corner and that of its lowest.
+    /// Rows of the highest and the lowest corner.
     const fn rows(&self) -> (f64, f64) {
         (self.corners[0][1], self.corners[2][1])
     }
 
-    /// Where a horizontal line at `y`, between highest and lowest corner, enters and leaves the triangle. Faces that share
-    /// a side agree on it: it is always followed from its higher end.
+    /// Columns where a horizontal line at `y`, between the highest and lowest corner, enters and
+    /// leaves the triangle. Faces that share a side agree, because a side is always followed from
+    /// its higher end.
     fn span(&self, y: f64) -> (f64, f64) {
         let [top, middle, _] = self.corners;
         let long = top[0] + self.slopes[0] * (y - top[1]);
@@ -199,7 +201,7 @@ impl Face {
     }
 }
 
-/// Some rows of samples: the depth of each, and the number of the face that covers it.
+/// A band of rows: the depth of each sample, and the index of its face.
 struct Band {
     columns: usize,
     first_row: usize,
@@ -220,7 +222,7 @@ impl Band {
         self.faces.resize(self.rows * self.columns, 0);
     }
 
-    /// Fills the samples whose middle lies in `face`; the nearer sample stays.
+    /// Draws the samples whose centre is in `face` and that are nearer than the present ones.
     #[allow(clippy::cast_possible_truncation)]
     fn fill(&mut self, face: &Face, number: u32) {
         let top = self.first_row as f64 + 0.5;
@@ -244,16 +246,17 @@ impl Band {
         }
     }
 
-    /// Appends the pixels of `rows` rows of samples: the mean of a pixel's samples, darkened at steps in depth.
+    /// Appends the pixels of `rows` rows of samples: the means of their samples, darker at steps in
+    /// depth.
     fn shade(&self, rows: usize, faces: &[Face], pixels: &mut Vec<u8>) {
         for row in (0..rows).step_by(SAMPLES) {
             let lines: [&[f32]; SAMPLES + 1] = std::array::from_fn(|i| {
-                // Below the last row there is none, and so no step to see: it stands for itself.
+                // The last row has none below it, and no edge.
                 let i = (row + i).min(self.rows - 1);
                 &self.depths[i * self.columns..(i + 1) * self.columns]
             });
             for column in (0..self.columns).step_by(SAMPLES) {
-                // One column more than the pixel has, but for the last.
+                // One more column than the pixel has, except for the last.
                 let seen = column..(column + SAMPLES + 1).min(self.columns);
                 if lines.iter().all(|line| line[seen.clone()].iter().all(|depth| *depth == NOTHING)) {
                     pixels.extend(BACKGROUND.map(to_byte));
@@ -264,7 +267,7 @@ impl Band {
         }
     }
 
-    /// The colour of the pixel whose first sample stands in this row and column.
+    /// The colour of the pixel with its first sample in this row and column.
     fn pixel(&self, row: usize, column: usize, lines: &[&[f32]; SAMPLES + 1], faces: &[Face]) -> [f32; 3] {
         let mut sum = [0.0; 3];
         for (i, j) in (0..SAMPLES * SAMPLES).map(|sample| (sample / SAMPLES, column + sample % SAMPLES)) {
@@ -283,21 +286,22 @@ impl Band {
     }
 }
 
-/// Whether an edge shows between samples of these depths: one of them is empty, or they lie far apart.
+/// Whether there is an edge between samples of these depths: one is background, or they differ by
+/// more than [`EDGE_MM`].
 fn is_step(a: f32, b: f32) -> bool {
     a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > EDGE_MM)
 }
 
-/// A colour between 0 and 255, rounded.
+/// Rounds a colour between 0 and 255.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn to_byte(value: f32) -> u8 {
     (value + 0.5) as u8
 }
 
-/// The first whole number from `x` on, within 0 and `most`.
+/// The least integer from `x` on, within 0 and `most`.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn first_from(x: f64, most: usize) -> usize {
-    // The cast cuts off, and turns what is negative into zero.
+    // The cast truncates, and turns negative numbers into zero.
     let floor = x as usize;
     (floor + usize::from((floor as f64) < x)).min(most)
 }

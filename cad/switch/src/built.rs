@@ -9,10 +9,12 @@ use crate::diagnosis::diagnosed;
 use crate::output::BuildError;
 use crate::parallel::map_each;
 use crate::parts::{Part, Role, fit_on_bed, printed, reference_bodies};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::{Expectation, MeshFacts, examine};
+use pinswitch_solid::verification::{Kernel, Verification, verify};
 
 /// A body with its mesh about the pulley's axis, standing on z = 0.
 #[derive(Clone, Debug)]
@@ -99,6 +101,23 @@ pub fn examined_print_mesh(
         .map_err(|e| diagnosed(e, design))
 }
 
+/// Compares the mesh of `part` as it is written, on the print bed, with that of a second kernel.
+///
+/// # Errors
+/// A diagnostic that names the part, the quantity, both values and the bound.
+pub fn verified(
+    part: &Part,
+    print_mesh: &Mesh,
+    design: &Design,
+    kernel: Kernel,
+) -> Result<Verification, Diagnostic> {
+    let mesh = print_mesh.clone().translated(-part.print_shift_mm());
+    verify(&part.solid, &mesh, design.tolerance(), kernel).map_err(|error| {
+        let location = Location { field: Some(part.name.clone()), ..Location::default() };
+        Diagnostic::from(error).with_location(location)
+    })
+}
+
 /// What the mesh measures, if it is valid.
 fn examined(part: &Part, print_mesh: &Mesh, design: &Design) -> Result<MeshFacts, BuildError> {
     let expected = Expectation { intersections: false, ..part.expectation(design) };
@@ -180,6 +199,17 @@ impl Built {
     /// The printed parts, in the order of [`crate::parts::PRINTED_PARTS`].
     pub fn printed(&self) -> &[BuiltPart] {
         &self.printed
+    }
+
+    /// Compares the mesh of every printed part with that of a second kernel, in the order of [`Self::printed`].
+    ///
+    /// # Errors
+    /// The first part whose mesh the kernel does not confirm.
+    pub fn verified(&self, kernel: Kernel) -> Result<Vec<Verification>, Diagnostic> {
+        let parts = self.printed.iter().collect();
+        map_each(parts, |p: &BuiltPart| verified(p.part(), &p.print_mesh, &self.design, kernel))
+            .into_iter()
+            .collect()
     }
 
     /// Layer and pins.

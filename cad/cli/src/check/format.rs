@@ -1,60 +1,86 @@
-//! Kinds of files that can be checked: how each is recognised, read and examined.
+//! Formats that can be checked: how each is recognised, read and examined.
 
 use std::io::{BufRead, Read, Seek};
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_solid::files::{read_stl, read_three_mf};
 use pinswitch_solid::validity::{Examination, Expectation, Fault, examine, shared_place};
 
 use super::verdict::PartVerdict;
 
-/// A kind of file.
+/// Depth in mm below which two solids of a 3MF only touch: exporters round coordinates, and parts
+/// may be adjacent.
+const CONTACT_DEPTH_MM: f64 = 0.05;
+
+/// A format that can be checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Stl,
     ThreeMf,
-    Step,
 }
 
-/// What the file as a whole is wrong about, and its parts.
+/// Faults of a file as a whole, and the verdict on each of its parts.
 type Parts = (Vec<Fault>, Vec<PartVerdict>);
 
 impl Format {
-    /// By how a file begins. What is none of the others may be an STL, or is refused as one.
-    pub(super) fn of(head: &[u8]) -> Self {
+    /// Detects the format from the first bytes of a file. Any other content is left to the reader
+    /// of STL, which names it.
+    ///
+    /// # Errors
+    /// A diagnostic for a STEP file.
+    pub(super) fn detect(head: &[u8]) -> Result<Self, Diagnostic> {
         let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
         if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-            Self::ThreeMf
+            Ok(Self::ThreeMf)
         } else if text.starts_with(b"ISO-10303-21") {
-            Self::Step
+            Err(unsupported_step())
         } else {
-            Self::Stl
+            Ok(Self::Stl)
         }
     }
 
+    /// Name of the format in the JSON output.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Stl => "stl",
             Self::ThreeMf => "3mf",
-            Self::Step => "step",
         }
     }
 
-    /// Longest file that is examined, in bytes: a mesh takes several times that.
-    pub(super) fn longest(self) -> u64 {
+    /// Size in bytes of the largest file that is examined: a mesh takes several times that in
+    /// memory.
+    pub(super) fn max_bytes(self) -> u64 {
         match self {
             Self::Stl => 2 << 30,
             Self::ThreeMf => 512 << 20,
-            Self::Step => 256 << 20,
         }
     }
 }
 
-/// Examines an STL.
+/// The diagnostic of a STEP file. An exact solid needs a CAD kernel to be judged, and this program
+/// has none.
+fn unsupported_step() -> Diagnostic {
+    Diagnostic::new("check does not support STEP").with_help(
+        "check it in the CAD program that made it, or with FreeCAD or another program based on Open CASCADE; \
+         the STEP files that pinswitch writes are tested with independent readers (tests/programs/judges.rs)",
+    )
+}
+
+/// The diagnostic of a file that cannot be read.
+pub(super) fn unreadable(error: std::io::Error) -> Diagnostic {
+    Diagnostic::new(format!("cannot read the file: {error}"))
+        .with_help("give a file that exists and can be read")
+}
+
+/// Examines an STL; returns the examination and remarks that are not faults.
+///
+/// # Errors
+/// A diagnostic if the file is not an STL.
 pub(super) fn stl(
     reader: &mut (impl BufRead + Seek),
     expected: &Expectation,
-) -> Result<(Examination, Vec<String>), String> {
-    let stl = read_stl(reader).map_err(|e| e.to_string())?;
+) -> Result<(Examination, Vec<String>), Diagnostic> {
+    let stl = read_stl(reader)?;
     let mut examination = examine(&stl.mesh, expected);
     if stl.contrary_normals > 0 {
         examination.faults.push(Fault {
@@ -64,19 +90,19 @@ pub(super) fn stl(
             detail: format!("{} stored normals contradict the order of the corners", stl.contrary_normals),
         });
     }
-    let mut remarks = Vec::new();
-    if stl.trailing_bytes > 0 {
-        remarks
-            .push(format!("{} bytes follow the last triangle; readers pass over them", stl.trailing_bytes));
-    }
-    Ok((examination, remarks))
+    let trailing = (stl.trailing_bytes > 0)
+        .then(|| format!("{} bytes follow the last triangle; readers ignore them", stl.trailing_bytes));
+    Ok((examination, trailing.into_iter().collect()))
 }
 
-/// Examines each solid object of a 3MF, and whether those that are built share space.
-pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, String> {
+/// Examines each solid object of a 3MF, and whether the items on the plate overlap.
+///
+/// # Errors
+/// A diagnostic if the file is not a 3MF.
+pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, Diagnostic> {
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
-    let package = read_three_mf(&bytes).map_err(|e| e.to_string())?;
+    reader.read_to_end(&mut bytes).map_err(unreadable)?;
+    let package = read_three_mf(&bytes)?;
     drop(bytes);
     let each = Expectation { bodies: None, ..*expected };
     let parts: Vec<PartVerdict> = package
@@ -87,11 +113,11 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
         .collect();
     let mut faults = package.faults;
     if parts.iter().all(|part| part.valid) {
-        for (i, (item, name, mesh)) in package.built.iter().enumerate() {
-            // Solids of one item are one object, which may be put together from any.
-            for (_, other, beside) in package.built[..i].iter().filter(|(other, ..)| other != item) {
-                if let Some(at) = shared_place(mesh, beside, SHARED_MM) {
-                    let detail = format!("{other} and {name} share space on the plate");
+        for (i, solid) in package.built.iter().enumerate() {
+            // Solids of one item form one object, which may be composed of any.
+            for other in package.built[..i].iter().filter(|other| other.item != solid.item) {
+                if let Some(at) = shared_place(&solid.mesh, &other.mesh, CONTACT_DEPTH_MM) {
+                    let detail = format!("{} and {} overlap on the plate", other.name, solid.name);
                     faults.push(Fault { check: "overlap", count: 1, at_mm: Some(at), detail });
                 }
             }
@@ -106,90 +132,4 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
         });
     }
     Ok((faults, parts))
-}
-
-/// Solids of a 3MF lie this deep inside one another before they share space, mm: exporters round, and parts may touch.
-const SHARED_MM: f64 = 0.05;
-
-/// Solids of a STEP lie this many chord tolerances inside one another before they share space.
-#[cfg(feature = "truck")]
-const SHARED_TOLERANCES: f64 = 5.0;
-
-/// Examines each solid of a STEP, and whether those of an assembly share space.
-#[cfg(feature = "truck")]
-pub(super) fn step(
-    mut reader: impl Read,
-    expected: &Expectation,
-    tolerance_mm: f64,
-) -> Result<Parts, String> {
-    use pinswitch_solid::files::read_step;
-    use pinswitch_solid::mesh::Mesh;
-    use pinswitch_solid::profile::ChordTolerance;
-
-    say_nothing_of_truck();
-    let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
-    let tolerance = ChordTolerance::new(tolerance_mm).map_err(|e| e.to_string())?;
-    // By the standard it is ASCII; names may be in whatever the program spoke.
-    let read = read_step(&String::from_utf8_lossy(&bytes), tolerance).map_err(|e| e.to_string())?;
-    let each = Expectation { bodies: None, ..*expected };
-    let mut parts = Vec::new();
-    let mut placed: Vec<(&str, Mesh)> = Vec::new();
-    for solid in &read.solids {
-        let mut examination = examine(&solid.mesh, &each);
-        if solid.untriangulated > 0 {
-            examination.faults.push(Fault {
-                check: "face",
-                count: solid.untriangulated,
-                at_mm: None,
-                detail: format!(
-                    "{} faces cannot be triangulated: their edges do not close on them",
-                    solid.untriangulated
-                ),
-            });
-        }
-        parts.push(PartVerdict::new(solid.name.clone(), examination));
-        for place in &solid.placements {
-            let positions = solid.mesh.positions.iter().map(|p| place.transform_point(p)).collect();
-            placed.push((&solid.name, Mesh::new(positions, solid.mesh.triangles.clone())));
-        }
-    }
-    let mut faults = read.faults;
-    // Only of closed solids can be told what lies inside.
-    if parts.iter().all(|part| part.valid) {
-        for (i, (name, mesh)) in placed.iter().enumerate() {
-            for (other, beside) in &placed[..i] {
-                if let Some(at) = shared_place(mesh, beside, SHARED_TOLERANCES * tolerance_mm) {
-                    faults.push(Fault {
-                        check: "overlap",
-                        count: 1,
-                        at_mm: Some(at),
-                        detail: format!("{other} and {name} share space"),
-                    });
-                }
-            }
-        }
-    }
-    Ok((faults, parts))
-}
-
-/// Where truck gives up on a file, it panics; that is caught and told in one sentence. A panic of our own is still heard.
-#[cfg(feature = "truck")]
-fn say_nothing_of_truck() {
-    static ONCE: std::sync::Once = std::sync::Once::new();
-    ONCE.call_once(|| {
-        let usual = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            let file = info.location().map_or("", |place| place.file());
-            if !["truck-", "ruststep", "spade", "cgmath"].iter().any(|name| file.contains(name)) {
-                usual(info);
-            }
-        }));
-    });
-}
-
-/// STEP is read through truck, which this build was made without.
-#[cfg(not(feature = "truck"))]
-pub(super) fn step(_: impl Read, _: &Expectation, _: f64) -> Result<Parts, String> {
-    Err("a STEP file, and this build reads none; build with --features brep".to_owned())
 }

@@ -1,15 +1,19 @@
-//! What is known of a file: of all of it, and of each part of a file that holds several.
+//! Verdicts: the outcome of the check of a file, and of each part of a file that contains several.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use pinswitch_diagnostic::{Diagnostic, excerpt, neutral};
 use pinswitch_solid::validity::{Examination, Expectation, Fault, MeshFacts};
 use serde::Serialize;
 
-use super::format::{self, Format};
+use super::format::{self, Format, unreadable};
 
-/// What is known of one file; its facts are those of all its parts together.
+/// Longest text from a file that is printed, in characters.
+const MAX_CHARACTERS: usize = 300;
+
+/// The outcome of the check of one file; its facts are the sums over its parts.
 #[derive(Debug, Serialize)]
 pub(super) struct Verdict {
     file: String,
@@ -17,15 +21,15 @@ pub(super) struct Verdict {
     pub(super) valid: bool,
     #[serde(flatten)]
     examination: Examination,
-    /// Objects of a 3MF, solids of a STEP.
+    /// Objects of a 3MF.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartVerdict>,
-    /// What is worth knowing, and no fault.
+    /// Observations that are not faults.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     remarks: Vec<String>,
 }
 
-/// What is known of one part of a file.
+/// The outcome of the check of one part of a file.
 #[derive(Debug, Serialize)]
 pub(super) struct PartVerdict {
     pub(super) name: String,
@@ -40,48 +44,45 @@ impl PartVerdict {
     }
 }
 
-/// Examines a file of any kind that is known.
-pub(super) fn of(file: &Path, expected: &Expectation, tolerance_mm: f64) -> Result<Verdict, String> {
-    if file.is_dir() {
-        return Err("it is a folder; give the files in it".to_owned());
-    }
-    let opened =
-        File::open(file).map_err(|e| format!("cannot read: {e}; give a file that exists and can be read"))?;
-    let length =
-        opened.metadata().map_err(|e| format!("cannot read: {e}; give a file that can be read"))?.len();
-    let mut reader = BufReader::new(opened);
-    let head = reader.fill_buf().map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
-    let format = Format::of(head);
-    let most = format.longest();
-    if length > most {
-        return Err(format!("holds {length} bytes, more than {most}; export it coarser"));
-    }
-    let name = file.display().to_string();
-    match format {
-        Format::Stl => {
-            let (examination, remarks) = format::stl(&mut reader, expected)?;
-            Ok(Verdict {
-                file: name,
-                format: format.name(),
-                valid: examination.is_valid(),
-                examination,
-                parts: Vec::new(),
-                remarks,
-            })
-        }
-        Format::ThreeMf => {
-            let (faults, parts) = format::three_mf(reader, expected)?;
-            Ok(Verdict::of_parts(name, format, faults, parts, expected))
-        }
-        Format::Step => {
-            let (faults, parts) = format::step(reader, expected, tolerance_mm)?;
-            Ok(Verdict::of_parts(name, format, faults, parts, expected))
-        }
-    }
-}
-
 impl Verdict {
-    /// Of a file with parts; `faults` are those of the file as a whole.
+    /// Reads and examines a file of any supported format.
+    ///
+    /// # Errors
+    /// A diagnostic if the file cannot be examined.
+    pub(super) fn of_file(file: &Path, expected: &Expectation) -> Result<Self, Diagnostic> {
+        if file.is_dir() {
+            return Err(Diagnostic::new("the path is a folder").with_help("give the files in it"));
+        }
+        let opened = File::open(file).map_err(unreadable)?;
+        let bytes = opened.metadata().map_err(unreadable)?.len();
+        let mut reader = BufReader::new(opened);
+        let format = Format::detect(reader.fill_buf().map_err(unreadable)?)?;
+        let most = format.max_bytes();
+        if bytes > most {
+            return Err(Diagnostic::new(format!("the file has {bytes} bytes, at most {most} are examined"))
+                .with_help("export it with a coarser mesh"));
+        }
+        let name = file.display().to_string();
+        match format {
+            Format::Stl => {
+                let (examination, remarks) = format::stl(&mut reader, expected)?;
+                Ok(Self {
+                    file: name,
+                    format: format.name(),
+                    valid: examination.is_valid(),
+                    examination,
+                    parts: Vec::new(),
+                    remarks,
+                })
+            }
+            Format::ThreeMf => {
+                let (faults, parts) = format::three_mf(reader, expected)?;
+                Ok(Self::of_parts(name, format, faults, parts, expected))
+            }
+        }
+    }
+
+    /// The verdict on a file with parts; `faults` are those of the file as a whole.
     fn of_parts(
         file: String,
         format: Format,
@@ -89,15 +90,14 @@ impl Verdict {
         parts: Vec<PartVerdict>,
         expected: &Expectation,
     ) -> Self {
-        let facts =
-            parts.iter().map(|p| &p.examination.facts).fold(None, |sum, facts| Some(together(sum, facts)));
-        let facts = facts.unwrap_or_default();
-        if let Some(wanted) = expected.bodies.filter(|wanted| *wanted != facts.bodies) {
+        let facts = parts.iter().map(|p| p.examination.facts.clone()).reduce(|sum, facts| sum.joined(&facts));
+        let facts: MeshFacts = facts.unwrap_or_default();
+        if let Some(bodies) = expected.bodies.filter(|bodies| *bodies != facts.bodies) {
             faults.push(Fault {
                 check: "bodies",
                 count: facts.bodies,
                 at_mm: None,
-                detail: format!("the file has {} bodies, expected are {wanted}", facts.bodies),
+                detail: format!("the file has {} bodies, expected {bodies}", facts.bodies),
             });
         }
         let valid = faults.is_empty() && parts.iter().all(|part| part.valid);
@@ -105,17 +105,27 @@ impl Verdict {
         Self { file, format: format.name(), valid, examination, parts, remarks: Vec::new() }
     }
 
-    /// The verdict in words, a line for the file and for each part, and one for each fault.
+    /// Formats the verdict for a person: a line for the file, for each part and for each fault.
+    ///
+    /// Names and faults contain text of the file, which may act on a terminal: control characters
+    /// become visible.
     pub(super) fn describe(&self) -> String {
-        let mut text = format!("{}: {}\n", self.file, summary(self.valid, &self.examination));
+        let mut text = format!("{}: {}\n", shown(&self.file), summary(self.valid, &self.examination));
         for part in &self.parts {
-            text += &format!("  {}: {}\n", part.name, summary(part.valid, &part.examination));
-            part.examination.faults.iter().for_each(|fault| text += &format!("    {fault}\n"));
+            text += &format!("  {}: {}\n", shown(&part.name), summary(part.valid, &part.examination));
+            let faults = part.examination.faults.iter();
+            faults.for_each(|fault| text += &format!("    {}\n", shown(&fault.to_string())));
         }
-        self.examination.faults.iter().for_each(|fault| text += &format!("  {fault}\n"));
+        let faults = self.examination.faults.iter();
+        faults.for_each(|fault| text += &format!("  {}\n", shown(&fault.to_string())));
         self.remarks.iter().for_each(|remark| text += &format!("  note: {remark}\n"));
         text
     }
+}
+
+/// The text on one line, of bounded length and without control characters.
+fn shown(text: &str) -> String {
+    neutral(&excerpt(text, MAX_CHARACTERS)).replace('\n', "\\n")
 }
 
 fn summary(valid: bool, examination: &Examination) -> String {
@@ -130,18 +140,21 @@ fn summary(valid: bool, examination: &Examination) -> String {
     )
 }
 
-/// Facts of what was seen so far and of one more.
-fn together(sum: Option<MeshFacts>, more: &MeshFacts) -> MeshFacts {
-    let Some(sum) = sum else { return more.clone() };
-    MeshFacts {
-        triangles: sum.triangles + more.triangles,
-        vertices: sum.vertices + more.vertices,
-        bodies: sum.bodies + more.bodies,
-        voids: sum.voids + more.voids,
-        volume_mm3: sum.volume_mm3 + more.volume_mm3,
-        surface_mm2: sum.surface_mm2 + more.surface_mm2,
-        low_mm: std::array::from_fn(|i| sum.low_mm[i].min(more.low_mm[i])),
-        high_mm: std::array::from_fn(|i| sum.high_mm[i].max(more.high_mm[i])),
-        min_height_mm: sum.min_height_mm.min(more.min_height_mm),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible() {
+        let name = "\u{1b}]0;title\u{7}\nfake: valid".to_owned();
+        let fault = Fault { check: "vocabulary", count: 1, at_mm: None, detail: "\u{9b}2J".repeat(1000) };
+        let part = PartVerdict::new(name, Examination { faults: vec![fault], ..Examination::default() });
+        let expected = Expectation::default();
+        let verdict =
+            Verdict::of_parts("a\r.3mf".to_owned(), Format::ThreeMf, Vec::new(), vec![part], &expected);
+        let text = verdict.describe();
+        assert_eq!(text.lines().count(), 3, "{text}");
+        assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() < 2000), "{text}");
     }
 }

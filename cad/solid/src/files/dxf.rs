@@ -1,14 +1,14 @@
-//! DXF (R12) of profiles: lines and arcs as such, one layer per height.
+//! DXF (R12) of profiles: exact lines and arcs, one layer per height.
 //!
-//! R12 is what every laser cutter and CAD program reads. Written here because writers of whole drawings stamp time and
-//! random handles into the file.
+//! Every laser cutter and CAD program reads R12. Libraries that write whole drawings add time
+//! stamps and random handles, so that the same input would not give the same bytes.
 
 use std::fmt::Write as _;
 
 use crate::profile::{Contour, Edge};
 use crate::solid::Solid;
 
-/// The contours of `solid` at every height, in mm, seen from above.
+/// Returns the contours of `solid` at every height, in mm, seen from above.
 pub fn dxf(solid: &Solid) -> String {
     let mut text = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n"
         .to_owned();
@@ -29,7 +29,7 @@ fn entities(text: &mut String, contour: &Contour, layer: &str) {
                 from.x, from.y, to.x, to.y
             ),
             Edge::Arc(arc) => {
-                // An arc runs counter-clockwise from its first angle to its second.
+                // DXF arcs run counter-clockwise from their first angle to their second.
                 let (a, b) = (arc.start_rad, arc.start_rad + arc.sweep_rad);
                 let (first, second) = if arc.sweep_rad > 0.0 { (a, b) } else { (b, a) };
                 let degrees = |angle: f64| angle.to_degrees().rem_euclid(360.0);

@@ -1,5 +1,6 @@
 //! GLB (glTF 2.0, binary): named bodies with materials, for viewers and web pages.
 
+use pinswitch_diagnostic::Diagnostic;
 use serde_json::{Value, json};
 
 use crate::mesh::Mesh;
@@ -7,31 +8,37 @@ use crate::mesh::Mesh;
 /// A body of a scene.
 #[derive(Clone, Debug)]
 pub struct GlbBody<'a> {
-    /// Name of its node.
+    /// Name of the node.
     pub name: &'a str,
-    /// Its mesh where it stands, in millimetres.
+    /// Mesh in its place, in millimetres.
     pub mesh: &'a Mesh,
-    /// What it is made of.
+    /// Material.
     pub material: GlbMaterial<'a>,
 }
 
-/// A material: the same name, the same look.
+/// A material. Equal materials are written once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlbMaterial<'a> {
-    /// Its name.
+    /// Name.
     pub name: &'a str,
-    /// Red, green, blue, as a screen shows them.
+    /// Red, green, blue in sRGB.
     pub colour: [u8; 3],
-    /// From 0, glass, to 1.
+    /// Opacity from 0 (transparent) to 1.
     pub opacity: f64,
-    /// Whether it is a metal.
+    /// Whether the material is a metal.
     pub metal: bool,
 }
 
-/// A scene cannot be put together.
+/// A scene that is too large for the format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("GLB: the bodies take more than four gigabytes")]
+#[error("cannot write the GLB: the bodies take more than four gigabytes")]
 pub struct GlbError;
+
+impl From<GlbError> for Diagnostic {
+    fn from(error: GlbError) -> Self {
+        Self::new(error.to_string()).with_help("raise the chord tolerance")
+    }
+}
 
 const MAGIC: u32 = 0x4654_6C67;
 const JSON_CHUNK: u32 = 0x4E4F_534A;
@@ -40,13 +47,13 @@ const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
-/// glTF counts in metres.
+/// Metres per millimetre: the unit of glTF is the metre.
 const METRES: f64 = 1e-3;
 
-/// The scene `name` of `bodies`, y up as they are. The same input gives the same bytes.
+/// Returns the scene `name` of `bodies`, with the y axis up. The same input gives the same bytes.
 ///
 /// # Errors
-/// [`GlbError`] if it is longer than the format can say.
+/// [`GlbError`] if the file is longer than four gigabytes.
 pub fn glb(name: &str, bodies: &[GlbBody<'_>]) -> Result<Vec<u8>, GlbError> {
     let mut data = Vec::new();
     let (mut views, mut accessors, mut meshes, mut nodes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -82,7 +89,7 @@ pub fn glb(name: &str, bodies: &[GlbBody<'_>]) -> Result<Vec<u8>, GlbError> {
         "scenes": [{ "name": name, "nodes": [root] }],
         "nodes": nodes,
         "meshes": meshes,
-        "materials": materials.iter().map(look).collect::<Vec<_>>(),
+        "materials": materials.iter().map(material_json).collect::<Vec<_>>(),
         "accessors": accessors,
         "bufferViews": views,
         "buffers": [{ "byteLength": data.len() }],
@@ -99,7 +106,7 @@ pub fn glb(name: &str, bodies: &[GlbBody<'_>]) -> Result<Vec<u8>, GlbError> {
     Ok(out)
 }
 
-/// Single precision, without negative zeros.
+/// A number in single precision, with -0 as +0.
 #[allow(clippy::cast_possible_truncation)]
 fn single(value: f64) -> f32 {
     value as f32 + 0.0
@@ -109,7 +116,7 @@ fn bytes(value: f64) -> [u8; 4] {
     single(value).to_le_bytes()
 }
 
-/// The accessor of a mesh's vertices, with the bounds that the format asks for.
+/// The accessor of the vertices of a mesh, with the bounds that the format requires.
 fn positions(mesh: &Mesh, view: usize, count: usize) -> Value {
     let (low, high) = mesh.bounds().unwrap_or_default();
     let corner = |p: crate::mesh::Point3| [p.x, p.y, p.z].map(single);
@@ -119,22 +126,22 @@ fn positions(mesh: &Mesh, view: usize, count: usize) -> Value {
     })
 }
 
-/// Appends bytes, which are a multiple of four, and says where they lie.
+/// Appends bytes, whose number is a multiple of four, and returns their buffer view.
 fn view(data: &mut Vec<u8>, bytes: &[u8], target: u32) -> Value {
     let offset = data.len();
     data.extend(bytes);
     json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len(), "target": target })
 }
 
-/// A material as glTF describes it: its colour is linear.
-fn look(material: &GlbMaterial<'_>) -> Value {
+/// A material in glTF, with linear colours.
+fn material_json(material: &GlbMaterial<'_>) -> Value {
     let linear = |c: u8| {
         let share = f64::from(c) / 255.0;
         let value = if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) };
         (value * 1e6).round() / 1e6
     };
     let [red, green, blue] = material.colour.map(linear);
-    let mut look = json!({
+    let mut value = json!({
         "name": material.name,
         "doubleSided": false,
         "pbrMetallicRoughness": {
@@ -144,9 +151,9 @@ fn look(material: &GlbMaterial<'_>) -> Value {
         },
     });
     if material.opacity < 1.0 {
-        look["alphaMode"] = json!("BLEND");
+        value["alphaMode"] = json!("BLEND");
     }
-    look
+    value
 }
 
 #[cfg(test)]
@@ -155,7 +162,7 @@ mod tests {
     use crate::mesh::Point3;
 
     #[test]
-    fn a_scene_holds_what_its_header_says() {
+    fn a_scene_matches_its_header() {
         let positions = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
         let mesh = Mesh::new(
             positions.map(|[x, y, z]| Point3::new(x, y, z)).to_vec(),

@@ -2,23 +2,17 @@
 
 mod dxf;
 mod glb;
-mod kind;
 mod plate;
 mod step;
 mod stl;
-mod stl_facets;
-mod stl_text;
 mod three_mf;
-mod vertex_join;
 
 pub use dxf::dxf;
 pub use glb::{GlbBody, GlbError, GlbMaterial, glb};
 pub use plate::{BED_EDGE_MM, Box3, PART_GAP_MM, Placement, lay_out, needed_bed_mm};
-#[cfg(feature = "truck")]
-pub use step::{ReadSolid, StepFile, StepReadError, read_step};
 pub use step::{StepPart, step_assembly, step_part};
 pub use stl::{StlError, StlFile, read_stl, stl_bytes};
 pub use three_mf::{
-    BaseMaterial, Object, Package, PackagedMesh, ThreeMf, ThreeMfError, ThreeMfReadError, read_three_mf,
-    three_mf,
+    BaseMaterial, Object, Package, PackagedMesh, PlacedMesh, ThreeMf, ThreeMfError, ThreeMfReadError,
+    read_three_mf, three_mf,
 };

@@ -1,31 +1,33 @@
-//! Parts side by side on as many print beds as they need: rows (shelves), the deepest parts first.
+//! Layout of parts on print beds: rows (shelves), first fit by decreasing depth, on as many beds as
+//! necessary.
 
 use nalgebra::Vector2;
 
 use crate::mesh::{Mesh, Point3, Vector3};
 
-/// Space between parts, mm: a slicer's brim and skirt fit in.
+/// Gap between parts, mm: room for the brim and skirt of a slicer.
 pub const PART_GAP_MM: f64 = 6.0;
-/// What stays free along the edges of a bed, mm: clips, and where beds are not flat.
+/// Margin along the edges of a bed, mm: for clips, and because beds are not flat there.
 pub const BED_EDGE_MM: f64 = 3.0;
-/// Steps in which a compact square is looked for, mm.
+/// Step in the search for the smallest square, mm.
 const STEP_MM: f64 = 5.0;
-/// What rounding may add to a row, mm.
+/// Rounding of the length of a row, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Where a part lies when it is printed.
+/// The place of a part on a print bed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// The plate, from 0.
+    /// Index of the plate.
     pub plate: usize,
-    /// Whether it is turned by a quarter about the vertical, counter-clockwise, before it is moved.
+    /// Whether the part is rotated by 90 degrees counter-clockwise about the vertical before it is
+    /// moved.
     pub is_turned: bool,
-    /// The displacement, mm, in whole micrometres across the bed.
+    /// Translation, mm, in whole micrometres across the bed.
     pub shift: Vector3,
 }
 
 impl Placement {
-    /// The mesh in its place; the corner of the bed is the origin.
+    /// Returns the mesh in its place; the corner of the bed is the origin.
     pub fn apply(&self, mesh: Mesh) -> Mesh {
         if !self.is_turned {
             return mesh.translated(self.shift);
@@ -35,23 +37,25 @@ impl Placement {
     }
 }
 
-/// Lowest and highest corner of a part's bounding box.
+/// Lower and upper corner of a bounding box.
 pub type Box3 = (Point3, Point3);
 
-/// Side of the square bed that a part of this bounding box needs at least, mm.
+/// Returns the side of the smallest square bed for a part of this bounding box, mm.
 pub fn needed_bed_mm((low, high): &Box3) -> f64 {
     (high.x - low.x).max(high.y - low.y) + 2.0 * BED_EDGE_MM
 }
 
-/// Places for parts of these bounding boxes on square beds of `bed_mm`, in their order: standing on z = 0, apart by
-/// [`PART_GAP_MM`], off the edges by [`BED_EDGE_MM`], each plate's parts together about the middle of its bed. One plate if that
-/// is enough. The same boxes get the same places. A part larger than the bed lies alone, beyond its edges
-/// ([`needed_bed_mm`] tells).
+/// Returns places for parts of these bounding boxes on square beds of `bed_mm`, in their order.
+///
+/// Parts are on z = 0, [`PART_GAP_MM`] apart and [`BED_EDGE_MM`] from the edges; those of a plate
+/// are centred on its bed. The same boxes get the same places. A part larger than the bed
+/// ([`needed_bed_mm`]) is alone on it and extends over its edges.
 pub fn lay_out(boxes: &[Box3], bed_mm: f64) -> Vec<Placement> {
     let footprints: Vec<Footprint> = boxes.iter().map(Footprint::of).collect();
     let free_mm = bed_mm - 2.0 * BED_EDGE_MM;
     let widest = footprints.iter().map(|f| f.width_mm).fold(0.0, f64::max);
-    // What needs one plate only lies in the smallest square: short ways for the nozzle, and a legible picture.
+    // Parts of a single plate are in the smallest square: short moves of the nozzle, and a legible
+    // picture.
     let compact = (0u32..)
         .map(|step| widest + f64::from(step) * STEP_MM)
         .take_while(|side| *side < free_mm)
@@ -63,7 +67,7 @@ pub fn lay_out(boxes: &[Box3], bed_mm: f64) -> Vec<Placement> {
         (0..plates).map(|plate| corner(&footprints, &spots, plate, bed_mm)).collect();
     let place = |((f, spot), (low, high)): ((&Footprint, &Spot), &Box3)| {
         let at = corners[spot.plate] + spot.at;
-        // The corner of the part that comes to lie there.
+        // The corner of the part that becomes the lower left one.
         let from = if f.is_turned { Vector2::new(-high.y, low.x) } else { Vector2::new(low.x, low.y) };
         let micrometres = (at - from).map(|v| (v * 1e3).round() / 1e3);
         let shift = Vector3::new(micrometres.x, micrometres.y, -low.z);
@@ -72,7 +76,7 @@ pub fn lay_out(boxes: &[Box3], bed_mm: f64) -> Vec<Placement> {
     footprints.iter().zip(&spots).zip(boxes).map(place).collect()
 }
 
-/// What a part covers of the bed, its longer side across.
+/// The footprint of a part, with its longer side across the bed.
 struct Footprint {
     width_mm: f64,
     depth_mm: f64,
@@ -86,7 +90,7 @@ impl Footprint {
     }
 }
 
-/// Where a footprint lies: its lower left corner, from that of its plate's parts.
+/// The lower left corner of a footprint, relative to that of all parts of its plate.
 #[derive(Clone, Copy)]
 struct Spot {
     plate: usize,
@@ -101,7 +105,7 @@ struct Shelf {
     used_mm: f64,
 }
 
-/// Spots in rows on plates of `side_mm`: first fit by decreasing depth.
+/// Spots in rows on plates of `side_mm`, first fit by decreasing depth.
 fn shelved(footprints: &[Footprint], side_mm: f64) -> Vec<Spot> {
     let mut order: Vec<usize> = (0..footprints.len()).collect();
     let size = |i: usize| (footprints[i].depth_mm, footprints[i].width_mm);
@@ -142,13 +146,13 @@ fn new_shelf(shelves: &[Shelf], depth_mm: f64, side_mm: f64) -> Shelf {
     Shelf { plate, y_mm: top(plate), depth_mm, used_mm: 0.0 }
 }
 
-/// Where the lower left corner of a plate's parts lies on the bed, so that they lie about its middle.
+/// The lower left corner of the parts of a plate, so that they are centred on the bed.
 fn corner(footprints: &[Footprint], spots: &[Spot], plate: usize, bed_mm: f64) -> Vector2<f64> {
     let ends = footprints.iter().zip(spots).filter(|(_, s)| s.plate == plate);
     let size = ends
         .map(|(f, s)| s.at + Vector2::new(f.width_mm, f.depth_mm))
         .fold(Vector2::zeros(), |a: Vector2<f64>, b| a.sup(&b));
-    // A part beyond the bed keeps out of negative coordinates, where a 3MF has none.
+    // A part larger than the bed has no negative coordinates: a 3MF allows none.
     size.map(|side| ((bed_mm - side) / 2.0).max(0.0))
 }
 
@@ -157,12 +161,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A box of this size, somewhere.
+    /// A box of this size.
     fn sized([x, y]: [f64; 2], from: f64) -> Box3 {
         (Point3::new(from, -2.0 * from, -1.0), Point3::new(from + x, y - 2.0 * from, 4.0))
     }
 
-    /// The box of a part in its place, through its mesh.
+    /// The box of a part in its place, from its mesh.
     fn placed((low, high): &Box3, place: &Placement) -> Box3 {
         let corners = vec![*low, *high, Point3::new(low.x, high.y, low.z)];
         place.apply(Mesh::new(corners, vec![[0, 1, 2]])).bounds().unwrap()
@@ -171,8 +175,8 @@ mod tests {
     fn check(boxes: &[Box3], bed_mm: f64) -> Result<usize, TestCaseError> {
         let places = lay_out(boxes, bed_mm);
         prop_assert_eq!(places.len(), boxes.len());
-        let lying: Vec<_> = boxes.iter().zip(&places).map(|(b, p)| (placed(b, p), p.plate)).collect();
-        for (i, ((low, high), plate)) in lying.iter().enumerate() {
+        let placements: Vec<_> = boxes.iter().zip(&places).map(|(b, p)| (placed(b, p), p.plate)).collect();
+        for (i, ((low, high), plate)) in placements.iter().enumerate() {
             let within = |v: f64| v >= BED_EDGE_MM - 2e-3 && v <= bed_mm - BED_EDGE_MM + 2e-3;
             prop_assert!(
                 within(low.x) && within(low.y) && within(high.x) && within(high.y),
@@ -181,30 +185,30 @@ mod tests {
                 high
             );
             prop_assert!(low.z == 0.0);
-            for ((other_low, other_high), other_plate) in &lying[..i] {
+            for ((other_low, other_high), other_plate) in &placements[..i] {
                 let gap = PART_GAP_MM - 2e-3;
                 let apart = low.x - other_high.x >= gap
                     || other_low.x - high.x >= gap
                     || low.y - other_high.y >= gap
                     || other_low.y - high.y >= gap;
-                prop_assert!(plate != other_plate || apart, "{:?}", lying);
+                prop_assert!(plate != other_plate || apart, "{:?}", placements);
             }
         }
-        let plates = lying.iter().map(|(_, plate)| plate + 1).max().unwrap_or(0);
-        prop_assert!((0..plates).all(|plate| lying.iter().any(|(_, p)| *p == plate)), "an empty plate");
+        let plates = placements.iter().map(|(_, plate)| plate + 1).max().unwrap_or(0);
+        prop_assert!((0..plates).all(|plate| placements.iter().any(|(_, p)| *p == plate)), "an empty plate");
         Ok(plates)
     }
 
     proptest! {
         #[test]
-        fn parts_lie_apart_on_their_beds(
+        fn parts_have_gaps_and_margins(
             sizes in prop::collection::vec([1.0..120.0f64, 1.0..120.0f64], 0..30),
             from in -200.0..200.0f64,
             bed in 126.0..400.0f64,
         ) {
             let boxes: Vec<_> = sizes.iter().map(|s| sized(*s, from)).collect();
             let plates = check(&boxes, bed)?;
-            // Shelves fill at least a quarter of all beds but the last one or two, with the gaps around the parts.
+            // With the gaps, shelves fill at least a quarter of all beds except the last two.
             let covered: f64 = sizes.iter().map(|[x, y]| (x + PART_GAP_MM) * (y + PART_GAP_MM)).sum();
             let free = bed - 2.0 * BED_EDGE_MM + PART_GAP_MM;
             prop_assert!((plates as f64) <= 2.0 + 4.0 * covered / (free * free), "{} plates for {}", plates, covered);
@@ -212,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn one_plate_is_one_plate_in_the_middle() {
+    fn one_plate_is_centred() {
         let boxes = [[60.0, 20.0], [20.0, 60.0], [30.0, 30.0]].map(|s| sized(s, 7.0));
         assert_eq!(check(&boxes, 250.0).unwrap(), 1);
         let places = lay_out(&boxes, 250.0);
@@ -221,18 +225,18 @@ mod tests {
         let (low, high) = all.reduce(|a, b| (a.0.inf(&b.0), a.1.sup(&b.1))).unwrap();
         let middle = nalgebra::center(&low, &high);
         assert!((middle.x - 125.0).abs() < 2e-3 && (middle.y - 125.0).abs() < 2e-3, "{middle}");
-        // As square as rows allow.
+        // Nearly square.
         assert!(high.x - low.x <= 70.0 && high.y - low.y <= 90.0, "{low} {high}");
     }
 
     #[test]
-    fn a_bed_that_is_just_enough_is_enough() {
+    fn an_exact_fit_is_used() {
         let part = sized([94.0, 94.0], 0.0);
         assert!((needed_bed_mm(&part) - 100.0).abs() < 1e-9);
         assert_eq!(check(&[part, part], 100.0).unwrap(), 2);
-        // Four of 44 mm with a gap between fill it as well.
+        // Four of 44 mm with a gap fill it, too.
         assert_eq!(check(&[sized([44.0, 44.0], 0.0); 5], 100.0).unwrap(), 2);
-        // One that is too large lies alone and in positive coordinates.
+        // One that is too large is alone, in positive coordinates.
         let places = lay_out(&[sized([120.0, 5.0], 0.0), part], 100.0);
         assert_ne!(places[0].plate, places[1].plate);
         assert!(places.iter().all(|p| p.shift.x >= 0.0));

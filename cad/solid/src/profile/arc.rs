@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Point2, Vector2};
+use super::point::{Point2, Vector2};
 
-/// Arcs whose angles agree within this, in radians, lie over the same angles: what is beyond it is rounding.
+/// Angles that differ by at most this, in radians, are equal: the rest is rounding.
 const SAME_ANGLE_RAD: f64 = 1e-9;
 
 /// A circular arc; angles in radians, counter-clockwise from +x, as in mathematics.
@@ -21,7 +21,8 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The arc about `centre` from `from` to `to`, counter-clockwise or clockwise, short of a full turn.
+    /// The arc about `centre` from `from` to `to`, counter-clockwise or clockwise, short of a full
+    /// turn.
     pub fn between(centre: Point2, from: Point2, to: Point2, counter_clockwise: bool) -> Self {
         let angle = |p: Point2| libm::atan2(p.y - centre.y, p.x - centre.x);
         let start_rad = angle(from);
@@ -30,7 +31,8 @@ impl Arc {
         Self { centre, radius_mm: (from - centre).norm(), start_rad, sweep_rad }
     }
 
-    /// The point at `fraction` of the sweep, on a circle of `radius_mm` about the same centre.
+    /// Returns the point at `fraction` of the sweep, on a circle of `radius_mm` about the same
+    /// centre.
     pub fn point_at(&self, fraction: f64, radius_mm: f64) -> Point2 {
         let angle = self.start_rad + self.sweep_rad * fraction;
         self.centre + Vector2::new(libm::cos(angle), libm::sin(angle)) * radius_mm
@@ -58,21 +60,24 @@ impl Arc {
         forward.rem_euclid(TAU) <= self.sweep_rad.abs()
     }
 
-    /// Angles from this arc's direction to that of `other`, at the first and at the last point, where both are run at an
-    /// even rate; the first within half a turn.
+    /// Angles from this arc's direction to that of `other` at their first and last points; the
+    /// first is within half a turn.
     pub(super) fn turns_to_rad(&self, other: &Self) -> [f64; 2] {
         let first = (other.start_rad - self.start_rad + PI).rem_euclid(TAU) - PI;
         [first, first + (other.sweep_rad - self.sweep_rad)]
     }
 
-    /// Whether the ruled wall to `other` is neither cylinder nor cone: the arcs lie over different angles.
+    /// Whether the arcs cover different angles, so that the ruled wall to `other` is neither a
+    /// cylinder nor a cone.
     pub(super) fn is_twisted_to(&self, other: &Self) -> bool {
         self.turns_to_rad(other).iter().any(|turn| turn.abs() > SAME_ANGLE_RAD)
     }
 
-    /// The integral of `a × db` over both arcs run at an even rate, mm²: `a` this arc, `b` the other.
+    /// The integral of `a × db` over both arcs at equal shares of their angles, in mm²: `a` is this
+    /// arc, `b` the other.
     ///
-    /// About the centre it is the cosine of the angle between the two directions, which changes evenly.
+    /// About the centre, the integrand is the cosine of the angle between the two directions, which
+    /// changes linearly.
     pub(super) fn swept_with(&self, other: &Self) -> f64 {
         let [first, last] = self.turns_to_rad(other);
         let (middle, half) = (f64::midpoint(first, last), (last - first) / 2.0);

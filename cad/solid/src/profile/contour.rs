@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Arc, Point2, Vector2};
+use super::arc::Arc;
+use super::point::{Point2, Vector2};
 
 /// The curve between two corners of a contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +14,7 @@ pub enum Edge {
     Arc(Arc),
 }
 
-/// A closed contour; edge `i` joins corner `i` to corner `i + 1`. Material lies to its left.
+/// A closed contour with material to its left. Edge `i` joins corner `i` to corner `i + 1`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contour {
     corners: Vec<Point2>,
@@ -21,7 +22,7 @@ pub struct Contour {
 }
 
 impl Contour {
-    /// A contour from as many corners as edges; every arc starts and ends in its corners.
+    /// A contour with as many corners as edges; every arc starts and ends in its corners.
     pub(super) fn from_parts(corners: Vec<Point2>, edges: Vec<Edge>) -> Self {
         debug_assert_eq!(corners.len(), edges.len());
         Self { corners, edges }
@@ -55,7 +56,7 @@ impl Contour {
         (self.corners[i], self.corners[(i + 1) % self.corners.len()])
     }
 
-    /// The same curve run the other way: an outline becomes a hole.
+    /// Returns the same curve in the opposite direction: an outline becomes a hole.
     #[must_use]
     pub fn reversed(&self) -> Self {
         let n = self.corners.len();
@@ -69,7 +70,7 @@ impl Contour {
         Self { corners, edges: self.edges.iter().rev().map(turn).collect() }
     }
 
-    /// The contour moved by `by`.
+    /// Returns the contour translated by `by`.
     #[must_use]
     pub fn translated(&self, by: Vector2) -> Self {
         let edges = self.edges.iter().map(|edge| match edge {
@@ -79,7 +80,7 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| p + by).collect(), edges: edges.collect() }
     }
 
-    /// The contour scaled about the origin by a positive `factor`.
+    /// Returns the contour scaled about the origin by a positive `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let edges = self.edges.iter().map(|edge| match edge {
@@ -91,7 +92,7 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| p * factor).collect(), edges: edges.collect() }
     }
 
-    /// The contour mirrored in the y axis, run so that material stays to its left.
+    /// Returns the contour mirrored in the y axis, directed so that material stays to its left.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let flip = |p: Point2| Point2::new(-p.x, p.y);
@@ -107,9 +108,10 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| flip(*p)).collect(), edges: edges.collect() }.reversed()
     }
 
-    /// The contour halfway to `other`, which has the same edges in the same order. Corners lie midway, and arcs run
-    /// about the midway centre: exact for lines, and for arcs over the same angles. Where the angles differ the curve
-    /// halfway is no arc; [`Self::midway_area_mm2`] is exact there too.
+    /// Returns the contour halfway to `other`, which has the same edges in the same order: corners
+    /// are midway, and arcs are about the midway centre. This is exact for lines, and for arcs over
+    /// the same angles. Over different angles the exact curve is not an arc;
+    /// [`Self::midway_area_mm2`] is exact for it, too.
     #[must_use]
     pub fn midway(&self, other: &Self) -> Self {
         let corners: Vec<_> =
@@ -126,15 +128,17 @@ impl Contour {
         Self { corners, edges }
     }
 
-    /// Signed area in mm² by Green's theorem, exact: positive for outlines, negative for holes.
+    /// Signed area in mm² by Green's theorem: positive for outlines, negative for holes.
     pub fn area_mm2(&self) -> f64 {
         (0..self.edges.len()).map(|i| self.twice_swept_mm2(i)).sum::<f64>() / 2.0
     }
 
-    /// Signed area in mm² halfway up the ruled wall to `other`, which has the same edges in the same order; exact.
+    /// Signed area in mm² halfway up the ruled wall to `other`, which has the same edges in the
+    /// same order.
     ///
-    /// The wall joins both curves at equal shares of every edge, so that the curve halfway is `m = (a + b)/2`. Where two
-    /// arcs lie over other angles it is no arc, but `∫ m × dm` still has a closed form.
+    /// The wall joins both curves at equal shares of every edge, so that the curve halfway is `m =
+    /// (a + b)/2`. For two arcs over different angles it is not an arc, but `∫ m × dm` has a closed
+    /// form.
     pub fn midway_area_mm2(&self, other: &Self) -> f64 {
         let halfway = self.midway(other);
         let twice = (0..self.edges.len()).map(|i| match (&self.edges[i], &other.edges[i]) {
@@ -156,8 +160,9 @@ impl Contour {
         }
     }
 
-    /// Largest angle, in radians, between the directions of edge `i` here and in `other`, at the same share of both.
-    pub(super) fn turn_to_rad(&self, other: &Self, i: usize) -> f64 {
+    /// Largest angle, in radians, between edge `i` of this contour and of `other` at equal shares
+    /// of both.
+    pub(crate) fn turn_to_rad(&self, other: &Self, i: usize) -> f64 {
         match (&self.edges[i], &other.edges[i]) {
             (Edge::Arc(a), Edge::Arc(b)) => {
                 a.turns_to_rad(b).into_iter().fold(0.0, |most, t| most.max(t.abs()))
@@ -175,7 +180,7 @@ impl Contour {
     }
 
     /// Length of edge `i` in mm.
-    pub(super) fn edge_mm(&self, i: usize) -> f64 {
+    pub(crate) fn edge_mm(&self, i: usize) -> f64 {
         match &self.edges[i] {
             Edge::Line => (self.ends(i).1 - self.ends(i).0).norm(),
             Edge::Arc(a) => a.length_mm(),
@@ -184,8 +189,8 @@ impl Contour {
 
     /// Lower left and upper right corner of the exact bounding box.
     pub fn bounds(&self) -> (Point2, Point2) {
-        let nowhere = Point2::new(f64::INFINITY, f64::INFINITY);
-        (0..self.edges.len()).map(|i| self.edge_bounds(i)).fold((nowhere, -nowhere), |(low, high), (a, b)| {
+        let empty = Point2::new(f64::INFINITY, f64::INFINITY);
+        (0..self.edges.len()).map(|i| self.edge_bounds(i)).fold((empty, -empty), |(low, high), (a, b)| {
             (Point2::new(low.x.min(a.x), low.y.min(a.y)), Point2::new(high.x.max(b.x), high.y.max(b.y)))
         })
     }
@@ -232,8 +237,8 @@ impl Contour {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pen::Pen;
     use super::*;
-    use crate::profile::Pen;
 
     fn half_disc() -> Contour {
         Pen::at(Point2::new(1.0, 0.0)).arc_to(Point2::origin(), Point2::new(-1.0, 0.0), true).close()
@@ -258,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_to_the_curve_and_not_to_its_circle() {
+    fn distances_are_to_the_arc_itself() {
         assert!((half_disc().distance_mm(Point2::new(0.0, 0.5)) - 0.5).abs() < 1e-12);
         assert!((half_disc().distance_mm(Point2::new(0.0, -3.0)) - 3.0).abs() < 1e-12);
     }

@@ -1,17 +1,22 @@
 //! Flattening within a chord tolerance: polygons that straddle the curve and keep its area.
 //!
-//! Vertices on the curve make convex parts too light and grooves too shallow, always in the same sense. Here the
-//! inner vertices of each arc lie a little outside it, so that the polygon encloses exactly the area of the arc;
-//! corners stay where they are. Both the overshoot of the vertices and the sag of the chords keep the tolerance.
+//! Vertices on the curve would make convex parts too small and grooves too shallow, always with the
+//! same sign. Therefore the inner vertices of each arc are slightly outside of it, so that the
+//! polygon encloses exactly the area of the arc; corners are exact. Both the overshoot of the
+//! vertices and the sag of the chords are within the tolerance.
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Arc, ChordTolerance, Contour, Edge, Point2};
+use super::arc::Arc;
+use super::contour::{Contour, Edge};
+use super::point::Point2;
+use super::tolerance::ChordTolerance;
 
-/// An arc that bulges less than this, in mm, is drawn as its chord: finer vertices would not survive single precision.
+/// Sagitta in mm up to which an arc becomes its chord: finer vertices would be equal in single
+/// precision.
 pub const FLAT_MM: f64 = 2e-4;
 
-/// Radius of the inner vertices for which `chords` chords enclose the area of the arc's sector.
+/// Radius of the inner vertices with which `chords` chords enclose the area of the arc's sector.
 ///
 /// With `h = sweep/(2 chords)` and the ends on the curve, the triangles to the centre add up to
 /// `(n-2)/2 q² sin 2h + q r sin 2h = r² n h`, a quadratic in the radius `q`.
@@ -23,14 +28,16 @@ fn straddling_radius_mm(arc: &Arc, chords: usize) -> f64 {
     if chords == 2 { -c / (2.0 * b) } else { (-b + (b * b - a * c).sqrt()) / a }
 }
 
-/// Largest distance in millimetres between `arc` and its flattening into `chords` chords.
+/// Returns the largest distance in millimetres between `arc` and its flattening into `chords`
+/// chords.
 pub fn deviation_mm(arc: &Arc, chords: usize) -> f64 {
     if chords < 2 {
         return arc.sagitta_mm();
     }
     let q = straddling_radius_mm(arc, chords);
     let step = arc.sweep_rad.abs() / chords as f64;
-    // Distance from the centre to a chord between radii p and q; the foot of the perpendicular may lie outside.
+    // Distance from the centre to a chord between radii p and q; the foot of the perpendicular may
+    // be outside of it.
     let nearest = |p: f64| {
         let length = (p * p + q * q - 2.0 * p * q * libm::cos(step)).sqrt();
         let foot_inside = (p - q).abs() * (p + q) <= length * length;
@@ -40,12 +47,12 @@ pub fn deviation_mm(arc: &Arc, chords: usize) -> f64 {
     (q - arc.radius_mm).abs().max((arc.radius_mm - lowest).abs())
 }
 
-/// Least number of chords that keep `arc` within `tolerance`.
+/// Returns the least number of chords that keep `arc` within `tolerance`.
 pub fn chords_for(arc: &Arc, tolerance: ChordTolerance) -> usize {
     if arc.sagitta_mm() <= FLAT_MM.min(tolerance.mm()) {
         return 1;
     }
-    // Long arcs overshoot by r h²/3: start there and correct, which takes a step or two.
+    // Long arcs overshoot by r h²/3, which gives the number but for a step or two.
     let half = (3.0 * tolerance.mm() / arc.radius_mm).sqrt().min(1.0);
     let mut chords = ((arc.sweep_rad.abs() / (2.0 * half)) as usize).max(2);
     while 2.0 * chords as f64 * FRAC_PI_2 <= arc.sweep_rad.abs() || deviation_mm(arc, chords) > tolerance.mm()
@@ -56,7 +63,8 @@ pub fn chords_for(arc: &Arc, tolerance: ChordTolerance) -> usize {
 }
 
 impl Contour {
-    /// Chords per edge that keep every edge within `tolerance`; one for a line.
+    /// Returns the number of chords per edge that keep every edge within `tolerance`; one for a
+    /// line.
     pub fn chords(&self, tolerance: ChordTolerance) -> Vec<usize> {
         self.edges()
             .iter()
@@ -67,13 +75,15 @@ impl Contour {
             .collect()
     }
 
-    /// Pieces per edge for which a wall up to `other`, which has the same edges in the same order, keeps within
-    /// `tolerance` of its ruled surface in the mean: so its volume does.
+    /// Returns the number of pieces per edge with which the mean distance of a wall up to `other`,
+    /// which has the same edges in the same order, from its ruled surface is within `tolerance`.
+    /// This bounds the error of its volume.
     ///
-    /// Where an edge turns by `d` from one contour to the other, a piece of the wall is no plane, but is drawn as two
-    /// triangles. With lengths `p` and `q` its diagonals pass each other at no more than
-    /// `p q sin d / (n sqrt(p² + q² + 2 p q cos d))`. The surface lies midway between them, and halves the tetrahedron
-    /// of the four corners: that is a sixth of the distance over the whole piece.
+    /// Where an edge turns by `d` from one contour to the other, a piece of the wall is not planar,
+    /// but becomes two triangles. With lengths `p` and `q`, the distance between its diagonals is
+    /// at most `p q sin d / (n sqrt(p² + q² + 2 p q cos d))`. The surface is midway between them
+    /// and halves the tetrahedron of the four corners, so that its mean distance from the triangles
+    /// is a sixth of that.
     pub(crate) fn wall_pieces(&self, other: &Self, tolerance: ChordTolerance) -> Vec<usize> {
         (0..self.edges().len())
             .map(|i| {
@@ -85,7 +95,8 @@ impl Contour {
             .collect()
     }
 
-    /// The closed polygon with `chords[i]` pieces on edge `i`; the first point is not repeated.
+    /// Returns the closed polygon with `chords[i]` pieces on edge `i`; the first point is not
+    /// repeated.
     pub fn flattened(&self, chords: &[usize]) -> Vec<Point2> {
         let mut points = Vec::with_capacity(chords.iter().sum());
         for (i, ((corner, edge), &n)) in self.corners().iter().zip(self.edges()).zip(chords).enumerate() {
@@ -119,9 +130,9 @@ mod tests {
     }
 
     proptest! {
-        /// The tolerance holds for every curve: measured on dense samples of curve and polygon, both ways.
+        /// The deviation of dense samples is within the tolerance, and close to the computed one.
         #[test]
-        fn real_deviation_keeps_the_tolerance(
+        fn sampled_deviations_are_within_tolerance(
             radius in 0.1..150.0f64, sweep in 0.01..6.2f64, tolerance in 1e-4..0.1f64
         ) {
             let tolerance = ChordTolerance::new(tolerance).unwrap();
@@ -152,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn straddling_needs_fewer_chords_than_vertices_on_the_curve() {
+    fn straddling_needs_fewer_chords() {
         let arc = Arc { centre: Point2::origin(), radius_mm: 22.0, start_rad: 0.0, sweep_rad: 1.5 };
         let tolerance = ChordTolerance::new(0.01).unwrap();
         let on_curve = (1.5 / (2.0 * libm::acos(1.0 - 0.01 / 22.0f64))).ceil() as usize;

@@ -1,26 +1,29 @@
 //! The convex hull of discs: a band stretched around them.
 //!
-//! A disc at `c` with radius `r` reaches `h(φ) = c·u(φ) + r` in the direction `u(φ)`. The hull is the disc that reaches
-//! furthest, direction by direction, and two discs take turns where they reach equally far.
+//! The support function of a disc at `c` with radius `r` is `h(φ) = c·u(φ) + r` for the direction
+//! `u(φ)`. That of the hull is the largest of all discs, and arcs of the hull end where two discs
+//! have equal support.
 
 use std::f64::consts::TAU;
 
-use super::{Contour, Pen, Point2, Vector2};
+use super::contour::Contour;
+use super::pen::Pen;
+use super::point::{Point2, Vector2};
 
-/// Directions closer than this, in radians, are one.
+/// Directions that differ by at most this, in radians, are equal.
 const SAME_RAD: f64 = 1e-9;
 
 /// A disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// Its centre.
+    /// Centre.
     pub centre: Point2,
-    /// Its radius, mm.
+    /// Radius, mm.
     pub radius_mm: f64,
 }
 
 impl Disc {
-    fn reach_mm(&self, angle_rad: f64) -> f64 {
+    fn support_mm(&self, angle_rad: f64) -> f64 {
         self.centre.coords.dot(&direction(angle_rad)) + self.radius_mm
     }
 }
@@ -28,7 +31,7 @@ impl Disc {
 /// The directions in which one disc is the outermost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HullArc {
-    /// Its number.
+    /// Index of the disc.
     pub disc: usize,
     /// First direction, radians, counter-clockwise from +x.
     pub from_rad: f64,
@@ -40,13 +43,13 @@ fn direction(angle_rad: f64) -> Vector2 {
     Vector2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
 
-/// Which disc is outermost from the direction `from_rad` counter-clockwise to `to_rad`, in order. Between two of them the
-/// band is straight.
+/// Returns the outermost discs from the direction `from_rad` counter-clockwise to `to_rad`, in
+/// order. Between two of them the band is straight.
 pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
-    // Just behind the start, so that of two that reach equally far the one that leads is taken.
+    // Just after the start, so that of two discs with equal support the next one is taken.
     let start = from_rad + 2.0 * SAME_RAD;
     let outermost =
-        (0..discs.len()).max_by(|a, b| discs[*a].reach_mm(start).total_cmp(&discs[*b].reach_mm(start)));
+        (0..discs.len()).max_by(|a, b| discs[*a].support_mm(start).total_cmp(&discs[*b].support_mm(start)));
     let Some(mut disc) = outermost else { return Vec::new() };
     let mut arcs = Vec::new();
     let mut here = from_rad;
@@ -63,22 +66,24 @@ pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
     arcs
 }
 
-/// The first direction after `after_rad` in which `other` begins to reach further than `disc`; `None` if it never does.
+/// The first direction after `after_rad` from which the support of `other` exceeds that of `disc`;
+/// `None` if it never does.
 fn overtaken_rad(disc: &Disc, other: &Disc, after_rad: f64) -> Option<f64> {
     let between = other.centre - disc.centre;
     let share = (disc.radius_mm - other.radius_mm) / between.norm();
     if !(-1.0..1.0).contains(&share) {
         return None;
     }
-    // `between · u` exceeds the difference of the radii from here on, for less than half a turn.
+    // From here on, `between · u` exceeds the difference of the radii, for less than half a turn.
     let begins = libm::atan2(between.y, between.x) - libm::acos(share);
     let turned = (begins - after_rad - SAME_RAD).rem_euclid(TAU);
     Some(after_rad + SAME_RAD + turned)
 }
 
-/// The convex hull of `discs`, counter-clockwise; nothing without discs.
+/// Returns the convex hull of `discs`, counter-clockwise; `None` without discs.
 pub fn hull(discs: &[Disc]) -> Option<Contour> {
-    // The rightmost disc leads at the direction +x: the hull starts where its turn begins.
+    // The rightmost disc is outermost at the direction +x: the hull starts where the next arc
+    // begins.
     let whole = hull_arcs(discs, 0.0, TAU);
     let second = whole.get(1).copied();
     let Some(second) = second else {
@@ -120,18 +125,18 @@ mod tests {
     }
 
     proptest! {
-        /// It holds every disc, touches what it turns around, and never turns inward.
+        /// A hull contains every disc, and its support is the largest of theirs.
         #[test]
-        fn a_hull_holds_its_discs(all in prop::collection::vec((-20.0..20.0f64, -20.0..20.0f64, 0.1..6.0f64), 2..9)) {
+        fn a_hull_contains_its_discs(all in prop::collection::vec((-20.0..20.0f64, -20.0..20.0f64, 0.1..6.0f64), 2..9)) {
             let discs: Vec<Disc> = all.iter().map(|(x, y, r)| disc(*x, *y, *r)).collect();
             let band = hull(&discs).unwrap();
             for d in &discs {
                 prop_assert!(band.distance_mm(d.centre) >= d.radius_mm - 1e-6);
             }
-            let longest = discs.iter().map(|d| d.reach_mm(0.7)).fold(f64::NEG_INFINITY, f64::max);
+            let longest = discs.iter().map(|d| d.support_mm(0.7)).fold(f64::NEG_INFINITY, f64::max);
             let corners = band.flattened(&vec![64; band.edges().len()]);
             let reached = corners.iter().map(|p| p.coords.dot(&direction(0.7))).fold(f64::NEG_INFINITY, f64::max);
-            // Flattened arcs keep their area, so that their corners lie a little outside.
+            // Flattened arcs keep their area, so that their corners are slightly outside.
             prop_assert!((reached - longest).abs() < 0.05, "{reached}, {longest}");
             prop_assert!(band.area_mm2() > 0.0);
         }

@@ -2,21 +2,31 @@
 
 use std::f64::consts::PI;
 
-use super::{Arc, Contour, Edge, Point2, Vector2};
+use pinswitch_diagnostic::Diagnostic;
 
-/// Two neighbouring edges whose directions differ by less than this (radians) meet smoothly.
+use super::arc::Arc;
+use super::contour::{Contour, Edge};
+use super::point::{Point2, Vector2};
+
+/// Neighbouring edges whose directions differ by less than this, in radians, are tangent.
 const SMOOTH_RAD: f64 = 1e-7;
 
-/// The offset contour would lose an edge.
+/// An offset that removes an edge of the contour.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("an offset of {distance_mm:.3} mm swallows the edge at ({x:.3}, {y:.3}) mm")]
+#[error("an offset of {distance_mm:.3} mm removes the edge at ({x:.3}, {y:.3}) mm")]
 pub struct OffsetError {
-    /// The offset that does not fit.
+    /// Offset, mm.
     pub distance_mm: f64,
-    /// Where the edge starts that vanishes.
+    /// Start of the edge, mm.
     pub x: f64,
-    /// Where the edge starts that vanishes.
+    /// Start of the edge, mm.
     pub y: f64,
+}
+
+impl From<OffsetError> for Diagnostic {
+    fn from(error: OffsetError) -> Self {
+        Self::new(error.to_string()).with_help("lower the offset, or lengthen the edge")
+    }
 }
 
 /// An offset edge, not yet trimmed to its new corners.
@@ -27,11 +37,12 @@ enum OffsetEdge {
 }
 
 impl Contour {
-    /// The contour moved to its left, into the material, by `distance_mm` (negative: out of it). It has the same
-    /// edges in the same order, so that a wall can join the two.
+    /// Returns the contour offset to its left, into the material, by `distance_mm`; a negative
+    /// distance is out of the material. It has the same edges in the same order, so that a wall can
+    /// join the two.
     ///
     /// # Errors
-    /// [`OffsetError`] if an edge would vanish or neighbours would part.
+    /// [`OffsetError`] if an edge vanishes or neighbours no longer meet.
     pub fn offset(&self, distance_mm: f64) -> Result<Self, OffsetError> {
         let n = self.edges().len();
         let fault = |i: usize| OffsetError { distance_mm, x: self.corners()[i].x, y: self.corners()[i].y };
@@ -85,13 +96,13 @@ impl Contour {
         if (into.perp(&out)).abs() < SMOOTH_RAD && into.dot(&out) > 0.0 {
             return Some(corner + left(into) * distance_mm);
         }
-        meet(moved[before], moved[after])
+        intersections(moved[before], moved[after])
             .into_iter()
             .flatten()
             .min_by(|a, b| (a - corner).norm().total_cmp(&(b - corner).norm()))
     }
 
-    /// Edge `i` between its new corners, if it still runs the same way.
+    /// Edge `i` between its new corners; `None` if its direction is reversed.
     fn trimmed(&self, i: usize, from: Point2, to: Point2) -> Option<Edge> {
         match &self.edges()[i] {
             Edge::Line => ((to - from).dot(&self.tangents(i).0) > 0.0).then_some(Edge::Line),
@@ -107,8 +118,8 @@ fn left(along: Vector2) -> Vector2 {
     Vector2::new(-along.y, along.x)
 }
 
-/// The points in which two moved edges meet, none to two.
-fn meet(a: OffsetEdge, b: OffsetEdge) -> [Option<Point2>; 2] {
+/// The points in which two offset edges intersect, none to two.
+fn intersections(a: OffsetEdge, b: OffsetEdge) -> [Option<Point2>; 2] {
     match (a, b) {
         (OffsetEdge::Line { through: p, along: d }, OffsetEdge::Line { through: q, along: e }) => {
             let cross = d.perp(&e);
@@ -142,8 +153,8 @@ fn on_chord(middle: Point2, along: Vector2, half_chord_squared: f64) -> [Option<
 
 #[cfg(test)]
 mod tests {
+    use super::super::pen::Pen;
     use super::*;
-    use crate::profile::Pen;
 
     fn square() -> Contour {
         Contour::polygon(vec![
@@ -174,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn every_point_of_an_offset_keeps_its_distance() {
+    fn offsets_have_a_constant_distance() {
         let shrunk = grooved().offset(0.3).unwrap();
         assert!(shrunk.area_mm2() < grooved().area_mm2());
         for i in 0..shrunk.edges().len() {
@@ -188,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn an_offset_that_swallows_an_edge_is_refused() {
+    fn offsets_that_remove_edges_are_refused() {
         assert!(square().offset(2.1).is_err());
         assert!(grooved().offset(1.5).is_err());
         assert!(Contour::circle(Point2::origin(), 1.0).offset(1.0).is_err());

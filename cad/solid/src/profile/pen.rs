@@ -1,6 +1,8 @@
-//! Draws a contour edge by edge.
+//! Construction of a contour edge by edge.
 
-use super::{Arc, Contour, Edge, Point2};
+use super::arc::Arc;
+use super::contour::{Contour, Edge};
+use super::point::Point2;
 
 /// Draws a [`Contour`]; neighbouring edges share their corner by construction.
 ///
@@ -19,17 +21,17 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// Starts at `point`.
+    /// Starts a contour at `point`.
     pub fn at(point: Point2) -> Self {
         Self { corners: vec![point], edges: Vec::new() }
     }
 
     fn here(&self) -> Point2 {
-        // The constructor puts one corner in, and nothing takes it out.
+        // There is always a corner: the constructor adds one and none is removed.
         self.corners.last().copied().unwrap_or_else(Point2::origin)
     }
 
-    /// A straight line to `point`.
+    /// Appends a straight line to `point`.
     #[must_use]
     pub fn line_to(mut self, point: Point2) -> Self {
         self.edges.push(Edge::Line);
@@ -37,7 +39,7 @@ impl Pen {
         self
     }
 
-    /// An arc about `centre` to `point`, counter-clockwise or clockwise.
+    /// Appends an arc about `centre` to `point`, counter-clockwise or clockwise.
     #[must_use]
     pub fn arc_to(mut self, centre: Point2, point: Point2, counter_clockwise: bool) -> Self {
         self.edges.push(Edge::Arc(Arc::between(centre, self.here(), point, counter_clockwise)));
@@ -45,7 +47,7 @@ impl Pen {
         self
     }
 
-    /// Closes with a straight line, unless the pen is back at its start.
+    /// Closes the contour, with a straight line unless the pen is at its start.
     pub fn close(mut self) -> Contour {
         if (self.here() - self.corners[0]).norm() > 1e-9 {
             self.edges.push(Edge::Line);

@@ -1,30 +1,37 @@
-//! The chord tolerance: how far a flattened curve may lie from the true one.
+//! The chord tolerance of flattened curves.
 
+use pinswitch_diagnostic::Diagnostic;
 use serde::Serialize;
 
-/// The chord tolerance is outside the range that meshes of this size can hold.
+/// A chord tolerance outside of the supported range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("chord tolerance {value} mm is outside {min} to {max} mm; 0.01 mm suits every printer")]
+#[error("chord tolerance {value} mm is outside of {min} to {max} mm")]
 pub struct ToleranceError {
     value: f64,
     min: f64,
     max: f64,
 }
 
-/// Largest distance in millimetres between a flattened curve and the true one; absolute, in both directions.
+impl From<ToleranceError> for Diagnostic {
+    fn from(error: ToleranceError) -> Self {
+        Self::new(error.to_string()).with_help("use 0.01 mm, which suits every printer")
+    }
+}
+
+/// Largest distance in millimetres between a flattened curve and the exact one, in both directions.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
 pub struct ChordTolerance(f64);
 
 impl ChordTolerance {
-    /// Below this, binary STL's single precision is coarser than the tolerance.
+    /// Least tolerance: the single precision of binary STL is coarser than a smaller one.
     pub const MIN_MM: f64 = 1e-4;
-    /// Above this, grooves of half a millimetre lose their shape.
+    /// Largest tolerance: a larger one distorts grooves of half a millimetre.
     pub const MAX_MM: f64 = 0.1;
 
-    /// A tolerance of `mm` millimetres.
+    /// Creates a tolerance of `mm` millimetres.
     ///
     /// # Errors
-    /// [`ToleranceError`] outside [`Self::MIN_MM`]..=[`Self::MAX_MM`].
+    /// [`ToleranceError`] outside of [`Self::MIN_MM`]..=[`Self::MAX_MM`].
     pub fn new(mm: f64) -> Result<Self, ToleranceError> {
         if (Self::MIN_MM..=Self::MAX_MM).contains(&mm) {
             Ok(Self(mm))
@@ -44,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_tolerances_in_range_exist() {
+    fn tolerances_out_of_range_are_refused() {
         for bad in [0.0, -1.0, 9e-5, 0.11, f64::NAN, f64::INFINITY] {
             assert!(ChordTolerance::new(bad).is_err(), "{bad}");
         }

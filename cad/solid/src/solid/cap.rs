@@ -2,19 +2,20 @@
 
 use std::collections::VecDeque;
 
+use pinswitch_diagnostic::Diagnostic;
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
 use crate::profile::Point2;
 
-/// The contours of a cap cannot be triangulated: they cross, touch or leave the plane's finite part.
+/// Contours of a cap that cannot be triangulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CapError {
-    /// Two contours of one cap cross near a point.
+    /// Two contours of one cap cross.
     #[error("contours cross near ({x:.3}, {y:.3}) mm at height {z_mm:.3} mm")]
     Crossing {
-        /// Where they cross, mm.
+        /// Place, mm.
         x: f64,
-        /// Where they cross, mm.
+        /// Place, mm.
         y: f64,
         /// Height of the cap, mm.
         z_mm: f64,
@@ -27,11 +28,16 @@ pub enum CapError {
     },
 }
 
-/// Triangles of indices into the corners of a cap's rings, one ring after the other; counter-clockwise.
+impl From<CapError> for Diagnostic {
+    fn from(error: CapError) -> Self {
+        Self::new(error.to_string()).with_help("move the contours apart, or change one of them")
+    }
+}
+
+/// Counter-clockwise triangles of indices into the concatenated corners of a cap's rings.
 pub(super) type Triangles = Vec<[u32; 3]>;
 
-/// Triangulates the region between `loops` (the outline and its holes, in any orientation); returns triangles
-/// of indices into the concatenated points, counter-clockwise.
+/// Triangulates the region between `loops`: the outline and its holes, in any orientation.
 pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Triangles, CapError> {
     let points: Vec<_> = loops.concat().iter().map(|p| SpadePoint::new(p.x, p.y)).collect();
     let mut edges = Vec::with_capacity(points.len());
@@ -43,13 +49,13 @@ pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Triangles, C
     }
     let count = points.len();
     let mut crossing = None;
-    let place = points.clone();
+    let positions = points.clone();
     let cdt = ConstrainedDelaunayTriangulation::<SpadePoint<f64>>::try_bulk_load_cdt(points, edges, |edge| {
         crossing.get_or_insert(edge);
     })
     .map_err(|_| CapError::Touching { z_mm })?;
     if let Some([a, _]) = crossing {
-        return Err(CapError::Crossing { x: place[a].x, y: place[a].y, z_mm });
+        return Err(CapError::Crossing { x: positions[a].x, y: positions[a].y, z_mm });
     }
     if cdt.num_vertices() != count {
         return Err(CapError::Touching { z_mm });
@@ -57,7 +63,7 @@ pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Triangles, C
     Ok(inside(&cdt))
 }
 
-/// The faces that lie inside: reached from outside by crossing an odd number of constraint edges.
+/// The faces that an odd number of constraint edges separates from the outside.
 #[allow(clippy::cast_possible_truncation)]
 fn inside(cdt: &ConstrainedDelaunayTriangulation<SpadePoint<f64>>) -> Triangles {
     let mut parity: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
@@ -109,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_and_islands_are_told_apart() {
+    fn islands_in_holes_are_filled() {
         let loops = [square(0.0, 10.0), square(2.0, 8.0), square(4.0, 6.0)];
         let all: Vec<_> = loops.concat();
         let loops: Vec<&[Point2]> = loops.iter().map(Vec::as_slice).collect();
@@ -118,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn contours_that_cross_or_touch_are_refused() {
+    fn crossing_contours_are_refused() {
         let (a, b) = (square(0.0, 4.0), square(2.0, 6.0));
         assert!(matches!(triangulate(&[&a, &b], 0.0), Err(CapError::Crossing { .. })));
         let c = square(4.0, 6.0);

@@ -1,5 +1,5 @@
-//! Triangulations of caps that are remembered: the caps of a solid are often alike, and so are those of a family of
-//! solids, which differ in height or in a label only.
+//! A cache of triangulated caps: those of a solid are often equal, and so are those of a family of
+//! solids that differ in height or in a label only.
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
@@ -8,10 +8,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::cap::{CapError, Triangles, triangulate};
 use crate::profile::Point2;
 
-/// Numbers of a loop that go into its hash: loops that agree so far are compared in full.
+/// Numbers of a loop that are hashed: loops with the same beginning are compared in full.
 const HASHED_NUMBERS: usize = 8;
 
-/// Triangulations by the exact corners of the cap's rings, whatever its height.
+/// Triangulations by the exact corners of the rings of a cap, independent of its height.
 ///
 /// ```
 /// use pinswitch_solid::profile::{ChordTolerance, Contour, Point2};
@@ -28,12 +28,12 @@ const HASHED_NUMBERS: usize = 8;
 /// ```
 #[derive(Debug)]
 pub struct CapCache {
-    /// Corners that either generation may hold.
+    /// Most corners of each generation.
     capacity: usize,
     generations: Mutex<Generations>,
 }
 
-/// What was used of late, and what was used before that: the older half is forgotten when the newer is full.
+/// Entries by their last use: the older generation is dropped when the newer one is full.
 #[derive(Debug, Default)]
 struct Generations {
     newer: HashMap<Loops, Arc<Triangles>>,
@@ -42,10 +42,10 @@ struct Generations {
     corners: usize,
 }
 
-/// The rings of a cap: coordinates as bits, so that equal ones have the same triangulation to the last triangle.
+/// The rings of a cap, with coordinates as bits: equal keys have exactly the same triangulation.
 #[derive(Debug, PartialEq, Eq)]
 struct Loops {
-    /// Corners of each ring.
+    /// Number of corners of each ring.
     lengths: Vec<usize>,
     /// x and y of every corner.
     coordinates: Vec<u64>,
@@ -78,12 +78,14 @@ impl Loops {
 }
 
 impl CapCache {
-    /// An empty cache of up to `corners` corners, at about 50 bytes each; the caps used longest ago are forgotten.
+    /// Creates a cache of up to `corners` corners, at about 50 bytes each. The least recently used
+    /// caps are dropped.
     pub fn new(corners: usize) -> Self {
         Self { capacity: corners / 2, generations: Mutex::default() }
     }
 
-    /// The triangulation of `loops`, remembered or made. Threads that want the same one at the same time each make it.
+    /// Returns the triangulation of `loops`, cached or new. Threads that request the same one at
+    /// the same time each compute it.
     pub(super) fn triangles(&self, loops: &[&[Point2]], z_mm: f64) -> Result<Arc<Triangles>, CapError> {
         let key = Loops::new(loops);
         if let Some(known) = self.locked(|generations| generations.get(&key)) {
@@ -95,7 +97,7 @@ impl CapCache {
     }
 
     fn locked<T>(&self, work: impl FnOnce(&mut Generations) -> T) -> T {
-        // No step leaves the maps half changed: a panic elsewhere does not spoil them.
+        // No step leaves the maps inconsistent, so that a poisoned lock is safe.
         work(&mut self.generations.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -131,12 +133,13 @@ mod tests {
     }
 
     #[test]
-    fn the_cap_used_longest_ago_is_forgotten() {
+    fn the_least_recently_used_cap_is_dropped() {
         let cache = CapCache::new(16);
         let triangles = |side: f64| cache.triangles(&[&square(side)], 0.0).unwrap();
         let (first, second) = (triangles(1.0), triangles(2.0));
         assert!(Arc::ptr_eq(&first, &triangles(1.0)) && Arc::ptr_eq(&second, &triangles(2.0)));
-        // Two squares fill a generation: the second pair leaves the first one among the older, a third drops it.
+        // Two squares fill a generation: the second pair moves the first to the older one, a third
+        // pair drops it.
         for side in 3..=6 {
             triangles(f64::from(side));
         }
@@ -145,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn caps_that_differ_late_are_told_apart() {
+    fn equal_hashes_do_not_collide() {
         let cache = CapCache::new(1000);
         let octagon = |last: f64| -> Vec<Point2> {
             let around = (0..8).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4);

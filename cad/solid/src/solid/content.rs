@@ -1,11 +1,12 @@
-//! What decides the mesh of a solid, as bytes: two solids with the same bytes have the same mesh at the same tolerance.
+//! The content of a solid as bytes: two solids with the same bytes have the same mesh at the same
+//! tolerance.
 
-use super::{Facing, Solid};
+use super::definition::{Facing, Solid};
 use crate::profile::{Contour, Edge, Point2};
 
 impl Solid {
-    /// Every ring, wall and cap: numbers as their bits, lists after their length. For cache keys, not for files: the form
-    /// may change between versions.
+    /// Returns every ring, wall and cap as bytes: numbers as bits, lists after their lengths. For
+    /// cache keys, not for files: the format may change between versions.
     pub fn content_bytes(&self) -> Vec<u8> {
         let mut content = Content(Vec::new());
         content.count(self.rings.len());
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_solids_have_equal_content_and_only_they() {
+    fn content_differs_between_solids() {
         let disc = |radius: f64, height: f64| {
             let outline = Contour::circle(Point2::origin(), radius);
             Solid::prism(&outline, &[], 0.0, height, 0.0).unwrap().content_bytes()

@@ -1,27 +1,30 @@
-//! From a solid to its triangle mesh, within a chord tolerance.
+//! Tessellation of a solid within a chord tolerance.
 
 use super::cap::CapError;
-use super::{Cap, CapCache, Facing, RingId, Solid, Wall, larger};
+use super::cap_cache::CapCache;
+use super::definition::{Cap, Facing, RingId, Solid, Wall, larger};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
-/// The flattened ring and where its vertices start in the mesh.
+/// A flattened ring, and the index of its first vertex in the mesh.
 struct FlatRing {
     points: Vec<Point2>,
     first: usize,
 }
 
 impl Solid {
-    /// The mesh of the solid: every curve within `tolerance`, vertices shared by index between all faces of a ring.
+    /// Returns the mesh of the solid, with every curve within `tolerance`. All faces of a ring
+    /// share its vertices by index.
     ///
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh(&self, tolerance: ChordTolerance) -> Result<Mesh, CapError> {
-        // A prism's lower and upper cap are one triangulation: even a single solid asks for most caps twice.
+        // The caps of a prism have the same triangulation: even a single solid uses most of them
+        // twice.
         self.mesh_with(tolerance, &CapCache::new(usize::MAX))
     }
 
-    /// The same mesh, with the triangulations that other solids have left in `caps`.
+    /// As [`Self::mesh`], with triangulations of other solids in `caps`.
     ///
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
@@ -53,7 +56,8 @@ impl Solid {
 }
 
 impl Solid {
-    /// Pieces per edge of each ring for which its curves, and the walls that stand on it, keep `tolerance`.
+    /// Least number of pieces per edge of each ring that keeps its curves, and the walls above it,
+    /// within `tolerance`.
     fn least_pieces(&self, tolerance: ChordTolerance) -> Vec<Vec<usize>> {
         let mut pieces: Vec<_> = self.rings.iter().map(|ring| ring.contour.chords(tolerance)).collect();
         for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
@@ -64,7 +68,7 @@ impl Solid {
     }
 }
 
-/// Adds the triangles of a cap, `cut` into corners of its rings one after the other.
+/// Appends the triangles of a cap; `cut` has indices into the concatenated corners of its rings.
 fn close(cap: &Cap, cut: &[[u32; 3]], rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) {
     let vertices: Vec<u32> = cap
         .rings
@@ -83,7 +87,8 @@ fn close(cap: &Cap, cut: &[[u32; 3]], rings: &[FlatRing], triangles: &mut Vec<[u
     }));
 }
 
-/// The wall between two rings of equal vertex count, each quad cut along its shorter diagonal.
+/// Appends the wall between two rings of equal vertex count, each quadrilateral cut along its
+/// shorter diagonal.
 fn strip(lower: &FlatRing, upper: &FlatRing, positions: &[Point3], triangles: &mut Vec<[u32; 3]>) {
     let n = lower.points.len();
     for i in 0..n {
@@ -94,7 +99,7 @@ fn strip(lower: &FlatRing, upper: &FlatRing, positions: &[Point3], triangles: &m
         let falling = (positions[d] - positions[b]).norm_squared();
         let quad = [a, b, c, d].map(index);
         let [a, b, c, d] = quad;
-        // A tie (every vertical wall) goes to the rising diagonal, whatever the rounding.
+        // Equal diagonals (every vertical wall) give the rising one, regardless of rounding.
         if rising <= falling * (1.0 + 1e-9) {
             triangles.extend([[a, b, c], [a, c, d]]);
         } else {
@@ -103,7 +108,7 @@ fn strip(lower: &FlatRing, upper: &FlatRing, positions: &[Point3], triangles: &m
     }
 }
 
-/// A vertex number as STL and the mesh hold it; a mesh of four thousand million vertices does not fit in memory.
+/// The index of a vertex. A mesh of 2³² vertices does not fit in memory.
 #[allow(clippy::cast_possible_truncation)]
 fn index(i: usize) -> u32 {
     i as u32
@@ -114,7 +119,7 @@ mod tests {
     use super::*;
     use crate::profile::{Contour, Pen, polar};
 
-    /// A ring sector, cut shorter or longer than its neighbour above.
+    /// A ring sector of any angle.
     fn sector(half_rad: f64) -> Contour {
         let corner = |radius: f64, side: f64| polar(radius, side * half_rad);
         Pen::at(corner(20.0, 1.0))
@@ -125,14 +130,15 @@ mod tests {
             .close()
     }
 
-    /// Least distance between the diagonals of a quad: its triangles lie a sixth of it off the ruled surface, in the mean.
+    /// Least distance between the diagonals of a quadrilateral; the mean distance of its triangles
+    /// from the ruled surface is a sixth of it.
     fn diagonals_apart_mm([a, b, c, d]: [Point3; 4]) -> f64 {
         let across = (c - a).cross(&(d - b));
         (b - a).dot(&across).abs() / across.norm()
     }
 
     #[test]
-    fn no_piece_of_a_twisted_wall_lies_off_its_surface_by_more_than_the_tolerance() {
+    fn twisted_walls_are_within_tolerance() {
         let mut solid = Solid::new();
         let (lower, upper) = (solid.ring(sector(0.78), 0.0), solid.ring(sector(0.84), 10.0));
         solid.wall(lower, upper);
@@ -146,7 +152,7 @@ mod tests {
             let quad = |i: usize| [below[i], below[(i + 1) % n], above[(i + 1) % n], above[i]];
             let worst = (0..n).map(|i| diagonals_apart_mm(quad(i))).fold(0.0, f64::max);
             assert!(worst / 6.0 <= tolerance_mm * 1.0001, "{worst} at {tolerance_mm}");
-            // Nor are there many more pieces than that takes.
+            // There are not many more pieces than necessary.
             assert!(tolerance_mm > 0.001 || worst / 6.0 > tolerance_mm / 2.0, "{worst} at {tolerance_mm}");
         }
     }

@@ -1,14 +1,15 @@
-//! Volume in closed form: the sections' areas, integrated over the height.
+//! Volume in closed form, by integration of the area of the section over the height.
 
-use super::{Solid, Wall};
+use super::definition::{Solid, Wall};
 use crate::profile::{ChordTolerance, FLAT_MM};
 
 impl Solid {
-    /// Volume in mm³.
+    /// Returns the volume in mm³.
     ///
-    /// The section at a height is bounded by the walls that cross it, outlines counter-clockwise and holes
-    /// clockwise, so the volume is the sum over all walls of their signed area times height. The area of a slanted
-    /// wall's section is quadratic in height, for which Simpson's rule is exact.
+    /// The section at a height is bounded by the walls that cross it, outlines counter-clockwise
+    /// and holes clockwise. So the volume is the sum over all walls of their signed area times
+    /// height. The area of a section of a slanted wall is quadratic in height, for which Simpson's
+    /// rule is exact.
     pub fn volume_mm3(&self) -> f64 {
         self.walls
             .iter()
@@ -22,19 +23,22 @@ impl Solid {
             .sum()
     }
 
-    /// How far the mesh's volume may lie from [`Self::volume_mm3`], in mm³: flattened arcs keep their area, but for
-    /// those too flat to be cut ([`FLAT_MM`]); between slanted rings the mesh keeps the tolerance only, once for the
-    /// arcs and once for what stands between them.
+    /// Returns a bound on the difference between the volume of the mesh and [`Self::volume_mm3`],
+    /// in mm³.
+    ///
+    /// Flattened arcs keep their area, except those that become their chord ([`FLAT_MM`]). Slanted
+    /// walls are within the tolerance for their arcs, and again for the surface between them.
     pub fn volume_bound_mm3(&self, tolerance: ChordTolerance) -> f64 {
         let off = |wall: &Wall| {
             if self.is_upright(wall) { FLAT_MM.min(tolerance.mm()) } else { 2.0 * tolerance.mm() }
         };
         let bound: f64 = self.walls.iter().map(|wall| off(wall) * self.wall_mm2(wall)).sum();
-        // Single precision of the written file: seven digits of a coordinate, over the whole surface.
+        // Single precision of files: seven digits of a coordinate, over the whole surface.
         bound + 1e-5 * self.surface_mm2()
     }
 
-    /// Area of the surface in mm², from the exact profile; slanted walls with their mean perimeter and slant.
+    /// Returns the area of the surface in mm²; of slanted walls, the mean perimeter times the slant
+    /// height.
     pub fn surface_mm2(&self) -> f64 {
         self.walls.iter().map(|wall| self.wall_mm2(wall)).sum::<f64>() + self.caps_mm2()
     }
@@ -63,12 +67,12 @@ impl Solid {
 
 #[cfg(test)]
 mod tests {
+    use super::super::definition::Facing;
     use super::*;
     use crate::profile::{Contour, Edge, Pen, Point2, polar};
-    use crate::solid::Facing;
     use proptest::prelude::*;
 
-    /// A sector whose ends are parallel to the radial planes and lie `shift_mm` outside them.
+    /// A sector with ends parallel to radial planes, at `shift_mm` outside of them.
     fn sector([inner_mm, outer_mm]: [f64; 2], half_rad: f64, shift_mm: f64) -> Contour {
         let corner =
             |radius: f64, side: f64| polar(radius, side * (half_rad + libm::asin(shift_mm / radius)));
@@ -89,7 +93,7 @@ mod tests {
         solid
     }
 
-    /// Points at equal shares of every edge, on the curve itself.
+    /// Points on the curve at equal shares of every edge.
     fn points(contour: &Contour, per_edge: u32) -> Vec<Point2> {
         let on = |i: usize, share: f64| match &contour.edges()[i] {
             Edge::Line => contour.ends(i).0 + (contour.ends(i).1 - contour.ends(i).0) * share,
@@ -99,7 +103,7 @@ mod tests {
         (0..contour.edges().len()).flat_map(shares).collect()
     }
 
-    /// Volume between two contours, summed from thin slices of the ruled surface: no arc, no formula.
+    /// Volume between two contours from thin slices of the ruled surface, without formulas of arcs.
     fn summed_mm3(lower: &Contour, upper: &Contour, height_mm: f64) -> f64 {
         const SLICES: u32 = 40;
         let (below, above) = (points(lower, 2000), points(upper, 2000));
@@ -116,10 +120,10 @@ mod tests {
         solid.mesh(ChordTolerance::new(tolerance_mm).unwrap()).unwrap().volume_mm3()
     }
 
-    /// A hollow with 5 degrees of draft on three sides, 13.6 mm deep. An arc through the corners midway is not the curve
-    /// midway: it encloses more by what the summed slices can see.
+    /// A cavity with 5 degrees of draft on three sides, 13.6 mm deep. An arc through the corners
+    /// midway is not the curve midway; the slices show the difference.
     #[test]
-    fn a_wall_between_arcs_over_other_angles_has_the_volume_that_it_encloses() {
+    fn twisted_walls_have_their_exact_volume() {
         let drafted_mm = 13.6 * libm::tan(5f64.to_radians());
         let half = 89.45f64.to_radians() / 2.0;
         let lower = sector([20.0, 22.0], half, 0.0);
@@ -131,7 +135,7 @@ mod tests {
         assert!((of_arcs - exact).abs() > 0.1, "{of_arcs} for {exact}");
     }
 
-    /// A square turned by an angle on its way up: its section is a square again, smaller by the cosine.
+    /// A square that turns with height: its section is a square, smaller by the cosine.
     #[test]
     fn a_twisted_prism_has_its_exact_volume() {
         let turn = 0.6f64;
@@ -149,7 +153,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
         #[test]
-        fn closed_form_sum_and_mesh_agree_on_every_drafted_sector(
+        fn closed_form_slices_and_mesh_agree(
             inner in 8.0..100.0f64, thick in 1.0..8.0f64, half in 0.2..2.6f64, height in 1.0..30.0f64,
             inward in 0.0..2.0f64, outward in 0.0..2.0f64, ends in 0.0..2.0f64, at in 0.0..1.0f64,
         ) {

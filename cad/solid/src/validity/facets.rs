@@ -1,16 +1,17 @@
 //! Single facets: finite, not degenerate, not repeated.
 
-use super::stars::Star;
-use super::{Fault, MeshFacts, place};
+use super::fault::{Fault, place};
+use super::one_ring::OneRing;
 use crate::mesh::{Mesh, Point3};
 use crate::parallel;
 
 /// Least height of a triangle in mm: twice its area over its longest side.
-pub(super) fn height_mm([a, b, c]: [Point3; 3]) -> f64 {
+fn height_mm([a, b, c]: [Point3; 3]) -> f64 {
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     if longest == 0.0 { 0.0 } else { (b - a).cross(&(c - a)).norm() / longest }
 }
 
+/// A mesh without facets.
 pub(super) fn empty(mesh: &Mesh) -> Option<Fault> {
     mesh.triangles.is_empty().then(|| Fault {
         check: "empty",
@@ -20,53 +21,55 @@ pub(super) fn empty(mesh: &Mesh) -> Option<Fault> {
     })
 }
 
+/// Coordinates that are NaN or infinite.
 pub(super) fn not_finite(mesh: &Mesh) -> Option<Fault> {
-    let bad = mesh.positions.iter().filter(|p| !p.coords.iter().all(|c| c.is_finite())).count();
-    (bad > 0).then(|| Fault {
+    let count = mesh.positions.iter().filter(|p| !p.coords.iter().all(|c| c.is_finite())).count();
+    (count > 0).then(|| Fault {
         check: "not finite",
-        count: bad,
+        count,
         at_mm: None,
-        detail: format!("{bad} vertices have a coordinate that is NaN or infinite"),
+        detail: format!("{count} vertices have a coordinate that is NaN or infinite"),
     })
 }
 
-/// A mesh that is far too small or too large to be in millimetres.
-pub(super) fn implausible_size(facts: &MeshFacts, (least, most): (f64, f64)) -> Option<Fault> {
-    let longest = (0..3).map(|i| facts.high_mm[i] - facts.low_mm[i]).fold(0.0, f64::max);
+/// A bounding box that is too small or too large for millimetres.
+pub(super) fn implausible_size(low: [f64; 3], high: [f64; 3], (least, most): (f64, f64)) -> Option<Fault> {
+    let longest = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
     (longest < least || longest > most).then(|| Fault {
         check: "size",
         count: 1,
         at_mm: None,
         detail: format!(
-            "the longest side is {longest:.4} mm, expected are {least} to {most} mm: is it in millimetres?"
+            "the longest side is {longest:.4} mm, expected {least} to {most} mm; is the unit millimetres?"
         ),
     })
 }
 
 /// Heights of all facets.
 pub(super) struct Heights {
-    /// The least of them, mm; infinite without a facet.
-    pub(super) min_thickness_mm: f64,
+    /// The least height, mm; infinite without facets.
+    pub(super) least_mm: f64,
     degenerate: usize,
-    /// The thinnest degenerate facet, the first of equal ones, with its height.
+    /// The thinnest degenerate facet, the first of equal ones, and its height.
     worst: Option<(usize, f64)>,
 }
 
+/// Measures all facets, and counts those thinner than `min_height_mm`.
 pub(super) fn heights(mesh: &Mesh, min_height_mm: f64) -> Heights {
     let parts = parallel::in_chunks(mesh.triangles.len(), |range| {
-        let mut found = Heights { min_thickness_mm: f64::INFINITY, degenerate: 0, worst: None };
+        let mut part = Heights { least_mm: f64::INFINITY, degenerate: 0, worst: None };
         for f in range {
             let height = height_mm(mesh.corners(mesh.triangles[f]));
-            found.min_thickness_mm = found.min_thickness_mm.min(height);
+            part.least_mm = part.least_mm.min(height);
             if height < min_height_mm {
-                found.degenerate += 1;
-                found.worst = thinner(found.worst, Some((f, height)));
+                part.degenerate += 1;
+                part.worst = thinner(part.worst, Some((f, height)));
             }
         }
-        found
+        part
     });
     Heights {
-        min_thickness_mm: parts.iter().map(|part| part.min_thickness_mm).fold(f64::INFINITY, f64::min),
+        least_mm: parts.iter().map(|part| part.least_mm).fold(f64::INFINITY, f64::min),
         degenerate: parts.iter().map(|part| part.degenerate).sum(),
         worst: parts.iter().map(|part| part.worst).fold(None, thinner),
     }
@@ -79,6 +82,7 @@ fn thinner(first: Option<(usize, f64)>, later: Option<(usize, f64)>) -> Option<(
     }
 }
 
+/// Facets whose corners may be equal in single precision.
 pub(super) fn degenerate(mesh: &Mesh, heights: &Heights, min_height_mm: f64) -> Option<Fault> {
     let (count, (worst, height)) = (heights.degenerate, heights.worst?);
     Some(Fault {
@@ -89,35 +93,35 @@ pub(super) fn degenerate(mesh: &Mesh, heights: &Heights, min_height_mm: f64) -> 
     })
 }
 
-/// Facets on the same three vertices as one before them, whichever way they turn.
+/// Facets with the same three vertices as an earlier one, in either orientation.
 #[derive(Default)]
-pub(super) struct Repeats {
+pub(super) struct RepeatedFacets {
     count: usize,
-    /// The least number of such a facet.
+    /// The least index of such a facet.
     first: Option<u32>,
-    /// Room to work in: the greater two corners of the facets of a star.
+    /// The greater two corners of the facets of a one-ring, reused for every vertex.
     keys: Vec<([u32; 2], u32)>,
 }
 
-impl Repeats {
-    /// Counts the facets whose least vertex is the middle of the star.
-    pub(super) fn see(&mut self, mesh: &Mesh, star: &Star) {
+impl RepeatedFacets {
+    /// Counts the facets whose least vertex is the centre of the one-ring.
+    pub(super) fn check(&mut self, mesh: &Mesh, ring: &OneRing) {
         self.keys.clear();
-        for f in star.facets.chunk_by(|f, g| f == g).filter_map(|same| same.first()) {
+        for f in ring.facets.chunk_by(|f, g| f == g).filter_map(|same| same.first()) {
             let mut t = mesh.triangles[*f as usize];
             t.sort_unstable();
-            if t[0] == star.middle {
+            if t[0] == ring.centre {
                 self.keys.push(([t[1], t[2]], *f));
             }
         }
         self.keys.sort_unstable();
-        for two in self.keys.windows(2).filter(|two| two[0].0 == two[1].0) {
+        for pair in self.keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             self.count += 1;
-            self.first = Some(self.first.map_or(two[1].1, |first| first.min(two[1].1)));
+            self.first = Some(self.first.map_or(pair[1].1, |first| first.min(pair[1].1)));
         }
     }
 
-    /// Adds what other stars show.
+    /// Adds the facets of other vertices.
     pub(super) fn append(&mut self, other: Self) {
         self.count += other.count;
         self.first = self.first.into_iter().chain(other.first).min();
@@ -129,7 +133,7 @@ impl Repeats {
             check: "repeated facet",
             count,
             at_mm: place(mesh.corners(mesh.triangles[f as usize])[0]),
-            detail: format!("{count} facets lie on the corners of another"),
+            detail: format!("{count} facets have the same corners as another"),
         })
     }
 }

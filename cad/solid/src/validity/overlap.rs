@@ -1,45 +1,47 @@
-//! Whether two solids of an assembly share space: meshes of their own, which may touch.
+//! Overlap of two solids of an assembly.
 
-use super::bodies::winding;
+use super::components::winding_number;
 use crate::mesh::{Mesh, Point3, Vector3};
 
-/// Samples along the longest edge of a facet, at most.
-const FINEST: usize = 12;
+/// Most samples along the longest edge of a facet.
+const MAX_SAMPLES: usize = 12;
 /// Samples along the diagonal of the smaller solid.
-const ACROSS: f64 = 24.0;
+const SAMPLES_PER_DIAGONAL: f64 = 24.0;
+/// Most facets that all samples together are compared with: large meshes get fewer samples, so that
+/// the check takes seconds.
+const MAX_COMPARISONS: usize = 300_000_000;
 
-/// Each sample asks every facet of the other solid: of large meshes only some samples do, so that it ends within seconds.
-const MOST_FACETS_ASKED: usize = 300_000_000;
-
-/// A place at which two closed meshes share space, further than `depth_mm` below the surface of one of them; `None` if
-/// none is found. Solids that touch do not share space, and neither do curved ones whose facets cut into each other by
-/// less than that.
+/// Returns a place where two closed meshes overlap by more than `depth_mm`, measured from the
+/// surface of one of them; `None` if no sample shows one. Solids that touch, or curved ones whose
+/// facets intersect less deeply, do not overlap.
 ///
-/// Surfaces are sampled: a corner that dips in beside all samples is not seen.
+/// The surfaces are sampled: an overlap between the samples, such as of a single corner, is not
+/// detected.
 pub fn shared_place(one: &Mesh, other: &Mesh, depth_mm: f64) -> Option<[f64; 3]> {
     let (Some(a), Some(b)) = (one.bounds(), other.bounds()) else { return None };
     let (low, high) = (a.0.sup(&b.0), a.1.inf(&b.1));
     if (high - low).iter().any(|side| *side <= depth_mm) {
         return None;
     }
-    let step = ((a.1 - a.0).norm()).min((b.1 - b.0).norm()) / ACROSS;
+    let step = ((a.1 - a.0).norm()).min((b.1 - b.0).norm()) / SAMPLES_PER_DIAGONAL;
     let is_near = |p: &Point3| (0..3).all(|i| p[i] >= low[i] && p[i] <= high[i]);
     let within = |of: &Mesh, among: &Mesh| {
         let near: Vec<Point3> = samples(of, step, depth_mm).filter(is_near).collect();
-        let every = (near.len().saturating_mul(among.triangles.len()) / MOST_FACETS_ASKED).max(1);
-        let found = near.into_iter().step_by(every).find(|p| winding(among.facets(), *p).abs() > 0.5);
-        found.map(|p| [p.x, p.y, p.z])
+        let every = (near.len().saturating_mul(among.triangles.len()) / MAX_COMPARISONS).max(1);
+        let mut sampled = near.into_iter().step_by(every);
+        let inside = sampled.find(|p| winding_number(among.facets(), *p).abs() > 0.5);
+        inside.map(|p| [p.x, p.y, p.z])
     };
     within(one, other).or_else(|| within(other, one))
 }
 
-/// Points a little below every facet.
+/// Points at `depth_mm` below every facet.
 fn samples(mesh: &Mesh, step: f64, depth_mm: f64) -> impl Iterator<Item = Point3> + '_ {
     mesh.facets().flat_map(move |[a, b, c]| {
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let n = ((longest / step).ceil() as usize).clamp(1, FINEST);
+        let n = ((longest / step).ceil() as usize).clamp(1, MAX_SAMPLES);
         (0..n).flat_map(move |i| {
             (0..n - i).map(move |j| {
                 let share = |k: usize| (k as f64 + 1.0 / 3.0) / n as f64;
@@ -63,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn solids_that_touch_share_nothing_and_those_that_cross_do() {
+    fn only_crossing_solids_overlap() {
         let block = cuboid([0.0; 3], [20.0, 10.0, 5.0]);
         assert!((block.volume_mm3() - 1000.0).abs() < 1e-9);
         for (low, high, shared) in [

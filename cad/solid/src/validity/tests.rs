@@ -1,6 +1,6 @@
-//! Each defect is found, named and placed; valid bodies pass.
+//! Each defect is detected, named and located; valid bodies pass.
 
-use super::{Expectation, examine};
+use super::examine::{Expectation, examine};
 use crate::mesh::{Mesh, Point3, Vector3};
 
 /// An axis-parallel box.
@@ -44,10 +44,10 @@ fn valid_bodies_pass() {
     let apart = joined(cube(), cube().translated(Vector3::new(20.0, 0.0, 0.0)));
     assert!(faults(&apart).is_empty());
     let hollow = joined(cube(), inverted(block([4.0; 3], [6.0; 3])));
-    let found = examine(&hollow, &Expectation { bodies: Some(1), ..Expectation::default() });
-    assert!(found.is_valid());
-    assert_eq!((found.facts.bodies, found.facts.voids), (1, 1));
-    assert!((found.facts.volume_mm3 - 992.0).abs() < 1e-9);
+    let hollow = examine(&hollow, &Expectation { bodies: Some(1), ..Expectation::default() });
+    assert!(hollow.is_valid());
+    assert_eq!((hollow.facts.bodies, hollow.facts.voids), (1, 1));
+    assert!((hollow.facts.volume_mm3 - 992.0).abs() < 1e-9);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn touching_bodies_are_not_manifold() {
 }
 
 #[test]
-fn expectations_are_held() {
+fn unmet_expectations_are_faults() {
     let two = joined(cube(), cube().translated(Vector3::new(20.0, 0.0, 0.0)));
     let one = Expectation { bodies: Some(1), ..Expectation::default() };
     assert_eq!(checks(&two, &one), ["bodies"]);
@@ -109,10 +109,10 @@ fn expectations_are_held() {
 }
 
 #[test]
-fn faults_say_where_and_how_much() {
+fn faults_have_place_and_extent() {
     let mut hole = cube();
     hole.triangles.remove(0);
-    let found = examine(&hole, &Expectation::default());
-    let text = found.faults[0].to_string();
-    assert!(text.contains("3 edges have one facet only") && text.contains("mm)"), "{text}");
+    let examination = examine(&hole, &Expectation::default());
+    let text = examination.faults[0].to_string();
+    assert!(text.contains("3 edges have only one facet") && text.contains("mm)"), "{text}");
 }

@@ -3,10 +3,13 @@
 use std::io::Cursor;
 
 use super::{Part, printed, reference_bodies};
+use crate::built::verified;
 use crate::config::{Configuration, assign};
 use crate::design::Design;
 use pinswitch_solid::files::{read_stl, stl_bytes};
+use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::validity::examine;
+use pinswitch_solid::verification::second_kernel;
 
 fn design(assignments: &[&str]) -> Design {
     let mut configuration = Configuration::default();
@@ -61,31 +64,56 @@ fn all_parts_of_the_variants_are_valid() {
     }
 }
 
-/// Truck builds the same solid from the same profile: closed, as large, and in the same place.
+/// truck-modeling builds the same solid from the same contours, at every tolerance.
 #[test]
-fn truck_agrees_with_every_part() {
-    let tolerance = pinswitch_solid::profile::ChordTolerance::new(0.01).unwrap();
-    for kind in ["split", "one-piece"] {
-        let mould = format!("mould.kind={kind}");
+fn the_second_kernel_confirms_every_part() {
+    let kernel = second_kernel().unwrap();
+    for (kind, tolerance) in [("split", "0.01"), ("one-piece", "0.01"), ("one-piece", "0.1")] {
         let design = design(&[
             "layout.pins=[5, 8, 11]",
-            &mould,
+            &format!("mould.kind={kind}"),
+            &format!("mesh.chord_tolerance_mm={tolerance}"),
             "print.elephant_foot_mm=0.2",
             "parts.guide_pulley=true",
         ]);
         for part in printed(&design).unwrap().iter().chain(&reference_bodies(&design).unwrap()) {
-            let truck = part.solid.brep_mesh(tolerance).unwrap();
-            assert!(truck.closed, "{}", part.name);
-            let exact = part.solid.volume_mm3();
-            for volume in truck.mesh.axis_volumes_mm3() {
-                // Truck's vertices lie on the curve: it may be off by the tolerance over the whole surface.
-                let bound = tolerance.mm() * part.solid.surface_mm2();
-                assert!((volume - exact).abs() <= bound, "{}: {volume} for {exact}", part.name);
-            }
-            let (low, high) = truck.mesh.bounds().unwrap();
-            let (exact_low, exact_high) = part.solid.bounds().unwrap();
-            let off = (low - exact_low).amax().max((high - exact_high).amax());
-            assert!(off <= tolerance.mm(), "{}: off by {off}", part.name);
+            let mesh = part.print_mesh(&design).unwrap();
+            let verification = verified(part, &mesh, &design, kernel);
+            assert!(verification.is_ok_and(|v| v.closed), "{kind}, {tolerance} mm: {}", part.name);
         }
     }
+}
+
+/// The part, the quantity, both values and the limit are in the error.
+#[test]
+fn the_second_kernel_refuses_wrong_meshes() {
+    let kernel = second_kernel().unwrap();
+    let design = design(&["layout.pins=[5, 8, 11]"]);
+    let parts = printed(&design).unwrap();
+    let shell = parts.iter().find(|part| part.name == "shell").unwrap();
+    let right = shell.print_mesh(&design).unwrap();
+    let refusal = |mesh: &Mesh| verified(shell, mesh, &design, kernel).unwrap_err().to_string();
+
+    // A thousandth of the radius of 20 mm is twice the chord tolerance.
+    let mut scaled = shell.mesh(&design).unwrap();
+    scaled.positions.iter_mut().for_each(|p| *p *= 1.001);
+    let message = refusal(&scaled.translated(shell.print_shift_mm()));
+    assert!(message.starts_with("shell: ") && message.contains(" mm"), "{message}");
+
+    let mut open = right.clone();
+    open.triangles.pop();
+    assert!(refusal(&open).contains("the mesh of pinswitch is not closed"), "{}", refusal(&open));
+
+    let mut moved = right.clone();
+    let low = moved.bounds().unwrap().0.z;
+    let top = moved.positions.iter_mut().find(|p| p.z > low + 1.0).unwrap();
+    top.z += 0.03;
+    assert!(refusal(&moved).contains("at most"), "{}", refusal(&moved));
+
+    let support = parts.iter().find(|part| part.name == "support-left").unwrap();
+    let message = refusal(&support.print_mesh(&design).unwrap());
+    assert!(
+        message.contains("volume differs: ") && message.contains(" mm3 in truck-modeling, at most "),
+        "{message}"
+    );
 }

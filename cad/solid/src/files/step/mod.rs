@@ -1,78 +1,74 @@
-//! STEP (AP214): one exact solid per part, true planes, cylinders, lines and circles, and the assembly.
+//! STEP (AP214): one exact solid per part with planes, cylinders, cones, lines and circles, and the
+//! assembly.
 //!
-//! Written here because truck writes arcs as B-splines and no time stamp of ours (cad/doc/meshes.md, "Files"); a
-//! solid of contours at heights needs a dozen kinds of entity only.
+//! Libraries write arcs as B-splines and add a time stamp (cad/doc/meshes.md, "Files"). A solid of
+//! contours at heights needs only a dozen kinds of entity.
 
-#[cfg(feature = "truck")]
-mod read;
 mod shell;
 mod surface;
 mod writer;
-
-#[cfg(feature = "truck")]
-pub use read::{ReadSolid, StepFile, StepReadError, read_step};
 
 use crate::mesh::{Point3, Vector3};
 use crate::pose::Pose;
 use crate::solid::Solid;
 
-use writer::{Id, Writer, list, text};
+use writer::{Id, StepWriter, list, text};
 
-/// A part and its name.
+/// A part with its name.
 #[derive(Clone, Copy, Debug)]
 pub struct StepPart<'a> {
     /// Name of the product.
     pub name: &'a str,
-    /// Its exact solid.
+    /// Exact solid.
     pub solid: &'a Solid,
 }
 
-/// What every product of a file shares.
-struct Shared {
+/// Entities that all products of a file refer to.
+struct Contexts {
     units: Id,
     product_context: Id,
     definition_context: Id,
 }
 
-/// A product: its definition, its shape, and the frame of that shape.
+/// A product: its definition, its shape and the frame of that shape.
 struct Product {
     definition: Id,
     representation: Id,
     frame: Id,
 }
 
-/// The STEP file of one part, in the frame of the pulley's axis.
+/// Returns the STEP file of one part, in the frame of the axis of the pulley.
 pub fn step_part(part: StepPart<'_>) -> String {
-    let mut out = Writer::default();
-    let shared = shared(&mut out);
-    solid_product(&mut out, &shared, part);
+    let mut out = StepWriter::default();
+    let contexts = contexts(&mut out);
+    solid_product(&mut out, &contexts, part);
     out.file(part.name)
 }
 
-/// The STEP file of an assembly named `name`: each part once, in its pose.
+/// Returns the STEP file of the assembly `name`: each part once, in its pose.
 pub fn step_assembly(name: &str, parts: &[(StepPart<'_>, Pose)]) -> String {
-    let mut out = Writer::default();
-    let shared = shared(&mut out);
+    let mut out = StepWriter::default();
+    let contexts = contexts(&mut out);
     let origin = out.origin();
     let frames: Vec<Id> = parts.iter().map(|(_, pose)| frame(&mut out, *pose)).collect();
     let items: Vec<Id> = std::iter::once(origin).chain(frames.iter().copied()).collect();
     let representation =
-        out.add(&format!("SHAPE_REPRESENTATION('{}',{},{})", text(name), list(&items), shared.units));
-    let root = product(&mut out, &shared, name, representation, origin);
+        out.add(&format!("SHAPE_REPRESENTATION('{}',{},{})", text(name), list(&items), contexts.units));
+    let root = product(&mut out, &contexts, name, representation, origin);
     for (i, ((part, _), frame)) in parts.iter().zip(&frames).enumerate() {
-        let child = solid_product(&mut out, &shared, *part);
+        let child = solid_product(&mut out, &contexts, *part);
         place(&mut out, i + 1, part.name, &root, &child, *frame);
     }
     out.file(name)
 }
 
-fn frame(out: &mut Writer, pose: Pose) -> Id {
+fn frame(out: &mut StepWriter, pose: Pose) -> Id {
     let at = Point3::new(0.0, 0.0, pose.z_mm);
     let turn = if pose.flipped { -1.0 } else { 1.0 };
     out.placement(at, Vector3::z() * turn, Vector3::x() * turn)
 }
 
-fn shared(out: &mut Writer) -> Shared {
+fn contexts(out: &mut StepWriter) -> Contexts {
     let application = out.add("APPLICATION_CONTEXT('automotive design')");
     out.add(&format!(
         "APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,{application})"
@@ -90,34 +86,34 @@ fn shared(out: &mut Writer) -> Shared {
         "(GEOMETRIC_REPRESENTATION_CONTEXT(3) GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT(({uncertainty})) \
          GLOBAL_UNIT_ASSIGNED_CONTEXT(({length},{angle},{solid_angle})) REPRESENTATION_CONTEXT('',''))"
     ));
-    Shared { units, product_context, definition_context }
+    Contexts { units, product_context, definition_context }
 }
 
-fn solid_product(out: &mut Writer, shared: &Shared, part: StepPart<'_>) -> Product {
+fn solid_product(out: &mut StepWriter, contexts: &Contexts, part: StepPart<'_>) -> Product {
     let brep = shell::manifold_solid(out, part.name, part.solid);
     let frame = out.origin();
     let representation = out.add(&format!(
         "ADVANCED_BREP_SHAPE_REPRESENTATION('{}',({frame},{brep}),{})",
         text(part.name),
-        shared.units
+        contexts.units
     ));
-    product(out, shared, part.name, representation, frame)
+    product(out, contexts, part.name, representation, frame)
 }
 
-fn product(out: &mut Writer, shared: &Shared, name: &str, representation: Id, frame: Id) -> Product {
+fn product(out: &mut StepWriter, contexts: &Contexts, name: &str, representation: Id, frame: Id) -> Product {
     let name = text(name);
-    let product = out.add(&format!("PRODUCT('{name}','{name}','',({}))", shared.product_context));
+    let product = out.add(&format!("PRODUCT('{name}','{name}','',({}))", contexts.product_context));
     out.add(&format!("PRODUCT_RELATED_PRODUCT_CATEGORY('part','',({product}))"));
     let formation = out.add(&format!("PRODUCT_DEFINITION_FORMATION('','',{product})"));
     let definition =
-        out.add(&format!("PRODUCT_DEFINITION('design','',{formation},{})", shared.definition_context));
+        out.add(&format!("PRODUCT_DEFINITION('design','',{formation},{})", contexts.definition_context));
     let shape = out.add(&format!("PRODUCT_DEFINITION_SHAPE('','',{definition})"));
     out.add(&format!("SHAPE_DEFINITION_REPRESENTATION({shape},{representation})"));
     Product { definition, representation, frame }
 }
 
-/// Puts `child` into `root` so that its own frame comes to lie on `frame`.
-fn place(out: &mut Writer, number: usize, name: &str, root: &Product, child: &Product, frame: Id) {
+/// Places `child` in `root`, with its own frame on `frame`.
+fn place(out: &mut StepWriter, number: usize, name: &str, root: &Product, child: &Product, frame: Id) {
     let occurrence = out.add(&format!(
         "NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}','{}','',{},{},$)",
         text(name),
@@ -133,3 +129,8 @@ fn place(out: &mut Writer, number: usize, name: &str, root: &Product, child: &Pr
     ));
     out.add(&format!("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relationship},{shape})"));
 }
+
+#[cfg(test)]
+mod step_file;
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
-//! The faces of a solid: a wall's edge and a cap's loop share their edges, as walls and caps share rings.
+//! The shell of a solid. Walls and caps of one ring share its edges.
 
 use super::surface::{circle, face_surface, line, wall_surface};
-use super::writer::{Id, Writer, list, raised, text};
+use super::writer::{Id, StepWriter, list, raised, text};
 use crate::mesh::Vector3;
 use crate::profile::{Contour, Edge};
 use crate::solid::{Facing, Solid};
@@ -12,8 +12,8 @@ struct RingEdges {
     edges: Vec<Id>,
 }
 
-/// The solid as a MANIFOLD_SOLID_BREP.
-pub(super) fn manifold_solid(out: &mut Writer, name: &str, solid: &Solid) -> Id {
+/// Writes the solid as a MANIFOLD_SOLID_BREP.
+pub(super) fn manifold_solid(out: &mut StepWriter, name: &str, solid: &Solid) -> Id {
     let rings: Vec<RingEdges> = solid.rings().map(|(contour, z_mm)| ring_edges(out, contour, z_mm)).collect();
     let contours: Vec<(&Contour, f64)> = solid.rings().collect();
     let mut faces = Vec::new();
@@ -28,7 +28,8 @@ pub(super) fn manifold_solid(out: &mut Writer, name: &str, solid: &Solid) -> Id 
             .iter()
             .enumerate()
             .map(|(i, ring)| {
-                // Outlines run counter-clockwise and holes clockwise, seen from the side that the cap faces.
+                // Seen from the side that the cap faces, outlines run counter-clockwise and holes
+                // clockwise.
                 let counter_clockwise = contours[*ring].0.area_mm2() > 0.0;
                 let along = counter_clockwise == ((i == 0) == (facing == Facing::Up));
                 let kind = if i == 0 { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };
@@ -42,7 +43,7 @@ pub(super) fn manifold_solid(out: &mut Writer, name: &str, solid: &Solid) -> Id 
     out.add(&format!("MANIFOLD_SOLID_BREP('{}',{shell})", text(name)))
 }
 
-fn ring_edges(out: &mut Writer, contour: &Contour, z_mm: f64) -> RingEdges {
+fn ring_edges(out: &mut StepWriter, contour: &Contour, z_mm: f64) -> RingEdges {
     let vertices: Vec<Id> = contour
         .corners()
         .iter()
@@ -59,7 +60,7 @@ fn ring_edges(out: &mut Writer, contour: &Contour, z_mm: f64) -> RingEdges {
             let (from, to) = contour.ends(i);
             let (curve, forward) = match edge {
                 Edge::Line => (line(out, raised(from, z_mm), raised(to, z_mm)), true),
-                // A circle runs counter-clockwise; an arc may run against it.
+                // A circle runs counter-clockwise, an arc in either direction.
                 Edge::Arc(arc) => (circle(out, raised(arc.centre, z_mm), arc.radius_mm), arc.sweep_rad > 0.0),
             };
             edge_curve(out, vertices[i], vertices[(i + 1) % vertices.len()], curve, forward)
@@ -68,13 +69,13 @@ fn ring_edges(out: &mut Writer, contour: &Contour, z_mm: f64) -> RingEdges {
     RingEdges { vertices, edges }
 }
 
-fn edge_curve(out: &mut Writer, from: Id, to: Id, curve: Id, forward: bool) -> Id {
+fn edge_curve(out: &mut StepWriter, from: Id, to: Id, curve: Id, forward: bool) -> Id {
     out.add(&format!("EDGE_CURVE('',{from},{to},{curve},{})", flag(forward)))
 }
 
-/// The faces of a wall, one for each edge of its contours, with material to the left of the lower one.
+/// Writes the faces of a wall, one for each edge of its contours.
 fn wall_faces(
-    out: &mut Writer,
+    out: &mut StepWriter,
     [(lower, low), (upper, high)]: [(&Contour, f64); 2],
     [below, above]: [&RingEdges; 2],
     faces: &mut Vec<Id>,
@@ -96,7 +97,7 @@ fn wall_faces(
     }
 }
 
-fn bound(out: &mut Writer, kind: &str, steps: Vec<(Id, bool)>) -> Id {
+fn bound(out: &mut StepWriter, kind: &str, steps: Vec<(Id, bool)>) -> Id {
     let oriented: Vec<Id> = steps
         .into_iter()
         .map(|(edge, along)| out.add(&format!("ORIENTED_EDGE('',*,*,{edge},{})", flag(along))))

@@ -1,19 +1,21 @@
-//! Curves and surfaces: lines, circles, planes, cylinders, cones, and ruled surfaces where a draft twists a wall.
+//! Curves and surfaces: lines, circles, planes, cylinders, cones, and ruled B-spline surfaces for
+//! twisted walls.
 
 use std::f64::consts::{PI, TAU};
 
-use super::writer::{Id, Writer, list, raised, real};
+use super::writer::{Id, StepWriter, list, raised, real};
 use crate::mesh::{Point3, Vector3};
 use crate::profile::{Arc, Contour, Edge};
 
-/// Lengths, in mm, and angles, in rad, below which two things are the same.
+/// Difference of lengths, in mm, and of angles, in rad, up to which they are equal.
 const SAME: f64 = 1e-9;
-/// Largest angle of a rational piece of a wall between arcs, rad. A wall joins its arcs at equal shares of their angles, a rational
-/// piece at equal parameters, which is the same at its ends only: in pieces of a quarter turn the volume of a chamfered part
-/// was wrong by 5e-5 of itself, and falls with the square.
+/// Largest angle of a rational piece of a wall between arcs, rad. A wall joins its arcs at equal
+/// shares of their angles, a rational piece at equal parameters, which agree only at its ends. With
+/// pieces of a quarter turn, the relative error of the volume of a chamfered part was 5e-5; it
+/// falls with the square of the angle.
 const LARGEST_PIECE_RAD: f64 = PI / 32.0;
 
-pub(super) fn line(out: &mut Writer, from: Point3, to: Point3) -> Id {
+pub(super) fn line(out: &mut StepWriter, from: Point3, to: Point3) -> Id {
     let along = to - from;
     let start = out.point(from);
     let direction = out.direction(along.normalize());
@@ -21,24 +23,26 @@ pub(super) fn line(out: &mut Writer, from: Point3, to: Point3) -> Id {
     out.add(&format!("LINE('',{start},{vector})"))
 }
 
-/// A counter-clockwise circle, seen from above.
-pub(super) fn circle(out: &mut Writer, centre: Point3, radius_mm: f64) -> Id {
+/// Writes a circle, counter-clockwise seen from above.
+pub(super) fn circle(out: &mut StepWriter, centre: Point3, radius_mm: f64) -> Id {
     let frame = out.placement(centre, Vector3::z(), Vector3::x());
     out.add(&format!("CIRCLE('',{frame},{})", real(radius_mm)))
 }
 
-/// A plane through `at` with its normal pointing out of the material.
-pub(super) fn face_surface(out: &mut Writer, at: Point3, normal: Vector3) -> Id {
+/// Writes a plane through `at` with its normal out of the material.
+pub(super) fn face_surface(out: &mut StepWriter, at: Point3, normal: Vector3) -> Id {
     let normal = normal.normalize();
-    // Any direction in the plane; across the axis of the smallest component is far from parallel to it.
+    // Any direction in the plane: the cross product with an axis that is far from parallel to the
+    // normal.
     let across = if normal.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let frame = out.placement(at, normal, normal.cross(&across).normalize());
     out.add(&format!("PLANE('',{frame})"))
 }
 
-/// The surface of edge `i` of a wall between two contours at heights, and whether its normal points out of the material.
+/// Writes the surface of edge `i` of a wall between two contours at heights; returns it and whether
+/// its normal points out of the material.
 pub(super) fn wall_surface(
-    out: &mut Writer,
+    out: &mut StepWriter,
     [(lower, low), (upper, high)]: [(&Contour, f64); 2],
     i: usize,
 ) -> (Id, bool) {
@@ -47,7 +51,7 @@ pub(super) fn wall_surface(
     match (lower.edges()[i], upper.edges()[i]) {
         (Edge::Arc(a), Edge::Arc(b)) => {
             let coaxial = (a.centre - b.centre).norm() < SAME
-                // The same direction, whatever number of turns its angle counts.
+                // The same direction modulo full turns.
                 && (b.start_rad - a.start_rad + PI).rem_euclid(TAU) - PI < SAME
                 && (a.start_rad - b.start_rad + PI).rem_euclid(TAU) - PI < SAME
                 && (a.sweep_rad - b.sweep_rad).abs() < SAME;
@@ -75,8 +79,8 @@ pub(super) fn wall_surface(
     }
 }
 
-/// A cone about a vertical axis that widens along its axis, as the format wants it.
-fn cone(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
+/// Writes a cone about a vertical axis. It widens along its axis, as the format requires.
+fn cone(out: &mut StepWriter, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     let widens_upwards = b.radius_mm > a.radius_mm;
     let (narrow, z_mm, up) = if widens_upwards { (a, low, 1.0) } else { (b, high, -1.0) };
     let half_angle = libm::atan((b.radius_mm - a.radius_mm).abs() / (high - low));
@@ -84,7 +88,7 @@ fn cone(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     out.add(&format!("CONICAL_SURFACE('',{frame},{},{})", real(narrow.radius_mm), real(half_angle)))
 }
 
-/// Control points and weights of an arc as rational quadratic pieces.
+/// Control points and weights of an arc in rational quadratic pieces.
 fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
     let half = arc.sweep_rad / (2 * pieces) as f64;
     (0..=2 * pieces)
@@ -99,8 +103,9 @@ fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
         .collect()
 }
 
-/// The ruled surface between two arcs: rational, quadratic along and linear up; its edges are the very arcs.
-fn ruled_arcs(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
+/// Writes the ruled surface between two arcs: rational, quadratic along the arcs, with exact arcs
+/// as edges.
+fn ruled_arcs(out: &mut StepWriter, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     let largest = a.sweep_rad.abs().max(b.sweep_rad.abs());
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let pieces = (largest / LARGEST_PIECE_RAD - SAME).ceil().max(1.0) as usize;
@@ -127,8 +132,9 @@ fn ruled_arcs(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -
     ))
 }
 
-/// The ruled surface between two lines that are not parallel; corners counter-clockwise from outside, lower ones first.
-fn bilinear(out: &mut Writer, corners: [Point3; 4]) -> Id {
+/// Writes the ruled surface between two lines that are not parallel; corners counter-clockwise from
+/// outside, lower ones first.
+fn bilinear(out: &mut StepWriter, corners: [Point3; 4]) -> Id {
     let [a, b, c, d] = corners.map(|p| out.point(p));
     out.add(&format!(
         "B_SPLINE_SURFACE_WITH_KNOTS('',1,1,(({a},{d}),({b},{c})),.UNSPECIFIED.,.F.,.F.,.F.,(2,2),(2,2),(0.0,1.0),\

@@ -1,4 +1,4 @@
-//! Numbered entities of a STEP file (ISO 10303-21).
+//! Entities of a STEP file (ISO 10303-21).
 
 use std::fmt::Write as _;
 
@@ -15,14 +15,14 @@ impl std::fmt::Display for Id {
     }
 }
 
-/// Entities in the order in which they were added.
+/// A file under construction: entities in the order of their numbers.
 #[derive(Debug, Default)]
-pub(super) struct Writer {
+pub(super) struct StepWriter {
     data: String,
     last: usize,
 }
 
-impl Writer {
+impl StepWriter {
     /// Adds an entity and returns its number.
     pub(super) fn add(&mut self, entity: &str) -> Id {
         self.last += 1;
@@ -38,20 +38,20 @@ impl Writer {
         self.add(&format!("DIRECTION('',({},{},{}))", real(d.x), real(d.y), real(d.z)))
     }
 
-    /// A right-handed frame at `at`: its z axis, and the direction of its x axis.
+    /// Adds a right-handed frame at `at` by the directions of its z axis and x axis.
     pub(super) fn placement(&mut self, at: Point3, axis: Vector3, reference: Vector3) -> Id {
         let (at, axis, reference) = (self.point(at), self.direction(axis), self.direction(reference));
         self.add(&format!("AXIS2_PLACEMENT_3D('',{at},{axis},{reference})"))
     }
 
-    /// The frame of the model.
+    /// Adds the frame of the model.
     pub(super) fn origin(&mut self) -> Id {
         self.placement(Point3::origin(), Vector3::z(), Vector3::x())
     }
 
-    /// The whole file, named `name`.
+    /// Returns the file, with the name `name`.
     pub(super) fn file(&self, name: &str) -> String {
-        // The time stamp is the epoch: one of our own would make every run differ.
+        // The time stamp is the epoch: with the current time, every run would give other bytes.
         format!(
             "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('pinswitch: exact solids of a friction switch'),'2;1');\n\
              FILE_NAME('{}','1970-01-01T00:00:00',(''),(''),'pinswitch {}','pinswitch','');\n\
@@ -68,15 +68,15 @@ pub(super) fn raised(p: Point2, z_mm: f64) -> Point3 {
     Point3::new(p.x, p.y, z_mm)
 }
 
-/// A list of entity numbers, as `(#1,#2)`.
+/// A list of entity numbers, such as `(#1,#2)`.
 pub(super) fn list(ids: &[Id]) -> String {
     let all: Vec<String> = ids.iter().map(Id::to_string).collect();
     format!("({})", all.join(","))
 }
 
-/// A real number: every digit that a double has, with the point that the format demands.
+/// A real number with all digits of a double, and the decimal point that the format requires.
 pub(super) fn real(value: f64) -> String {
-    // A negative zero is a zero.
+    // Adding zero turns -0 into +0.
     let shortest = format!("{:?}", value + 0.0);
     match shortest.split_once('e') {
         Some((mantissa, exponent)) if mantissa.contains('.') => format!("{mantissa}E{exponent}"),
@@ -85,8 +85,8 @@ pub(super) fn real(value: f64) -> String {
     }
 }
 
-/// A string of the format: quotes and backslashes doubled, anything beyond printable ASCII as `\X2\` and `\X4\` with the
-/// hexadecimal digits of its code point (ISO 10303-21, 6.4.3), control characters left out.
+/// The content of a string: quotes and backslashes doubled, other than printable ASCII as `\X2\`
+/// and `\X4\` with the hexadecimal code point (ISO 10303-21, 6.4.3), without control characters.
 pub(super) fn text(value: &str) -> String {
     let mut text = String::new();
     for c in value.chars().filter(|c| !c.is_control()) {
@@ -107,13 +107,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_keep_their_digits_and_their_point() {
+    fn numbers_have_all_digits_and_a_point() {
         let written: Vec<String> = [0.1, -0.0, 1e-7, 12.0, -2.5e-10, 1e22].map(real).to_vec();
         assert_eq!(written, ["0.1", "0.0", "1.E-7", "12.0", "-2.5E-10", "1.E22"]);
     }
 
     #[test]
-    fn no_text_ends_its_string_or_is_a_directive() {
+    fn text_cannot_end_its_string() {
         assert_eq!(text("a 'b'\n"), "a ''b''");
         assert_eq!(text(r"\X2\'"), r"\\X2\\''");
         assert_eq!(text("\u{e4}\u{1f600}"), r"\X2\00E4\X0\\X4\0001F600\X0\");

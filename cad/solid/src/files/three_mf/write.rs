@@ -1,72 +1,80 @@
-//! Writes a package: printed parts as named, coloured objects in their places on one plate, byte for byte the same every time.
+//! Writes a package: printed parts as named, coloured objects in their places on one plate.
 
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
 
+use pinswitch_diagnostic::Diagnostic;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::{CORE, MODEL_TYPE, OWN};
+use super::core_spec::{CORE, MODEL_TYPE, OWN};
 use crate::files::plate::Placement;
 use crate::mesh::Mesh;
 
 /// A printed part.
 #[derive(Clone, Debug)]
 pub struct Object<'a> {
-    /// Its name, shown by slicers.
+    /// Name that slicers show.
     pub name: &'a str,
-    /// Its part number: stable over runs, different for different configurations.
+    /// Part number: the same in every run, different for different configurations.
     pub part_number: String,
-    /// Its mesh in print orientation.
+    /// Mesh in print orientation.
     pub mesh: &'a Mesh,
-    /// Its material: a number in [`Package::materials`], or one beyond them for none.
+    /// Index of its material in [`Package::materials`]; a larger one for no material.
     pub material: usize,
-    /// Where it lies on the plate; the plate's number is not looked at.
+    /// Place on the plate; the number of the plate is ignored.
     pub place: Placement,
 }
 
-/// What an object is made of, and how it is shown.
+/// A material, and the colour in which viewers show it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BaseMaterial {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Red, green, blue.
     pub colour: [u8; 3],
 }
 
-/// What a package holds besides its objects.
+/// The content of a package in addition to its objects.
 #[derive(Clone, Debug, Default)]
 pub struct Package {
-    /// Title, designer, description, licence: names of the core specification, with their values.
+    /// Metadata with names of the core specification (title, designer, description, licence).
     pub metadata: Vec<(&'static str, String)>,
-    /// Metadata of our own, in a namespace of our own.
+    /// Metadata in the namespace of pinswitch.
     pub own_metadata: Vec<(&'static str, String)>,
-    /// What the objects are made of.
+    /// Materials of the objects.
     pub materials: Vec<BaseMaterial>,
-    /// A picture, as PNG.
+    /// Thumbnail as PNG; empty for none.
     pub thumbnail: Vec<u8>,
-    /// Attached files, by name in `Metadata/`: the friction curve.
+    /// Attached files by their names in `Metadata/`, such as the friction curve.
     pub attachments: Vec<(String, Vec<u8>)>,
 }
 
-/// A package cannot be put together.
+/// A package that cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("3MF: {0}")]
+#[error("cannot write the 3MF: {0}")]
 pub struct ThreeMfError(#[from] zip::result::ZipError);
+
+impl From<ThreeMfError> for Diagnostic {
+    fn from(error: ThreeMfError) -> Self {
+        Self::from_error(error)
+    }
+}
 
 const RELATIONSHIPS: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
 const THUMBNAIL_TYPE: &str =
     "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
-/// Relationship of an attachment that means nothing to a printer.
+/// Type of the relationship to an attachment, which printers ignore.
 const ATTACHMENT_TYPE: &str = "urn:pinswitch:attachment:1";
 
-/// The bytes of a 3MF file with `objects` in their places. The same input gives the same bytes.
+/// Returns the bytes of a 3MF file with `objects` in their places. The same input gives the same
+/// bytes.
 ///
 /// # Errors
 /// [`ThreeMfError`] if the archive cannot be written.
 pub fn three_mf(objects: &[Object<'_>], package: &Package) -> Result<Vec<u8>, ThreeMfError> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    // The archive's epoch: time stamps would make every run differ.
+    // The epoch of the archive: with time stamps, every run would give other bytes.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
@@ -172,7 +180,8 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
             escaped(&object.part_number)
         );
         for p in &object.mesh.positions {
-            // As in the STL: single precision, in the fewest digits that read back.
+            // Single precision as in the STL, in the fewest digits that read back to the same
+            // value.
             let _ =
                 writeln!(text, r#"<vertex x="{}" y="{}" z="{}"/>"#, single(p.x), single(p.y), single(p.z));
         }
@@ -184,9 +193,9 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
     }
     text.push_str("</resources>\n<build>\n");
     for (i, Object { place, .. }) in objects.iter().enumerate() {
-        // Row by row what becomes of x, y and z (core specification, 3.3).
+        // Rows are the images of x, y and z (core specification, 3.3).
         let turn = if place.is_turned { "0 1 0 -1 0 0 0 0 1" } else { "1 0 0 0 1 0 0 0 1" };
-        // A negative zero is a zero.
+        // Adding zero turns -0 into +0.
         let at = place.shift.map(|v| v + 0.0);
         let _ =
             writeln!(text, r#"<item objectid="{}" transform="{turn} {} {} {}"/>"#, i + 1, at.x, at.y, at.z);
@@ -195,13 +204,13 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
     text
 }
 
-/// A coordinate in single precision; a negative zero is a zero.
+/// A coordinate in single precision, with -0 as +0.
 #[allow(clippy::cast_possible_truncation)]
 fn single(value: f64) -> f32 {
     value as f32 + 0.0
 }
 
-/// `text` for an XML attribute or element.
+/// Escapes `text` for an XML attribute or element.
 fn escaped(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
         match c {

@@ -1,0 +1,184 @@
+//! Reads binary and ASCII STL.
+
+use std::io::{Read, Seek};
+
+use super::ascii::{is_ascii, read_ascii};
+use super::binary::{HEADER, RECORD, announced, read_binary};
+use super::error::StlError;
+use super::facets::StlFile;
+use super::file_type::other_format;
+
+/// Reads a binary or ASCII STL. Corners with identical coordinates become one vertex; nothing is
+/// repaired.
+///
+/// ```
+/// use std::io::Cursor;
+///
+/// use pinswitch_solid::files::read_stl;
+///
+/// let text = "solid one
+/// facet normal 0 0 1
+/// outer loop
+/// vertex 0 0 0
+/// vertex 5 0 0
+/// vertex 0 5 0
+/// endloop
+/// endfacet
+/// endsolid one
+/// ";
+/// let stl = read_stl(&mut Cursor::new(text))?;
+/// assert_eq!((stl.mesh.triangles.len(), stl.mesh.positions.len(), stl.contrary_normals), (1, 3, 0));
+/// assert!(read_stl(&mut Cursor::new("not an STL")).is_err());
+/// # Ok::<(), pinswitch_solid::files::StlError>(())
+/// ```
+///
+/// # Errors
+/// [`StlError`] if the file is not an STL, is cut short or contains no triangle.
+pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
+    let head = Head::read(source)?;
+    if head.length == 0 {
+        return Err(StlError::NoBytes);
+    }
+    if let Some(format) = other_format(&head.bytes, head.fits()) {
+        return Err(StlError::OtherFormat(format));
+    }
+    head.check_length()?;
+    let facets = if is_ascii(&head.bytes) { read_ascii(source)? } else { read_binary(source, head.length)? };
+    let trailing_bytes = if is_ascii(&head.bytes) { 0 } else { head.trailing_bytes() };
+    facets.finish().map(|file| StlFile { trailing_bytes, ..file }).ok_or(StlError::NoTriangle)
+}
+
+/// The first bytes of a file, and its length.
+struct Head {
+    bytes: Vec<u8>,
+    length: u64,
+}
+
+impl Head {
+    /// Reads the head and returns to the start.
+    fn read(source: &mut (impl Read + Seek)) -> std::io::Result<Self> {
+        let length = source.seek(std::io::SeekFrom::End(0))?;
+        source.rewind()?;
+        let mut bytes = Vec::with_capacity(HEADER);
+        source.by_ref().take(HEADER as u64).read_to_end(&mut bytes)?;
+        source.rewind()?;
+        Ok(Self { bytes, length })
+    }
+
+    /// The facet count of a binary STL, and the size in bytes of a file with that many.
+    fn announced(&self) -> Option<(u32, u64)> {
+        let announced = announced(&self.bytes)?;
+        Some((announced, HEADER as u64 + RECORD as u64 * u64::from(announced)))
+    }
+
+    /// Whether the file has room for all facets that a binary header announces. Some programs
+    /// append bytes, which readers ignore.
+    fn fits(&self) -> bool {
+        self.announced().is_some_and(|(_, expected)| expected <= self.length)
+    }
+
+    fn trailing_bytes(&self) -> u64 {
+        self.announced().map_or(0, |(_, expected)| self.length.saturating_sub(expected))
+    }
+
+    /// Refuses a binary file that is shorter than its header announces: it would pass for a smaller
+    /// part.
+    fn check_length(&self) -> Result<(), StlError> {
+        match self.announced() {
+            _ if is_ascii(&self.bytes) || self.fits() => Ok(()),
+            Some((announced, expected)) => Err(StlError::Length { announced, expected, actual: self.length }),
+            None => Err(StlError::TooShort(self.length)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::binary::RECORDS_PER_READ;
+    use super::super::facets::Facets;
+    use super::super::write::stl_bytes;
+    use super::*;
+    use crate::mesh::{Mesh, Point3};
+    use std::io::Cursor;
+
+    fn tetrahedron() -> Mesh {
+        let positions = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        Mesh::new(
+            positions.map(|(x, y, z)| Point3::new(x, y, z)).to_vec(),
+            vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+        )
+    }
+
+    #[test]
+    fn a_written_mesh_is_read_back() {
+        let bytes = stl_bytes(&tetrahedron()).unwrap();
+        assert_eq!(bytes.len(), 84 + 4 * 50);
+        let back = read_stl(&mut Cursor::new(bytes)).unwrap().mesh;
+        assert_eq!((back.positions.len(), back.triangles.len()), (4, 4));
+        for volume in back.axis_volumes_mm3() {
+            assert!((volume - 1.0 / 6.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn trailing_bytes_are_counted() {
+        let mut bytes = stl_bytes(&tetrahedron()).unwrap();
+        let trailing = |bytes: &[u8]| read_stl(&mut Cursor::new(bytes.to_vec())).unwrap().trailing_bytes;
+        assert_eq!(trailing(&bytes), 0);
+        bytes.extend([7; 13]);
+        assert_eq!(trailing(&bytes), 13);
+    }
+
+    #[test]
+    fn broken_files_are_refused() {
+        let bytes = stl_bytes(&tetrahedron()).unwrap();
+        let read = |bytes: &[u8]| read_stl(&mut Cursor::new(bytes.to_vec()));
+        assert!(matches!(read(&bytes[..150]), Err(StlError::Length { announced: 4, .. })));
+        assert!(matches!(read(b""), Err(StlError::NoBytes)));
+        assert!(matches!(read(&[1, 0, 2]), Err(StlError::TooShort(3))));
+        assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Line { line: 2, .. })));
+        assert!(matches!(read(b"solid x\nendsolid x\n"), Err(StlError::NoTriangle)));
+        let long = read(format!("solid x\n{}\n", "facet ".repeat(10_000)).as_bytes()).unwrap_err();
+        assert!(long.to_string().len() < 300, "{long}");
+        assert!(matches!(read(&stl_bytes(&Mesh::default()).unwrap()), Err(StlError::NoTriangle)));
+    }
+
+    /// A binary STL whose facets repeat some corners soon, some much later and some never.
+    fn repetitive(facets: usize) -> Vec<u8> {
+        let mut bytes = vec![b' '; HEADER - 4];
+        bytes.extend(u32::try_from(facets).unwrap().to_le_bytes());
+        for f in 0..facets {
+            let corner = |i: usize| {
+                [(f + i) as f32, ((f * 7919 + i) % 1000) as f32, if f % 3 == 0 { -0.0 } else { 0.0 }]
+            };
+            let numbers = [[0.0, 0.0, (f % 2) as f32 - 0.5], corner(0), corner(1), corner(f % 5)];
+            bytes.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()).chain([0, 0]));
+        }
+        bytes
+    }
+
+    #[test]
+    fn chunks_merge_to_the_same_mesh() {
+        // Less than a chunk, several chunks, and more than one read.
+        for facets in [3, 4097, 20_000, RECORDS_PER_READ + 5000] {
+            let bytes = repetitive(facets);
+            let mut one_by_one = Facets::default();
+            for facet in stl_io::create_stl_reader(&mut Cursor::new(&bytes)).unwrap() {
+                let facet = facet.unwrap();
+                one_by_one.add(facet.normal.0, facet.vertices.map(|v| v.0));
+            }
+            assert!(
+                read_stl(&mut Cursor::new(bytes)).unwrap() == one_by_one.finish().unwrap(),
+                "{facets} facets"
+            );
+        }
+    }
+
+    #[test]
+    fn an_excessive_count_reserves_no_memory() {
+        let mut bytes = repetitive(10);
+        bytes[..6].copy_from_slice(b"solidX");
+        bytes[HEADER - 4..HEADER].copy_from_slice(&[0x20; 4]);
+        assert!(read_stl(&mut Cursor::new(bytes)).is_err());
+    }
+}

@@ -1,0 +1,101 @@
+//! Names of the core specification: namespaces, parts, elements with their attributes, metadata,
+//! units.
+
+use crate::validity::Fault;
+
+/// Namespace of the core specification.
+pub(super) const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+/// Namespace of pinswitch's own metadata.
+pub(super) const OWN: &str = "urn:pinswitch:configuration:1";
+/// Namespace of the production extension: objects in separate parts.
+pub(super) const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+/// Type of the relationship to the model.
+pub(super) const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+/// Part with the relationships of a package.
+pub(super) const RELATIONSHIPS: &str = "_rels/.rels";
+/// Part with the content types of a package.
+pub(super) const CONTENT_TYPES: &str = "[Content_Types].xml";
+/// Name of the model part in most packages.
+pub(super) const USUAL_MODEL: &str = "3D/3dmodel.model";
+/// Longest detail of a fault, in characters: it may quote any text of the file.
+const MAX_CHARACTERS: usize = 300;
+
+/// Elements of the core namespace with their attributes.
+const ELEMENTS: [(&str, &[&str]); 17] = [
+    ("model", &["unit", "requiredextensions", "recommendedextensions"]),
+    ("metadata", &["name", "preserve", "type"]),
+    ("metadatagroup", &[]),
+    ("resources", &[]),
+    ("basematerials", &["id"]),
+    ("base", &["name", "displaycolor"]),
+    ("object", &["id", "type", "thumbnail", "partnumber", "name", "pid", "pindex"]),
+    ("mesh", &[]),
+    ("vertices", &[]),
+    ("vertex", &["x", "y", "z"]),
+    ("triangles", &[]),
+    ("triangle", &["v1", "v2", "v3", "p1", "p2", "p3", "pid"]),
+    ("components", &[]),
+    ("component", &["objectid", "transform"]),
+    ("build", &[]),
+    ("item", &["objectid", "transform", "partnumber"]),
+    // Part of the first edition of the specification; readers skip it.
+    ("multiproperties", &[]),
+];
+/// Names of metadata without a namespace.
+const METADATA: [&str; 9] = [
+    "Title",
+    "Designer",
+    "Description",
+    "Copyright",
+    "LicenseTerms",
+    "Rating",
+    "CreationDate",
+    "ModificationDate",
+    "Application",
+];
+/// Units with their length in millimetres.
+const UNITS: [(&str, f64); 6] = [
+    ("micron", 1e-3),
+    ("millimeter", 1.0),
+    ("centimeter", 10.0),
+    ("inch", 25.4),
+    ("foot", 304.8),
+    ("meter", 1e3),
+];
+/// Namespaces of extensions that leave meshes unchanged or that the reader supports: materials,
+/// production, triangle sets.
+const EXTENSIONS: [&str; 3] = [
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    PRODUCTION,
+    "http://schemas.3mf.io/3dmanufacturing/triangle/2023/07",
+];
+
+/// Returns the attributes of an element; `None` for an unknown element.
+pub(super) fn attributes(element: &str) -> Option<&'static [&'static str]> {
+    ELEMENTS.iter().find(|(name, _)| *name == element).map(|(_, known)| *known)
+}
+
+/// Returns whether metadata of this name may have no namespace.
+pub(super) fn is_metadata(name: &str) -> bool {
+    METADATA.contains(&name)
+}
+
+/// Returns the length of a unit in mm.
+pub(super) fn unit_mm(name: &str) -> Option<f64> {
+    UNITS.iter().find(|(unit, _)| *unit == name).map(|(_, mm)| *mm)
+}
+
+/// Returns whether a file that requires the extension of this namespace can be examined.
+pub(super) fn is_supported(namespace: &str) -> bool {
+    EXTENSIONS.contains(&namespace)
+}
+
+/// A fault of a package that occurs `count` times.
+pub(super) fn faults(check: &'static str, count: usize, detail: &str) -> Fault {
+    Fault { check, count, at_mm: None, detail: pinswitch_diagnostic::excerpt(detail, MAX_CHARACTERS) }
+}
+
+/// A single fault of a package.
+pub(super) fn fault(check: &'static str, detail: &str) -> Fault {
+    faults(check, 1, detail)
+}

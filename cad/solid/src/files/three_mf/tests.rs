@@ -1,0 +1,196 @@
+//! Faults of packages, one at a time.
+
+use std::io::{Cursor, Write as _};
+
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use super::core_spec::{CONTENT_TYPES, CORE, MODEL_TYPE, PRODUCTION, RELATIONSHIPS, USUAL_MODEL};
+use super::read::{ThreeMf, read_three_mf};
+use super::write::{BaseMaterial, Object, Package, three_mf};
+use crate::files::plate::Placement;
+use crate::mesh::{Mesh, Point3, Vector3};
+
+const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>"#;
+
+fn relationships() -> String {
+    format!(
+        r#"<Relationships><Relationship Type="{MODEL_TYPE}" Target="/3D/3dmodel.model"/></Relationships>"#
+    )
+}
+
+fn packed(parts: &[(&str, &str)]) -> Vec<u8> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, text) in parts {
+        archive.start_file(*name, SimpleFileOptions::default()).unwrap();
+        archive.write_all(text.as_bytes()).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+const TETRAHEDRON: &str = r#"<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="9" y="0" z="0"/><vertex x="0" y="9" z="0"/><vertex x="0" y="0" z="9"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh>"#;
+
+fn model_of(attributes: &str, metadata: &str, resources: &str, build: &str) -> String {
+    format!(
+        r#"<model xmlns="{CORE}" xmlns:p="{PRODUCTION}" {attributes}>{metadata}<resources>{resources}</resources><build>{build}</build></model>"#
+    )
+}
+
+fn read(model: &str) -> ThreeMf {
+    let relationships = relationships();
+    read_three_mf(&packed(&[(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &relationships), (USUAL_MODEL, model)]))
+        .unwrap()
+}
+
+fn checks(found: &ThreeMf) -> Vec<&str> {
+    found.faults.iter().map(|f| f.check).collect()
+}
+
+fn object(id: u32) -> String {
+    format!(r#"<object id="{id}">{TETRAHEDRON}</object>"#)
+}
+
+#[test]
+fn a_written_package_is_read_back() {
+    let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+    let positions = corners.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+    let mesh = Mesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+    let text = "[switch]\nname = \"<&>\" # \t'\"\n";
+    let package = Package {
+        metadata: vec![("Title", "a & b".to_owned())],
+        own_metadata: vec![("configuration", text.to_owned())],
+        materials: vec![BaseMaterial { name: "\"ABS\"".to_owned(), colour: [0, 128, 255] }],
+        ..Package::default()
+    };
+    let place = Placement { plate: 0, is_turned: true, shift: Vector3::new(9.0, 0.0, 0.0) };
+    let object =
+        |name, material| Object { name, part_number: "x/1".to_owned(), mesh: &mesh, material, place };
+    let objects = [object("a <part>", 0), object("of nothing", 1)];
+    let found = read_three_mf(&three_mf(&objects, &package).unwrap()).unwrap();
+    assert_eq!(checks(&found), [""; 0], "{:?}", found.faults);
+    assert_eq!((found.meshes[0].name.as_str(), &found.meshes[0].mesh), ("a <part>", &mesh));
+    assert_eq!(found.configuration.as_deref(), Some(text));
+}
+
+#[test]
+fn each_fault_is_named() {
+    let item = r#"<item objectid="1"/>"#;
+    let good = model_of("", "", &object(1), item);
+    assert_eq!(checks(&read(&good)), [""; 0]);
+    // Centred on the origin, as many programs write it.
+    let centred = r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 1 -4 -4 0"/>"#;
+    assert_eq!(checks(&read(&model_of("", "", &object(1), centred))), [""; 0]);
+    for (model, check) in [
+        (model_of(r#"unit="parsec""#, "", &object(1), item), "unit"),
+        (model_of(r#"colour="red""#, "", &object(1), item), "vocabulary"),
+        (model_of("", "", &object(1), r#"<item objectid="1" printable="1"/>"#), "vocabulary"),
+        (model_of("", "<plate/>", &object(1), item), "vocabulary"),
+        (model_of("", r#"<metadata name="Foo">x</metadata>"#, &object(1), item), "metadata"),
+        (model_of("", &r#"<metadata name="Title">x</metadata>"#.repeat(2), &object(1), item), "metadata"),
+        (model_of(r#"requiredextensions="zz""#, "", &object(1), item), "extension"),
+        (model_of(r#"xmlns:b="urn:b" requiredextensions="b""#, "", &object(1), item), "extension"),
+        (model_of("", "", &object(1), ""), "build"),
+        (model_of("", "", &object(1), r#"<item objectid="7"/>"#), "reference"),
+        (model_of("", "", &[object(1), object(1)].concat(), item), "reference"),
+        (
+            model_of("", "", &object(1), r#"<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 50 0 0"/>"#),
+            "mirrored",
+        ),
+        (
+            model_of("", "", &object(1), r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 1 -50 0 0"/>"#),
+            "outside",
+        ),
+        (model_of("", "", &object(1), r#"<item objectid="1" transform="1 0 0"/>"#), "transform"),
+        (good.replace(r#"v3="1""#, r#"v3="4""#), "index"),
+        (good.replace(r#"v3="1""#, ""), "index"),
+        (
+            model_of(
+                "",
+                "",
+                r#"<object id="1"><components><component objectid="1"/></components></object>"#,
+                item,
+            ),
+            "reference",
+        ),
+    ] {
+        assert_eq!(checks(&read(&model)), [check], "{model}");
+    }
+    let of = |parts: &[(&str, &str)]| checks(&read_three_mf(&packed(parts)).unwrap()).join(" ");
+    assert_eq!(of(&[(CONTENT_TYPES, TYPES), (USUAL_MODEL, &good)]), "relationships");
+    assert_eq!(of(&[(RELATIONSHIPS, &relationships()), (USUAL_MODEL, &good)]), "content types");
+}
+
+#[test]
+fn scaled_items_are_returned_in_both_sizes() {
+    let flat = r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 0.01 0 0 0"/>"#;
+    let found = read(&model_of("", "", &object(1), flat));
+    let volumes: Vec<f64> = found.meshes.iter().map(|m| m.mesh.volume_mm3()).collect();
+    assert!((volumes[0] - 121.5).abs() < 1e-9 && (volumes[1] - 1.215).abs() < 1e-9, "{volumes:?}");
+    let turned = r#"<item objectid="1" transform="0 1 0 -1 0 0 0 0 1 20 20 0"/>"#;
+    assert_eq!(read(&model_of("", "", &object(1), turned)).meshes.len(), 1);
+}
+
+#[test]
+fn solids_are_placed_by_their_items() {
+    let two = r#"<item objectid="1"/><item objectid="1" transform="1 0 0 0 1 0 0 0 1 3 0 0"/>"#;
+    let found = read(&model_of("", "", &object(1), two));
+    let places: Vec<(usize, f64)> =
+        found.built.iter().map(|solid| (solid.item, solid.mesh.bounds().unwrap().0.x)).collect();
+    assert_eq!(places, [(0, 0.0), (1, 3.0)]);
+}
+
+#[test]
+fn an_invalid_number_is_quoted() {
+    let item = r#"<item objectid="1"/>"#;
+    let good = model_of("", "", &object(1), item);
+    let comma = read(&good.replacen(r#"x="9""#, r#"x="9,5""#, 1));
+    assert_eq!(checks(&comma)[0], "number");
+    let words = &comma.faults[0].detail;
+    assert!(words.contains(r#"x="9,5""#) && words.contains("a decimal point, not a comma"), "{words}");
+    let missing = read(&good.replacen(r#"x="9" "#, "", 1));
+    assert!(missing.faults[0].detail.contains("without x"), "{:?}", missing.faults);
+}
+
+#[test]
+fn nested_components_are_bounded() {
+    let twice = |id: u32| {
+        let component = format!(r#"<component objectid="{}"/>"#, id - 1).repeat(9);
+        format!(r#"<object id="{id}"><components>{component}</components></object>"#)
+    };
+    let resources = (2..14).fold(object(1), |all, id| all + &twice(id));
+    assert_eq!(checks(&read(&model_of("", "", &resources, r#"<item objectid="13"/>"#))), ["reference"]);
+}
+
+#[test]
+fn separate_parts_and_other_units_are_read() {
+    let main = model_of(
+        r#"unit="inch" requiredextensions="p""#,
+        "",
+        r#"<object id="2"><components><component objectid="1" p:path="/3D/Objects/a.model"/></components></object>"#,
+        r#"<item objectid="2"/>"#,
+    );
+    let other = model_of(r#"unit="centimeter""#, "", &object(1), "");
+    let relationships = relationships();
+    let parts = [
+        (CONTENT_TYPES, TYPES),
+        (RELATIONSHIPS, relationships.as_str()),
+        (USUAL_MODEL, main.as_str()),
+        ("3D/Objects/a.model", other.as_str()),
+    ];
+    let found = read_three_mf(&packed(&parts)).unwrap();
+    assert_eq!(checks(&found), [""; 0], "{:?}", found.faults);
+    assert!((found.meshes[0].mesh.volume_mm3() - 121_500.0).abs() < 1e-6);
+    let missing = read_three_mf(&packed(&parts[..3])).unwrap();
+    assert!(checks(&missing).contains(&"reference"));
+}
+
+#[test]
+fn other_archives_are_refused() {
+    let refused = |bytes: &[u8]| read_three_mf(bytes).unwrap_err().to_string();
+    assert!(refused(b"PK\x03\x04 no archive").contains("cannot read the ZIP archive"));
+    assert!(refused(&packed(&[("a.txt", "a")])).contains("contains no 3D model"));
+    assert!(refused(&packed(&[(USUAL_MODEL, "<model")])).contains("3D/3dmodel.model: "));
+    assert!(refused(&packed(&[(USUAL_MODEL, "<svg/>")])).contains("is not a model"));
+    let entities = r#"<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>"#;
+    assert!(refused(&packed(&[(USUAL_MODEL, entities)])).contains("3D/3dmodel.model"));
+}

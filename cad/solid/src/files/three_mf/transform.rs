@@ -1,0 +1,67 @@
+//! Affine transforms of items and components.
+
+use crate::mesh::{Mesh, Point3};
+
+/// Largest deviation of a rotation matrix from orthogonality that counts as rounding.
+const RIGID: f64 = 1e-4;
+
+/// An affine transform by the rows of its matrix: `x' = x m[0] + y m[1] + z m[2] + m[3]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Transform([[f64; 3]; 4]);
+
+impl Transform {
+    /// The identity.
+    pub(super) const IDENTITY: Self =
+        Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
+
+    /// Parses twelve finite numbers, the translation in units of `unit_mm`; `None` for any other
+    /// text.
+    pub(super) fn parse(text: &str, unit_mm: f64) -> Option<Self> {
+        let numbers: Vec<f64> = text.split_whitespace().filter_map(|v| v.parse().ok()).collect();
+        if numbers.len() != 12 || !numbers.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let scale = |row: usize| if row == 3 { unit_mm } else { 1.0 };
+        Some(Self(std::array::from_fn(|i| std::array::from_fn(|j| numbers[3 * i + j] * scale(i)))))
+    }
+
+    /// Whether the transform only rotates and translates.
+    pub(super) fn is_rigid(&self) -> bool {
+        let m = &self.0;
+        (0..3).all(|i| {
+            (0..3).all(|j| {
+                let product: f64 = (0..3).map(|k| m[i][k] * m[j][k]).sum();
+                (product - f64::from(u8::from(i == j))).abs() < RIGID
+            })
+        })
+    }
+
+    /// Determinant of the linear part; not positive for a transform that mirrors or flattens.
+    pub(super) fn determinant(&self) -> f64 {
+        let m = &self.0;
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    }
+
+    /// Applies the transform to a point.
+    pub(super) fn point(&self, p: Point3) -> Point3 {
+        let m = &self.0;
+        let at = |j: usize| p.x * m[0][j] + p.y * m[1][j] + p.z * m[2][j] + m[3][j];
+        Point3::new(at(0), at(1), at(2))
+    }
+
+    /// Applies the transform to a mesh.
+    pub(super) fn mesh(&self, mesh: &Mesh) -> Mesh {
+        Mesh::new(mesh.positions.iter().map(|p| self.point(*p)).collect(), mesh.triangles.clone())
+    }
+
+    /// Returns the transform that applies `self` first and `outer` second.
+    pub(super) fn then(&self, outer: &Self) -> Self {
+        let row = |row: [f64; 3], shift: f64| {
+            let at = |j: usize| (0..3).map(|k| row[k] * outer.0[k][j]).sum::<f64>() + shift * outer.0[3][j];
+            [at(0), at(1), at(2)]
+        };
+        let m = &self.0;
+        Self([row(m[0], 0.0), row(m[1], 0.0), row(m[2], 0.0), row(m[3], 1.0)])
+    }
+}

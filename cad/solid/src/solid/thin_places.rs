@@ -1,0 +1,382 @@
+//! Thin places: pairs of walls that face each other with little material between them.
+//!
+//! Distances are those between the exact lines and arcs of the profile at every common height,
+//! without a mesh and without sampling. So one rule finds every thin place of every part.
+
+use std::borrow::Cow;
+
+use super::definition::{Solid, Wall};
+use crate::profile::{Arc, Contour, Edge, Point2, Vector2};
+
+/// Two faces bound a wall if the segment between them is within this angle of both normals (cosine
+/// of 35 degrees). The two sides of a rounded corner, at 45 degrees, do not.
+const FACING: f64 = 0.82;
+/// Distance up to which points are equal, mm.
+const SAME_MM: f64 = 1e-9;
+
+/// A thin wall of a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinPlace {
+    /// Distance between the two faces, mm.
+    pub thickness_mm: f64,
+    /// Middle of the wall, in the plane of the section.
+    pub middle: Point2,
+    /// Lower end of the wall, mm.
+    pub from_mm: f64,
+    /// Upper end of the wall, mm.
+    pub to_mm: f64,
+}
+
+/// An edge of a wall, with its bounding box over all heights.
+struct Face {
+    wall: usize,
+    edge: usize,
+    /// The edge at every height, for an upright wall.
+    upright: Option<Section>,
+    low: Point2,
+    high: Point2,
+    from_mm: f64,
+    to_mm: f64,
+}
+
+/// An edge at one height, with the tangents of its neighbours.
+#[derive(Clone)]
+struct Section {
+    from: Point2,
+    to: Point2,
+    arc: Option<Arc>,
+    /// Tangent at the end of the edge before, and at the start of the edge after.
+    before: Vector2,
+    after: Vector2,
+}
+
+impl Solid {
+    /// Returns every pair of faces closer than `under_mm` through material, the closest first.
+    /// Walls that are lower than thick are excluded: they are steps, such as the floor of an
+    /// engraved letter.
+    pub fn thin_places(&self, under_mm: f64) -> Vec<ThinPlace> {
+        let mut faces = self.faces();
+        faces.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
+        let mut places = Vec::new();
+        for (i, a) in faces.iter().enumerate() {
+            let near = faces[i + 1..].iter().take_while(|b| b.low.x < a.high.x + under_mm);
+            for b in near.filter(|b| !a.is_apart(b, under_mm)) {
+                let (from_mm, to_mm) = (a.from_mm.max(b.from_mm), a.to_mm.min(b.to_mm));
+                if to_mm > from_mm + SAME_MM {
+                    places.extend(self.between(a, b, from_mm, to_mm, under_mm));
+                }
+            }
+        }
+        places.sort_by(|a, b| {
+            let key = |p: &ThinPlace| [p.thickness_mm, p.from_mm, p.middle.x, p.middle.y];
+            key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        places
+    }
+
+    fn faces(&self) -> Vec<Face> {
+        let mut all = Vec::new();
+        for (wall, Wall { lower, upper }) in self.walls.iter().enumerate() {
+            let (lower, upper) = (&self.rings[lower.0], &self.rings[upper.0]);
+            let is_upright = lower.contour == upper.contour;
+            for edge in 0..lower.contour.edges().len() {
+                let (a, b) = (lower.contour.edge_bounds(edge), upper.contour.edge_bounds(edge));
+                let (low, high) = (a.0.inf(&b.0), a.1.sup(&b.1));
+                let upright = is_upright.then(|| self.edge_at(wall, edge, 0.0));
+                all.push(Face { wall, edge, upright, low, high, from_mm: lower.z_mm, to_mm: upper.z_mm });
+            }
+        }
+        all
+    }
+
+    /// The wall between two faces over their common heights, if it is thin.
+    fn between(&self, a: &Face, b: &Face, from_mm: f64, to_mm: f64, under_mm: f64) -> Option<ThinPlace> {
+        let are_upright = a.upright.is_some() && b.upright.is_some();
+        // The mean of a slanted wall needs both ends, including one that is not thin.
+        let within_mm = if are_upright { under_mm } else { f64::INFINITY };
+        let at = |z_mm: f64| {
+            let (a, b) = (self.face_at(a, z_mm), self.face_at(b, z_mm));
+            nearest(&a, &b, within_mm)
+        };
+        let below = at(from_mm);
+        let above = if are_upright { below } else { at(to_mm) };
+        let thickness = |place: Option<(f64, Point2)>| place.map_or(f64::INFINITY, |p| p.0);
+        let (thickness_mm, middle) = if thickness(above) < thickness(below) { above? } else { below? };
+        // The mean thickness decides whether a slanted wall is a step; a wall with one end only is
+        // not.
+        let mean = f64::midpoint(thickness(below), thickness(above));
+        let is_step = to_mm - from_mm <= if mean.is_finite() { mean } else { thickness_mm };
+        (thickness_mm < under_mm && !is_step).then_some(ThinPlace { thickness_mm, middle, from_mm, to_mm })
+    }
+
+    fn face_at<'a>(&self, face: &'a Face, z_mm: f64) -> Cow<'a, Section> {
+        if let Some(section) = &face.upright {
+            return Cow::Borrowed(section);
+        }
+        let Wall { lower, upper } = self.walls[face.wall];
+        let (lower, upper) = (&self.rings[lower.0], &self.rings[upper.0]);
+        let share = (z_mm - lower.z_mm) / (upper.z_mm - lower.z_mm);
+        Cow::Owned(self.edge_at(face.wall, face.edge, share))
+    }
+
+    /// An edge of a wall at a share of its height.
+    fn edge_at(&self, wall: usize, edge: usize, share: f64) -> Section {
+        let Wall { lower, upper } = self.walls[wall];
+        let (lower, upper) = (&self.rings[lower.0].contour, &self.rings[upper.0].contour);
+        let n = lower.edges().len();
+        let at = |i: usize| edge_between(lower, upper, i % n, share);
+        let (from, to, arc) = at(edge);
+        let (before, after) = (at(edge + n - 1), at(edge + 1));
+        Section { from, to, arc, before: tangent(&before, 1.0), after: tangent(&after, 0.0) }
+    }
+}
+
+type PlainEdge = (Point2, Point2, Option<Arc>);
+
+/// Edge `i` at a share of the height from `lower` to `upper`.
+fn edge_between(lower: &Contour, upper: &Contour, i: usize, share: f64) -> PlainEdge {
+    let mix = |a: Point2, b: Point2| a + (b - a) * share;
+    let ((from, to), (from_up, to_up)) = (lower.ends(i), upper.ends(i));
+    let (from, to) = (mix(from, from_up), mix(to, to_up));
+    let arc = match (&lower.edges()[i], &upper.edges()[i]) {
+        (Edge::Arc(a), Edge::Arc(_)) if share <= 0.0 => Some(*a),
+        (Edge::Arc(a), Edge::Arc(b)) => {
+            Some(Arc::between(mix(a.centre, b.centre), from, to, a.sweep_rad > 0.0))
+        }
+        _ => None,
+    };
+    (from, to, arc)
+}
+
+fn tangent((from, to, arc): &PlainEdge, share: f64) -> Vector2 {
+    match arc {
+        Some(arc) => arc.tangent_at(share),
+        None => (to - from).try_normalize(0.0).unwrap_or_else(Vector2::zeros),
+    }
+}
+
+/// The shortest segment through material between two edges, if shorter than `within_mm`: its length
+/// and its middle.
+fn nearest(a: &Section, b: &Section, within_mm: f64) -> Option<(f64, Point2)> {
+    let mut best: Option<(f64, Point2)> = None;
+    // The slowest conditions come last.
+    let mut consider = |p: Candidate, q: Candidate| {
+        let length = (q.point - p.point).norm();
+        if length > SAME_MM
+            && length < best.map_or(within_mm, |(least, _)| least)
+            && a.contains(p)
+            && b.contains(q)
+            && a.faces(p.point, (q.point - p.point) / length)
+            && b.faces(q.point, (p.point - q.point) / length)
+        {
+            best = Some((length, nalgebra::center(&p.point, &q.point)));
+        }
+    };
+    for p in a.stations(b).into_iter().flatten() {
+        b.feet(p.point).into_iter().flatten().for_each(|q| consider(p, q));
+    }
+    for q in b.stations(a).into_iter().flatten() {
+        a.feet(q.point).into_iter().flatten().for_each(|p| consider(p, q));
+    }
+    best
+}
+
+/// A candidate point of an edge. One on the circle of an arc is on the edge only if the arc covers
+/// its direction.
+#[derive(Clone, Copy)]
+struct Candidate {
+    point: Point2,
+    radial: Option<Vector2>,
+}
+
+impl Candidate {
+    fn end(point: Point2) -> Self {
+        Self { point, radial: None }
+    }
+
+    fn on(arc: &Arc, radial: Vector2) -> Self {
+        Self { point: arc.centre + radial * arc.radius_mm, radial: Some(radial) }
+    }
+}
+
+impl Face {
+    /// Whether another face is further away than `under_mm` at every height, by its box or the disc
+    /// around that.
+    fn is_apart(&self, other: &Self, under_mm: f64) -> bool {
+        other.low.y > self.high.y + under_mm
+            || self.low.y > other.high.y + under_mm
+            || self.is_beyond(other, under_mm)
+            || other.is_beyond(self, under_mm)
+    }
+
+    /// Whether the disc around the box of another face is further away than `under_mm` from the
+    /// line or circle of this one.
+    fn is_beyond(&self, other: &Self, under_mm: f64) -> bool {
+        self.upright.as_ref().is_some_and(|section| {
+            let middle = nalgebra::center(&other.low, &other.high);
+            section.offset_mm(middle) > under_mm + 0.5 * (other.high - other.low).norm()
+        })
+    }
+}
+
+impl Section {
+    /// Distance of a point from the line or circle of this edge, mm.
+    fn offset_mm(&self, point: Point2) -> f64 {
+        match &self.arc {
+            Some(arc) => ((point - arc.centre).norm() - arc.radius_mm).abs(),
+            None => {
+                let along = self.to - self.from;
+                along.perp(&(point - self.from)).abs() / along.norm()
+            }
+        }
+    }
+
+    /// Points where the shortest segment to `other` can start: the ends, and points of an arc that
+    /// are parallel to it.
+    fn stations(&self, other: &Self) -> [Option<Candidate>; 4] {
+        let mut all = [Some(Candidate::end(self.from)), Some(Candidate::end(self.to)), None, None];
+        if let Some(arc) = &self.arc {
+            let towards = match &other.arc {
+                Some(o) => (o.centre - arc.centre).try_normalize(SAME_MM),
+                None => (other.to - other.from).try_normalize(SAME_MM).map(|t| Vector2::new(-t.y, t.x)),
+            };
+            // Concentric arcs are parallel everywhere.
+            let towards = towards.unwrap_or_else(|| (arc.point_at(0.5, 1.0) - arc.centre).normalize());
+            all[2] = Some(Candidate::on(arc, towards));
+            all[3] = Some(Candidate::on(arc, -towards));
+        }
+        all
+    }
+
+    /// Points closest to `point`; on an arc also the furthest, across its inside.
+    fn feet(&self, point: Point2) -> [Option<Candidate>; 4] {
+        let mut feet = [Some(Candidate::end(self.from)), Some(Candidate::end(self.to)), None, None];
+        match &self.arc {
+            Some(arc) => {
+                if let Some(radial) = (point - arc.centre).try_normalize(SAME_MM) {
+                    feet[2] = Some(Candidate::on(arc, radial));
+                    feet[3] = Some(Candidate::on(arc, -radial));
+                }
+            }
+            None => {
+                let along = self.to - self.from;
+                let share = (point - self.from).dot(&along) / along.norm_squared();
+                feet[2] = (0.0..=1.0).contains(&share).then(|| Candidate::end(self.from + along * share));
+            }
+        }
+        feet
+    }
+
+    /// Whether a candidate point is on this edge.
+    fn contains(&self, candidate: Candidate) -> bool {
+        match (&self.arc, candidate.radial) {
+            (Some(arc), Some(radial)) => arc.covers(libm::atan2(radial.y, radial.x)),
+            _ => true,
+        }
+    }
+
+    /// Whether `direction` at `point` of this edge is into the material and close to the normal,
+    /// or, at a corner that points into the material, between the normals of its two sides.
+    fn faces(&self, point: Point2, direction: Vector2) -> bool {
+        let inwards = |t: Vector2| Vector2::new(-t.y, t.x);
+        let own = match &self.arc {
+            // The left of its direction: towards the centre for a counter-clockwise arc.
+            Some(arc) => (arc.centre - point) * (arc.sweep_rad.signum() / arc.radius_mm),
+            None => inwards((self.to - self.from).normalize()),
+        };
+        if own.dot(&direction) >= FACING {
+            return true;
+        }
+        let between = |first: Vector2, second: Vector2| {
+            let (first_in, second_in) = (inwards(first), inwards(second));
+            // A corner that points into the material is closest for every direction between the two
+            // normals.
+            first.perp(&second) < 0.0 && first_in.perp(&direction) <= 0.0 && direction.perp(&second_in) <= 0.0
+        };
+        let here: PlainEdge = (self.from, self.to, self.arc);
+        (point == self.from && between(self.before, tangent(&here, 0.0)))
+            || (point == self.to && between(tangent(&here, 1.0), self.after))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::definition::Facing;
+    use super::*;
+    use crate::profile::Pen;
+    use proptest::prelude::*;
+
+    fn rectangle(x: f64, y: f64, wide: f64, high: f64) -> Contour {
+        Contour::polygon(
+            [(0.0, 0.0), (wide, 0.0), (wide, high), (0.0, high)]
+                .map(|(dx, dy)| Point2::new(x + dx, y + dy))
+                .to_vec(),
+        )
+    }
+
+    fn plate(holes: &[Contour]) -> Solid {
+        Solid::prism(&rectangle(0.0, 0.0, 20.0, 10.0), holes, 0.0, 4.0, 0.0).unwrap()
+    }
+
+    #[test]
+    fn a_thick_plate_has_no_thin_place() {
+        let hole = Contour::circle(Point2::new(5.0, 5.0), 2.0).reversed();
+        assert_eq!(plate(&[hole]).thin_places(2.9), []);
+        assert_eq!(plate(&[]).thin_places(9.9), []);
+    }
+
+    #[test]
+    fn walls_around_holes_are_measured() {
+        let near_edge = Contour::circle(Point2::new(5.0, 2.6), 2.0).reversed();
+        let places = plate(&[near_edge]).thin_places(0.9);
+        assert!((places[0].thickness_mm - 0.6).abs() < 1e-12, "{places:?}");
+        assert!((places[0].middle - Point2::new(5.0, 0.3)).norm() < 1e-9 && places[0].to_mm == 4.0);
+        let two = [4.0, 8.5].map(|x| Contour::circle(Point2::new(x, 5.0), 2.0).reversed());
+        assert!((plate(&two).thin_places(0.9)[0].thickness_mm - 0.5).abs() < 1e-12);
+        // Corner against corner, across a diagonal.
+        let square = rectangle(4.0, 3.0, 2.0, 2.0).reversed();
+        let beyond = rectangle(6.3, 5.4, 2.0, 2.0).reversed();
+        assert!((plate(&[square, beyond]).thin_places(0.9)[0].thickness_mm - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn cones_are_measured_at_their_widest() {
+        let mut solid = Solid::new();
+        let (bottom, top) = solid.extrude(&rectangle(0.0, 0.0, 20.0, 10.0), 0.0, 4.0);
+        let circle = |r: f64| Contour::circle(Point2::new(5.0, 5.0), r).reversed();
+        let (low, high) = (solid.ring(circle(1.0), 0.0), solid.ring(circle(4.5), 4.0));
+        solid.wall(low, high);
+        solid.cap(Facing::Down, bottom, &[low]);
+        let letter = solid.pocket(&rectangle(19.4, 4.0, 0.3, 2.0).reversed(), &[], 3.8, 4.0);
+        solid.cap(Facing::Up, top, &[high, letter]);
+        let places = solid.thin_places(0.9);
+        assert!((places[0].thickness_mm - 0.5).abs() < 1e-9, "{places:?}");
+        assert!(places.iter().all(|p| p.middle.x < 12.0), "{places:?}");
+    }
+
+    #[test]
+    fn a_rounded_corner_is_not_a_wall() {
+        let rounded = Pen::at(Point2::new(0.0, 0.2))
+            .arc_to(Point2::new(0.2, 0.2), Point2::new(0.2, 0.0), true)
+            .line_to(Point2::new(8.0, 0.0))
+            .line_to(Point2::new(8.0, 8.0))
+            .line_to(Point2::new(0.0, 8.0))
+            .close();
+        assert_eq!(Solid::prism(&rounded, &[], 0.0, 5.0, 0.0).unwrap().thin_places(2.0), []);
+        let pin = Contour::circle(Point2::origin(), 0.4);
+        let places = Solid::prism(&pin, &[], 0.0, 5.0, 0.0).unwrap().thin_places(2.0);
+        assert!((places[0].thickness_mm - 0.8).abs() < 1e-12, "{places:?}");
+    }
+
+    proptest! {
+        /// The thickness between two holes is the exact distance of their circles.
+        #[test]
+        fn the_thinnest_place_is_the_least_distance(x in 6.0..9.0f64, y in 3.0..7.0f64, r in 0.5..2.0f64) {
+            let (one, two) = (Contour::circle(Point2::new(4.0, 5.0), 1.0), Contour::circle(Point2::new(x, y), r));
+            let exact = (Point2::new(x, y) - Point2::new(4.0, 5.0)).norm() - 1.0 - r;
+            prop_assume!(exact > 0.01);
+            let places = plate(&[one.reversed(), two.reversed()]).thin_places(exact + 0.1);
+            prop_assert!(places.iter().any(|p| (p.thickness_mm - exact).abs() < 1e-9), "{places:?}, {exact}");
+        }
+    }
+}

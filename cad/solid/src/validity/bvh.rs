@@ -1,0 +1,255 @@
+//! A bounding volume hierarchy of facets, with nodes of eight boxes that are compared at once.
+//!
+//! Facets are sorted along a Morton curve through the centres of their boxes. Eight neighbours on
+//! the curve form a leaf, eight leaves a node of the next level, and so on. The tree is implicit:
+//! the children of node `n` are the nodes `8 n .. 8 n + 8` of the level below. Boxes are in single
+//! precision, rounded outward; the exact box of a facet comes from the mesh ([`corner_box`]).
+
+use super::plane::Plane;
+use crate::mesh::{Mesh, Point3};
+use crate::parallel;
+
+/// Boxes per node.
+const WIDTH: usize = 8;
+
+/// An axis-parallel box in single precision, rounded outward.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
+    /// The smallest such box that contains the box from `low` to `high`.
+    pub(super) fn around(low: Point3, high: Point3) -> Self {
+        Self { low: low.coords.map(rounded_down).into(), high: high.coords.map(rounded_up).into() }
+    }
+
+    pub(super) fn joined(self, other: Self) -> Self {
+        let mut both = self;
+        for axis in 0..3 {
+            both.low[axis] = both.low[axis].min(other.low[axis]);
+            both.high[axis] = both.high[axis].max(other.high[axis]);
+        }
+        both
+    }
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn rounded_down(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) > x { near.next_down() } else { near }
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn rounded_up(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) < x { near.next_up() } else { near }
+}
+
+/// Eight boxes in structure-of-arrays layout. Unused lanes are NaN, which overlap nothing.
+#[derive(Clone, Copy)]
+struct Node {
+    low: [[f32; WIDTH]; 3],
+    high: [[f32; WIDTH]; 3],
+}
+
+impl Node {
+    fn of(boxes: impl Iterator<Item = Bounds>) -> Self {
+        let mut node = Self { low: [[f32::NAN; WIDTH]; 3], high: [[f32::NAN; WIDTH]; 3] };
+        for (lane, bounds) in boxes.take(WIDTH).enumerate() {
+            for axis in 0..3 {
+                node.low[axis][lane] = bounds.low[axis];
+                node.high[axis][lane] = bounds.high[axis];
+            }
+        }
+        node
+    }
+
+    fn lane(&self, lane: usize) -> Bounds {
+        Bounds { low: self.low.map(|column| column[lane]), high: self.high.map(|column| column[lane]) }
+    }
+
+    /// The box that contains all lanes; `min` and `max` ignore NaN.
+    fn hull(&self) -> Bounds {
+        (0..WIDTH).map(|lane| self.lane(lane)).fold(Bounds::EMPTY, Bounds::joined)
+    }
+
+    /// Lanes whose boxes touch or overlap `bounds`.
+    fn lanes_overlapping(&self, bounds: &Bounds) -> Lanes {
+        let mut overlaps = [1_u32; WIDTH];
+        for axis in 0..3 {
+            let (low, high) = (bounds.low[axis], bounds.high[axis]);
+            for (lane, overlaps) in overlaps.iter_mut().enumerate() {
+                // `&` instead of `&&`, on integers as wide as a coordinate: without branches, one
+                // instruction compares four lanes.
+                *overlaps &=
+                    u32::from(self.low[axis][lane] <= high) & u32::from(self.high[axis][lane] >= low);
+            }
+        }
+        Lanes((0..WIDTH).fold(0, |lanes, lane| lanes | u8::from(overlaps[lane] != 0) << lane))
+    }
+}
+
+/// A set of lanes of a node, as bits.
+#[derive(Clone, Copy)]
+struct Lanes(u8);
+
+impl Lanes {
+    /// The lanes after `lane`.
+    fn after(self, lane: usize) -> Self {
+        Self((u16::from(self.0) >> (lane + 1) << (lane + 1)) as u8)
+    }
+}
+
+impl Iterator for Lanes {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
+        (lane < WIDTH).then_some(lane)
+    }
+}
+
+/// The bounding volume hierarchy of the facets of a mesh. A slot is the position of a facet on the
+/// curve.
+pub(super) struct Bvh {
+    /// Index of the facet in each slot.
+    facets: Vec<u32>,
+    /// Plane of the facet in each slot.
+    planes: Vec<Plane>,
+    /// Nodes by level; those of the first contain the boxes of facets.
+    levels: Vec<Vec<Node>>,
+}
+
+impl Bvh {
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let facets = morton_order(mesh);
+        let leaves = parallel::in_chunks(facets.len().div_ceil(WIDTH), |range| {
+            let facets = &facets[WIDTH * range.start..facets.len().min(WIDTH * range.end)];
+            let bounds = |f: &u32| {
+                let (low, high) = corner_box(mesh, *f as usize);
+                Bounds::around(low, high)
+            };
+            facets.chunks(WIDTH).map(|eight| Node::of(eight.iter().map(bounds))).collect::<Vec<_>>()
+        });
+        let mut levels = vec![leaves.concat()];
+        while let Some(below) = levels.last().filter(|level| level.len() > 1) {
+            let above = below.chunks(WIDTH).map(|eight| Node::of(eight.iter().map(Node::hull))).collect();
+            levels.push(above);
+        }
+        let planes = parallel::in_chunks(facets.len(), |slots| {
+            let plane = |f: &u32| Plane::of(mesh.corners(mesh.triangles[*f as usize]));
+            facets[slots].iter().map(plane).collect::<Vec<_>>()
+        });
+        Self { facets, planes: planes.concat(), levels }
+    }
+
+    pub(super) fn leaves(&self) -> usize {
+        self.levels[0].len()
+    }
+
+    /// Index of the facet in `slot`.
+    pub(super) fn facet(&self, slot: usize) -> usize {
+        self.facets[slot] as usize
+    }
+
+    /// Plane of the facet in `slot`.
+    pub(super) fn plane(&self, slot: usize) -> &Plane {
+        &self.planes[slot]
+    }
+
+    /// The slots of a leaf.
+    pub(super) fn slots(&self, leaf: usize) -> std::ops::Range<usize> {
+        WIDTH * leaf..self.facets.len().min(WIDTH * (leaf + 1))
+    }
+
+    /// Calls `visit` once for every pair of slots whose boxes touch or overlap, the first of them
+    /// in `leaf`, the second after it. `near` is a buffer.
+    pub(super) fn pairs_from(&self, leaf: usize, near: &mut Vec<usize>, mut visit: impl FnMut(usize, usize)) {
+        let own = &self.levels[0][leaf];
+        self.leaves_overlapping(&own.hull(), leaf + 1, near);
+        for slot in self.slots(leaf) {
+            let lane = slot % WIDTH;
+            let bounds = own.lane(lane);
+            own.lanes_overlapping(&bounds).after(lane).for_each(|other| visit(slot, WIDTH * leaf + other));
+            self.slots_overlapping(&bounds, near, |other| visit(slot, other));
+        }
+    }
+
+    /// Calls `visit` with every slot in the leaves `near` whose box touches or overlaps `bounds`.
+    pub(super) fn slots_overlapping(&self, bounds: &Bounds, near: &[usize], mut visit: impl FnMut(usize)) {
+        for leaf in near {
+            let lanes = self.levels[0][*leaf].lanes_overlapping(bounds);
+            lanes.for_each(|lane| visit(WIDTH * leaf + lane));
+        }
+    }
+
+    /// Writes the leaves from `first` on whose boxes touch or overlap `bounds` to `leaves`.
+    pub(super) fn leaves_overlapping(&self, bounds: &Bounds, first: usize, leaves: &mut Vec<usize>) {
+        leaves.clear();
+        match self.levels.len() - 1 {
+            // A single leaf has no parent.
+            0 => leaves.extend((first == 0).then_some(0)),
+            top => self.descend(top, 0, bounds, first, leaves),
+        }
+    }
+
+    fn descend(&self, level: usize, node: usize, bounds: &Bounds, first: usize, leaves: &mut Vec<usize>) {
+        for lane in self.levels[level][node].lanes_overlapping(bounds) {
+            let child = WIDTH * node + lane;
+            let leaves_to_its_end = (child + 1) * WIDTH.pow(level as u32 - 1);
+            match level {
+                _ if leaves_to_its_end <= first => {}
+                1 => leaves.push(child),
+                _ => self.descend(level - 1, child, bounds, first, leaves),
+            }
+        }
+    }
+}
+
+/// The exact bounding box of facet `f`.
+pub(super) fn corner_box(mesh: &Mesh, f: usize) -> (Point3, Point3) {
+    let [a, b, c] = mesh.corners(mesh.triangles[f]);
+    (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
+}
+
+/// Whether two exact boxes touch or overlap.
+pub(super) fn boxes_overlap(
+    (low, high): (Point3, Point3),
+    (other_low, other_high): (Point3, Point3),
+) -> bool {
+    (0..3).all(|axis| low[axis] <= other_high[axis] && other_low[axis] <= high[axis])
+}
+
+/// Facet indices along a Morton curve with 2²¹ cells per side.
+fn morton_order(mesh: &Mesh) -> Vec<u32> {
+    let (low, high) = mesh.bounds().unwrap_or((Point3::origin(), Point3::origin()));
+    let side = (high - low).max();
+    let cells_per_mm = if side > 0.0 { f64::from(1 << 21) * 0.999_999 / side } else { 0.0 };
+    let chunks = parallel::in_chunks(mesh.triangles.len(), |range| {
+        let place = |f: usize| {
+            let (facet_low, facet_high) = corner_box(mesh, f);
+            let cell = (nalgebra::center(&facet_low, &facet_high) - low) * cells_per_mm;
+            (interleaved(cell.x) | interleaved(cell.y) << 1 | interleaved(cell.z) << 2, f as u32)
+        };
+        range.map(place).collect::<Vec<_>>()
+    });
+    let mut places = chunks.concat();
+    parallel::sort(&mut places);
+    places.into_iter().map(|(_, f)| f).collect()
+}
+
+/// The lower 21 bits of a cell index, with two zero bits between neighbours.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn interleaved(cell: f64) -> u64 {
+    let mut bits = (cell as u64) & 0x1f_ffff;
+    bits = (bits | bits << 32) & 0x001f_0000_0000_ffff;
+    bits = (bits | bits << 16) & 0x001f_0000_ff00_00ff;
+    bits = (bits | bits << 8) & 0x100f_00f0_0f00_f00f;
+    bits = (bits | bits << 4) & 0x10c3_0c30_c30c_30c3;
+    (bits | bits << 2) & 0x1249_2492_4924_9249
+}

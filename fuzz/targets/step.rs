@@ -1,4 +1,0 @@
-//! See `tests/harness/readers.rs`.
-#![no_main]
-
-pinswitch_fuzz::target!("step");

@@ -58,8 +58,14 @@ impl Observer for Unwatched {
 
 fn hundred(bencher: Bencher, sweep: &str) {
     let (variants, source) = plan(sweep);
-    let options =
-        Options { shard: Shard::WHOLE, threads: 0, fail_fast: true, mesh_maker: mesh_file, slicer: None };
+    let options = Options {
+        shard: Shard::WHOLE,
+        threads: 0,
+        fail_fast: true,
+        mesh_maker: mesh_file,
+        slicer: None,
+        kernel: None,
+    };
     bencher.with_inputs(|| tempfile::tempdir().expect("a temporary folder")).bench_local_refs(|folder| {
         let place = folder.path().join("b").display().to_string();
         let destination = Destination::open(&place, &partial_folder(Shard::WHOLE)).expect("a folder");

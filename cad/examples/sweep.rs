@@ -43,8 +43,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let source = SweepSource::read(&file)?;
     let variants = Variants::new(Sweep::new(&source)?, &source);
     let destination = Destination::open(&out.to_string_lossy(), &partial_folder(Shard::WHOLE))?;
-    let options =
-        Options { shard: Shard::WHOLE, threads: 0, fail_fast: false, mesh_maker: mesh_file, slicer: None };
+    let options = Options {
+        shard: Shard::WHOLE,
+        threads: 0,
+        fail_fast: false,
+        mesh_maker: mesh_file,
+        slicer: None,
+        kernel: None,
+    };
     let tally = run(&variants, &source, &destination, options, &Printer)?;
     println!("{} made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
     println!("{} part files, {} of them different", tally.parts, tally.distinct_parts);

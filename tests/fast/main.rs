@@ -35,5 +35,6 @@ mod several_sessions;
 mod slicing;
 mod solid_files;
 mod table_columns;
+mod verification;
 mod view;
 mod writing;

@@ -414,6 +414,7 @@ const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set
 fn small_source() -> SweepSource {
     SweepSource {
         slice: false,
+        verify: false,
         name: "small".to_owned(),
         file: "sweep.toml".to_owned(),
         sweep: SMALL_SWEEP.to_owned(),
@@ -500,6 +501,7 @@ impl Shards {
                 fail_fast: true,
                 mesh_maker: mesh_file,
                 slicer: None,
+                kernel: None,
             };
             run(&variants, &source, &place, options, &Nobody).map_err(|e| e.to_string())?;
         }

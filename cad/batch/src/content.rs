@@ -1,17 +1,20 @@
 //! Content-addressed parts: what is equal between variants is made once and kept once, under the hash of its bytes.
 
+use std::io::Cursor;
 use std::sync::Arc;
 
+use pinswitch_diagnostic::Diagnostic;
 use quick_cache::sync::Cache;
 use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
 use pinswitch_slicer::SlicerError;
-use pinswitch_solid::files::stl_bytes;
+use pinswitch_solid::files::{read_stl, stl_bytes};
 use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
-use pinswitch_switch::built::examined_print_mesh;
+use pinswitch_solid::verification::{Kernel, Verification};
+use pinswitch_switch::built::{examined_print_mesh, verified};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::output::SetError;
 use pinswitch_switch::parts::Part;
@@ -42,6 +45,8 @@ pub(super) struct StoredPart {
     pub bytes: usize,
     /// What its mesh measures.
     pub facts: MeshFacts,
+    /// Agreement of its mesh with a second kernel, where that was requested.
+    pub verification: Option<Verification>,
 }
 
 /// Why a part could not be stored.
@@ -53,6 +58,9 @@ pub(super) enum ContentError {
     /// It cannot be written.
     #[error(transparent)]
     Destination(#[from] DestinationError),
+    /// A second kernel does not confirm its mesh.
+    #[error(transparent)]
+    Verification(Diagnostic),
     /// It cannot be sliced.
     #[error(transparent)]
     Slicer(#[from] SlicerError),
@@ -67,6 +75,7 @@ pub(super) struct PartStore<'a> {
     mesh_maker: MeshMaker,
     known: Cache<[u8; 32], Arc<StoredPart>>,
     caps: CapCache,
+    kernel: Option<Kernel>,
 }
 
 /// Path of the STL with this hash.
@@ -82,7 +91,13 @@ impl<'a> PartStore<'a> {
             mesh_maker,
             known: Cache::new(CACHED_RECIPES),
             caps: CapCache::new(CACHED_CORNERS),
+            kernel: None,
         }
+    }
+
+    /// The same cache, which verifies every new mesh with `kernel`.
+    pub(super) fn with_kernel(self, kernel: Option<Kernel>) -> Self {
+        Self { kernel, ..self }
     }
 
     /// Stores the part unless it is stored already. Threads that need the same part wait for the first.
@@ -92,9 +107,11 @@ impl<'a> PartStore<'a> {
     pub(super) fn keep(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
         self.known.get_or_insert_with(&recipe(part, design), || {
             let (bytes, facts) = (self.mesh_maker)(part, design, &self.caps)?;
+            let outcome = self.kernel.map(|kernel| verified_file(&bytes, part, design, kernel));
+            let verification = outcome.transpose().map_err(ContentError::Verification)?;
             let sha256 = hexadecimal(&Sha256::digest(&bytes));
             self.write(&content_path(&sha256), &bytes)?;
-            Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts }))
+            Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts, verification }))
         })
     }
 
@@ -114,6 +131,17 @@ impl<'a> PartStore<'a> {
             && (!self.destination.links() || self.destination.get(place)?.as_deref() == Some(bytes));
         if there { Ok(()) } else { self.destination.put(place, bytes) }
     }
+}
+
+/// Verifies the mesh of a part as it is in its file, in single precision.
+fn verified_file(
+    bytes: &[u8],
+    part: &Part,
+    design: &Design,
+    kernel: Kernel,
+) -> Result<Verification, Diagnostic> {
+    let mesh = read_stl(&mut Cursor::new(bytes))?.mesh;
+    verified(part, &mesh, design, kernel)
 }
 
 /// Hash of all that decides the bytes of a part's mesh: its exact solid and the chord tolerance.

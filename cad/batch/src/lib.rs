@@ -15,6 +15,7 @@
 //! // SweepSource::read takes a file, with all that it names.
 //! let source = SweepSource {
 //!     slice: false,
+//!     verify: false,
 //!     name: "widths".to_owned(),
 //!     file: "sweep.toml".to_owned(),
 //!     sweep: text.to_owned(),

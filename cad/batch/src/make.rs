@@ -11,6 +11,7 @@ use super::seal::seal;
 use super::slicing::VariantSlicer;
 use super::variant::{Variant, Variants};
 use pinswitch_slicer::Slicer;
+use pinswitch_solid::verification::Kernel;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
@@ -112,6 +113,12 @@ impl<'a> VariantMaker<'a> {
         }
     }
 
+    /// The same maker, which verifies every mesh with `kernel`.
+    pub(super) fn with_kernel(mut self, kernel: Option<Kernel>) -> Self {
+        self.contents = self.contents.with_kernel(kernel);
+        self
+    }
+
     /// Makes `variant` unless it is refused or already there.
     ///
     /// # Errors
@@ -146,6 +153,9 @@ impl<'a> VariantMaker<'a> {
         let plots = self.plots(design, &curve.prediction)?;
         let facts = parts.iter().zip(kept.iter().map(|k| &k.facts));
         let mut manifest = Manifest::new(design, facts, &curve.prediction);
+        for (entry, kept) in manifest.parts.iter_mut().zip(&kept) {
+            entry.verification.clone_from(&kept.verification);
+        }
         let tables = curve.files.iter().map(|(_, entry)| entry.clone());
         manifest.files.extend(linked.iter().cloned().chain(tables).chain(plots.iter().map(FileEntry::of)));
         manifest.batch = Some(BatchEntry {

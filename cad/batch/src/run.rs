@@ -21,6 +21,7 @@ use super::table::{Row, Schema};
 use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_slicer::Slicer;
+use pinswitch_solid::verification::Kernel;
 
 /// Variants whose rows are in memory at the same time.
 const CHUNK_VARIANTS: u64 = 512;
@@ -41,6 +42,8 @@ pub struct Options<'a> {
     pub mesh_maker: MeshMaker,
     /// What says how long the parts print, where [`SweepSource::slice`] asks for it.
     pub slicer: Option<&'a Slicer>,
+    /// The kernel that verifies every mesh, where [`SweepSource::verify`] requests it.
+    pub kernel: Option<Kernel>,
 }
 
 /// Observes a run, and may stop it.
@@ -137,7 +140,8 @@ pub fn run(
         resumed,
         options.mesh_maker,
         options.slicer,
-    );
+    )
+    .with_kernel(options.kernel);
     let mut products = Products::new(variants, destination)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options, destination)).build()?;
     let (mut done, of) = (0, range.end - range.start);

@@ -53,6 +53,9 @@ pub struct SweepSource {
     /// Whether a slicer is asked of every variant: said by whoever runs it, not by the sweep's file.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slice: bool,
+    /// Whether every mesh is verified by a second kernel: an option of the run, not of the sweep's file.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub verify: bool,
 }
 
 /// The files that a sweep may name.
@@ -135,6 +138,7 @@ impl SweepSource {
             sweep,
             rows,
             slice: false,
+            verify: false,
         })
     }
 
@@ -153,6 +157,9 @@ impl SweepSource {
         }
         if self.slice {
             hash.update("slice");
+        }
+        if self.verify {
+            hash.update("verify");
         }
         hexadecimal(&hash.finalize())
     }

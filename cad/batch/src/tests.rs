@@ -12,6 +12,7 @@ use pinswitch_switch::parts::Part;
 fn plan() -> (Variants, SweepSource) {
     let source = SweepSource {
         slice: false,
+        verify: false,
         name: "memory".to_owned(),
         file: "memory.toml".to_owned(),
         sweep: "[sweep]\nparts = [\"shell\", \"coupon\"]\n[axes]\n\"layout.pins\" = [[], [8], [7, 9]]\n\
@@ -35,7 +36,7 @@ impl Observer for Counted {
 }
 
 fn options(shard: Shard, fail_fast: bool, mesh_maker: MeshMaker) -> Options<'static> {
-    Options { shard, threads: 2, fail_fast, mesh_maker, slicer: None }
+    Options { shard, threads: 2, fail_fast, mesh_maker, slicer: None, kernel: None }
 }
 
 /// A fresh destination: a folder that goes with the test, or a store in memory.

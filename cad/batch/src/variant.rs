@@ -235,6 +235,7 @@ mod tests {
     fn variants(sweep: &str) -> Variants {
         let source = SweepSource {
             slice: false,
+            verify: false,
             name: "s".to_owned(),
             file: "s.toml".to_owned(),
             sweep: sweep.to_owned(),

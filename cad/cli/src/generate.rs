@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use super::calibrated_curve::calibrated_curve;
 use super::law::LawChoice;
+use super::second_kernel::requested_kernel;
 use super::slicing;
 use super::source::{Made, Source};
 use super::{Failure, print};
@@ -31,6 +32,7 @@ use pinswitch_switch::set::Set;
   pinswitch generate my-switch.toml --out parts --preset printer-fff-0.4
   pinswitch generate three-double --format stl,step
   pinswitch generate three-double --slice
+  pinswitch generate three-double --verify
   pinswitch generate three-double --set layout.pins=[4,8,12] --set support.slots=occupied")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -50,6 +52,10 @@ pub(super) struct Arguments {
     /// much filament it takes: a table here, slicing.json and settings.ini in the set.
     #[arg(long)]
     slice: bool,
+    /// Verify every mesh with a second geometry kernel, truck-modeling: volume, surface, bounding box and distances must agree
+    /// within what the chord tolerance allows. The manifest records the differences; a larger one is an error.
+    #[arg(long)]
+    verify: bool,
     /// Replace a set that was made from another configuration, and files that are no set's.
     #[arg(long)]
     force: bool,
@@ -79,6 +85,7 @@ fn refused(error: PublishError) -> Failure {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let kernel = requested_kernel(arguments.verify)?;
     let slicer = if arguments.slice { slicing::installed()? } else { None };
     let Made { design, origin, law } = arguments.source.made()?;
     let prediction = match &arguments.model {
@@ -99,9 +106,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         BuildError::Configuration(e) => arguments.source.placed(&e),
         other => Failure::failed(other),
     })?;
+    let verifications = kernel.map(|kernel| built.verified(kernel)).transpose().map_err(Failure::failed)?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
     let formats = named(&names).map_err(Failure::bad_input)?;
     let mut set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    if let Some(verifications) = verifications {
+        set = set.verified(verifications).map_err(Failure::failed)?;
+    }
     // What the slicer refuses is said at the end: the parts are made all the same.
     let sliced = slicer.map(|slicer| slicing::slicing(slicer, &built, &prediction)).transpose();
     if let Ok(Some((slicing, files))) = &sliced {
@@ -146,6 +157,9 @@ fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Predicti
             .and_then(|t| t.as_str().map(str::to_owned))
             .unwrap_or_default(),
     );
+    if let Some(kernel) = set.manifest.parts.iter().find_map(|p| p.verification.as_ref()).map(|v| v.kernel) {
+        log::info!("{} meshes agree with {kernel}", set.manifest.parts.len());
+    }
     if let Some(model) = &arguments.model {
         log::info!("the curve comes from {}", model.display());
         prediction.curve.reasons.iter().for_each(|reason| log::info!("{reason}"));

@@ -15,6 +15,7 @@ mod law;
 mod own_effects;
 mod predict_rows;
 mod range;
+mod second_kernel;
 mod slicing;
 mod source;
 pub mod write;

@@ -9,6 +9,7 @@ use clap::Args;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::failure::say;
+use super::second_kernel::requested_kernel;
 use super::{Failure, print, print_json, slicing};
 use pinswitch_batch::{
     CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
@@ -65,6 +66,10 @@ pub(super) struct Arguments {
     /// filament_g and filament_m, the sums over its parts.
     #[arg(long)]
     slice: bool,
+    /// Verify every mesh with a second geometry kernel, truck-modeling. The manifests record the differences; a variant with
+    /// a larger one than the chord tolerance allows fails.
+    #[arg(long)]
+    verify: bool,
     /// Stop at the first variant that fails.
     #[arg(long)]
     fail_fast: bool,
@@ -74,9 +79,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let kernel = requested_kernel(arguments.verify)?;
     let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
     let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
     source.slice = arguments.slice;
+    source.verify = arguments.verify;
     let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
     let count = counted.count().ok_or_else(|| {
         Failure::bad_input(format!(
@@ -127,6 +134,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         fail_fast: arguments.fail_fast,
         mesh_maker: mesh_file,
         slicer: slicer.as_ref(),
+        kernel,
     };
     let outcome = run_batch(&variants, &source, &destination, options, &progress);
     progress.bar.finish_and_clear();
@@ -236,6 +244,9 @@ fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
         log::info!(
             "--slice takes seconds more for each part that is like no other, which this does not count"
         );
+    }
+    if arguments.verify {
+        log::info!("--verify takes up to a second more for each different part, which this does not count");
     }
     if arguments.json { print_json(&estimate) } else { print(describe(variants, &estimate).as_bytes()) }
 }

@@ -5,6 +5,7 @@ use crate::documents::{FileEntry, Manifest, PrintEntry, SourceEntry, plate_entri
 use crate::formats::Format;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
+use pinswitch_solid::verification::Verification;
 
 /// Name of the file that lists a set; a folder without it holds no whole set.
 pub const MANIFEST: &str = "manifest.json";
@@ -69,6 +70,17 @@ impl Set {
         self.manifest.print = Some(print);
         self.manifest.files.extend(files.iter().map(FileEntry::of));
         self.files.extend(files);
+        self.with_manifest()
+    }
+
+    /// The same set, whose manifest records the agreement of its parts with a second kernel, in the order of the parts.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn verified(mut self, verifications: Vec<Verification>) -> Result<Self, SetError> {
+        for (entry, verification) in self.manifest.parts.iter_mut().zip(verifications) {
+            entry.verification = Some(verification);
+        }
         self.with_manifest()
     }
 

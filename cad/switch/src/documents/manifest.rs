@@ -12,6 +12,7 @@ use crate::output::{OutputFile, SetError};
 use crate::parts::{Material, Part, Touch, touches};
 use crate::prediction::Prediction;
 use pinswitch_solid::validity::MeshFacts;
+use pinswitch_solid::verification::Verification;
 
 /// One value that the user may set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -62,6 +63,9 @@ pub struct PartEntry {
     pub widest_bridge_mm: f64,
     /// The mesh as written.
     pub mesh: MeshFacts,
+    /// Agreement of the mesh with that of a second kernel, where that was requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verification: Option<Verification>,
     /// What was left out of it, and what makes room for it; among the warnings, too.
     pub notes: Vec<String>,
 }
@@ -295,6 +299,7 @@ fn part_entry(part: &Part, facts: &MeshFacts, design: &Design) -> PartEntry {
         mass_g: volume_mm3 / 1000.0 * design.configuration().print.abs_density_g_cm3,
         widest_bridge_mm: part.widest_bridge_mm(),
         mesh: facts.clone(),
+        verification: None,
         notes: part.notes(design),
     }
 }

@@ -187,3 +187,25 @@ fn unwritable_errors_keep_their_exit_code() {
     command.args(["-v", "simulate", "--out", "k2"]).current_dir(folder.path()).stderr(full);
     assert_eq!(command.status().unwrap().code(), Some(0));
 }
+
+/// `--fix` builds the nearest feasible configuration, reports what it changed, and keeps the rest of the file.
+#[test]
+fn fix_builds_the_nearest_configuration() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("mine.toml"), "# mine\n[segment]\ngrooves = 40 # many\n").unwrap();
+    let (code, said) =
+        ended(folder.path(), &["generate", "mine.toml", "--format", "stl", "--out", "refused"]);
+    assert!(code == Some(2) && !folder.path().join("refused").join("manifest.json").exists(), "{said}");
+    let (code, said) =
+        ended(folder.path(), &["generate", "mine.toml", "--fix", "--format", "stl", "--out", "fixed"]);
+    assert!(code == Some(0) && said.contains("segment.grooves: 40 -> 20: grooves overlap"), "{said}");
+    let fixed = folder.path().join("fixed").join("fixed.toml");
+    let text = std::fs::read_to_string(&fixed).unwrap();
+    assert!(text.contains("# mine") && text.contains("grooves = 20 # many"), "{text}");
+    // The fixed configuration makes the same parts, and has nothing left to fix.
+    let again = ["generate", "fixed/fixed.toml", "--fix", "--format", "stl", "--out", "again"];
+    let (code, said) = ended(folder.path(), &again);
+    assert!(code == Some(0) && said.contains("nothing to fix"), "{said}");
+    let shell = |set: &str| std::fs::read(folder.path().join(set).join("shell.stl")).unwrap();
+    assert_eq!(shell("fixed"), shell("again"));
+}

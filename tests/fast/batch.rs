@@ -121,7 +121,7 @@ fn dry_runs_write_nothing() {
 }
 
 #[test]
-fn samples_and_rows_are_made_like_axes() {
+fn samples_and_rows_behave_like_axes() {
     let folder = with_sweep(
         "[sweep]\nbase = \"three-single\"\nparts = [\"shell\"]\n[rows]\nfile = \"rows.csv\"\n\
          [sample]\ncount = 3\nseed = 5\n[sample.axes]\n\"shell.width_mm\" = { from = 12, to = 16 }\n",

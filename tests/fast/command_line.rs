@@ -180,7 +180,7 @@ fn values_override_presets() {
 }
 
 #[test]
-fn a_template_written_out_generates_the_same_parts() {
+fn written_template_generates_same_parts() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["init", "three-single", "--out", "mine.toml"]);
     done(folder.path(), &["generate", "mine.toml", "--out", "a"]);

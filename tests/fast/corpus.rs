@@ -12,7 +12,7 @@ fn files(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
 }
 
 #[test]
-fn every_file_of_the_corpus_is_read_or_refused_as_its_name_says() {
+fn corpus_files_behave_as_named() {
     if std::env::var_os("PINSWITCH_ACCEPT").is_some() {
         let seed = repository("tests/corpus/shard_table/accepted-one-row.parquet");
         std::fs::write(seed, finished_shard_table().unwrap()).unwrap();
@@ -38,7 +38,7 @@ fn every_file_of_the_corpus_is_read_or_refused_as_its_name_says() {
 }
 
 #[test]
-fn every_reader_has_a_fuzz_target_and_every_folder_of_the_corpus_a_reader() {
+fn readers_fuzz_targets_and_corpus_agree() {
     for path in files(&repository("tests/corpus")).iter().filter(|path| path.is_dir()) {
         let name = path.file_name().unwrap().to_string_lossy();
         assert!(READERS.iter().any(|reader| reader.name == name), "{name}");
@@ -53,7 +53,7 @@ fn every_reader_has_a_fuzz_target_and_every_folder_of_the_corpus_a_reader() {
 }
 
 #[test]
-fn what_ships_with_the_program_is_accepted_by_its_reader() {
+fn shipped_files_are_accepted() {
     for path in files(&repository("templates")).iter().filter(|path| path.is_file()) {
         let bytes = std::fs::read(path).unwrap();
         assert_eq!(judge("configuration", &bytes), Ok(Reading::Accepted), "{}", path.display());

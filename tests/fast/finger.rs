@@ -15,7 +15,7 @@ fn share(point: &Value, key: &str) -> [f64; 3] {
 const SHARES: [&str; 4] = ["force_difference", "extra_holding", "motor_mass_saved", "concentric_penalty"];
 
 #[test]
-fn a_finger_gains_what_the_curve_says() {
+fn finger_gain_matches_curve() {
     let folder = tempfile::tempdir().unwrap();
     let report = json(folder.path(), &["finger", "three-double", "--json"]);
     let curve = json(folder.path(), &["predict", "three-double", "--json"]);
@@ -71,7 +71,7 @@ fn the_wrap_follows_the_joint() {
 }
 
 #[test]
-fn a_figure_a_table_and_a_report_are_written() {
+fn finger_writes_figure_table_report() {
     let folder = tempfile::tempdir().unwrap();
     let printed = done(folder.path(), &["-q", "finger", "three-double", "silicone-only", "--out", "a"]);
     for word in ["force difference", "extra holding", "measured", "mass saved", "human finger", "assumed:"] {
@@ -97,7 +97,7 @@ fn a_figure_a_table_and_a_report_are_written() {
 }
 
 #[test]
-fn fingers_that_cannot_be_are_refused_by_name() {
+fn invalid_fingers_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
         (&["no-such-template"][..], "no such file or template"),

@@ -84,7 +84,7 @@ fn assembly(design: &Design) -> Vec<Part> {
 }
 
 #[test]
-fn no_two_parts_of_the_assembly_overlap() {
+fn assembled_parts_do_not_overlap() {
     for variant in VARIANTS {
         let design = design(variant);
         let parts = assembly(&design);
@@ -117,7 +117,7 @@ fn an_overlap_would_be_seen() {
 }
 
 #[test]
-fn pins_fit_grooves_and_slots_over_their_whole_travel() {
+fn pins_fit_over_full_travel() {
     for variant in VARIANTS {
         let design = design(variant);
         let c = design.configuration();
@@ -164,7 +164,7 @@ fn hole_centres(contours: &[Contour]) -> Vec<Point2<f64>> {
 }
 
 #[test]
-fn holes_of_shell_and_supports_are_coaxial() {
+fn shell_and_support_holes_are_coaxial() {
     for variant in VARIANTS {
         let design = design(variant);
         let parts = assembly(&design);
@@ -187,7 +187,7 @@ fn holes_of_shell_and_supports_are_coaxial() {
 }
 
 #[test]
-fn the_cavity_of_the_mould_is_the_layer() {
+fn mould_cavity_equals_layer() {
     for kind in ["split", "one-piece"] {
         let design = design(&["layout.pins=[5, 8, 11]", &format!("mould.kind={kind}")]);
         let c = design.configuration();

@@ -159,7 +159,7 @@ fn a_refused_table_writes_nothing() {
 
 /// Covers every kind of rig of the study, including effects and disturbances.
 #[test]
-fn no_rig_of_the_study_is_refused() {
+fn study_tables_are_plausible() {
     for case in study_cases() {
         for seed in [901, 902] {
             let rows = simulate(&plan_of(&case, seed)).rows;

@@ -15,7 +15,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn designs_meet_what_was_asked_when_predicted_and_generated() {
+fn designs_meet_their_targets() {
     let folder = tempfile::tempdir().unwrap();
     let asked =
         ["design", "--threshold", "24", "--max-friction", "9", "--pins", "3..5", "--out", "found", "--json"];
@@ -71,7 +71,7 @@ fn mirror_images_are_proposed_once() {
 }
 
 #[test]
-fn an_impossible_ask_says_why_and_ends_with_1() {
+fn impossible_request_exits_with_reason() {
     let folder = tempfile::tempdir().unwrap();
     let asked = ["design", "--max-friction", "at least 16", "--pins", "3..6", "--out", "found"];
     let output = pinswitch(folder.path(), &[&asked[..], &SHORT].concat());
@@ -98,7 +98,7 @@ fn an_impossible_ask_says_why_and_ends_with_1() {
 }
 
 #[test]
-fn what_cannot_be_printed_within_the_ask_has_a_nearest_design_and_a_limit() {
+fn unprintable_request_names_limit() {
     let folder = tempfile::tempdir().unwrap();
     for (asked, limit, is_moved) in [
         (&["design", "--threshold", "20", "--outer-width", "10"][..], "limits.outer_width_mm = 10", true),
@@ -124,7 +124,7 @@ fn what_cannot_be_printed_within_the_ask_has_a_nearest_design_and_a_limit() {
 }
 
 #[test]
-fn shipped_asks_can_be_read_and_answered() {
+fn shipped_requests_are_answered() {
     let folder = tempfile::tempdir().unwrap();
     for (name, code) in [("gripper", 0), ("small-joint", 0), ("impossible", 1)] {
         let file = repository(&format!("templates/asks/{name}.toml"));
@@ -136,7 +136,7 @@ fn shipped_asks_can_be_read_and_answered() {
 }
 
 #[test]
-fn a_calibrated_switch_can_be_designed_with() {
+fn design_uses_calibrated_model() {
     let folder = tempfile::tempdir().unwrap();
     done(
         folder.path(),
@@ -160,7 +160,7 @@ fn a_calibrated_switch_can_be_designed_with() {
 }
 
 #[test]
-fn wishes_that_cannot_be_read_are_refused() {
+fn malformed_targets_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("odd.toml"), "[ask]\nthreshold_n = 20\n[vary]\nthickness = true\n")
         .unwrap();
@@ -216,7 +216,7 @@ fn wishes_that_cannot_be_read_are_refused() {
 }
 
 #[test]
-fn the_physics_shows_its_constants_and_its_misses() {
+fn physics_reports_constants_and_errors() {
     let folder = tempfile::tempdir().unwrap();
     let report = json(folder.path(), &["physics", "--out", "shown", "--json"]);
     assert!(report["fit"]["rms"].as_f64().unwrap() <= 0.04);

@@ -89,7 +89,7 @@ fn an_absent_effect_is_not_reported() {
 
 /// Under another id, the formula of a built-in effect is confounded with it.
 #[test]
-fn the_formula_of_an_effect_is_its_rival() {
+fn formula_of_builtin_becomes_rival() {
     let folder = folder();
     let at = folder.path();
     let all = printed(at, &["effects", "--toml"]);
@@ -106,7 +106,7 @@ fn the_formula_of_an_effect_is_its_rival() {
 }
 
 #[test]
-fn power_and_effects_include_user_defined_effects() {
+fn power_includes_user_defined_effects() {
     let folder = folder();
     let at = folder.path();
     let listed = printed(at, &["effects", "--effects", "mine.toml"]);

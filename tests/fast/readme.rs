@@ -42,7 +42,7 @@ fn run(folder: &Path, slicer: Option<&Path>, command: &str) -> Option<String> {
         assert!(ci.contains("'^cargo test'"), "CI takes its test command from README");
         return None;
     }
-    let arguments = command.strip_prefix("cargo run --release -- ").or(command.strip_prefix("pinswitch "));
+    let arguments = command.strip_prefix("cargo run -- ").or(command.strip_prefix("pinswitch "));
     let arguments =
         arguments.unwrap_or_else(|| panic!("README shows {command:?}, which is no pinswitch command"));
     let mut program = binary();
@@ -55,14 +55,14 @@ fn run(folder: &Path, slicer: Option<&Path>, command: &str) -> Option<String> {
 }
 
 #[test]
-fn every_block_does_what_readme_shows() {
+fn readme_blocks_match_their_output() {
     follow("README.md", 15, None);
 }
 
 /// A substitute for the slicer answers at once; the tutorial shows the table of the real one as text.
 #[cfg(unix)]
 #[test]
-fn every_block_does_what_the_tutorial_shows() {
+fn tutorial_blocks_match_their_output() {
     let folder = tempfile::tempdir().unwrap();
     follow("cad/doc/tutorial.md", 6, Some(&crate::slicing::stand_in(folder.path())));
 }

@@ -29,7 +29,7 @@ fn shell(tolerance_mm: f64) -> (Design, pinswitch_switch::parts::Part) {
 }
 
 #[test]
-fn the_volume_is_exact_at_every_tolerance() {
+fn volume_is_exact_at_every_tolerance() {
     for tolerance in [0.01, 0.005, 0.001] {
         let (design, part) = shell(tolerance);
         assert!((part.solid.volume_mm3() / VOLUME_MM3 - 1.0).abs() < 1e-12);
@@ -43,7 +43,7 @@ fn the_volume_is_exact_at_every_tolerance() {
 
 /// Every point of the mesh's outline lies within the tolerance of the exact profile: measured, not assumed.
 #[test]
-fn no_curve_deviates_by_more_than_the_tolerance() {
+fn curves_stay_within_tolerance() {
     for tolerance in [0.05, 0.01, 0.001] {
         let (design, part) = shell(tolerance);
         let profile = part.solid.section(5.0);

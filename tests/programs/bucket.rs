@@ -217,7 +217,7 @@ impl Bucket {
 }
 
 #[test]
-fn a_batch_in_a_bucket_of_s3_is_that_in_a_folder() {
+fn s3_batch_equals_folder_batch() {
     let python = Path::new(SERVERS).join("bin/python");
     if !cfg!(feature = "cloud") {
         return say_skipped("this build writes to folders only; --features cloud adds buckets");
@@ -263,7 +263,7 @@ fn a_batch_in_a_bucket_of_s3_is_that_in_a_folder() {
 }
 
 #[test]
-fn a_batch_in_a_container_of_azure_is_that_in_a_folder() {
+fn azure_batch_equals_folder_batch() {
     let azurite: PathBuf = Path::new(SERVERS).join("azurite/node_modules/.bin/azurite-blob");
     if !cfg!(feature = "cloud") {
         return say_skipped("this build writes to folders only; --features cloud adds buckets");

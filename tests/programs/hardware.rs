@@ -22,7 +22,7 @@ const LEAST_FILAMENT_OF_PROXIES: f64 = 0.945;
 
 #[test]
 #[ignore = "an hour: every file of 37 sets with hardware, each judged by up to ten programs"]
-fn every_file_of_the_corpus_of_hardware_is_accepted() {
+fn judges_accept_hardware_corpus() {
     let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
     let Some(python) = judges_python() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -112,7 +112,7 @@ impl Drop for Slurm {
 }
 
 #[test]
-fn a_slurm_job_array_makes_what_one_run_makes() {
+fn slurm_array_equals_one_run() {
     let folder = with_sweep(SWEEP);
     let path = folder.path();
     let slurm = match Slurm::start(path) {
@@ -149,7 +149,7 @@ fn a_slurm_job_array_makes_what_one_run_makes() {
 }
 
 #[test]
-fn the_kubernetes_job_is_what_its_schema_wants() {
+fn kubernetes_job_matches_schema() {
     let packed = include_bytes!("../data/kubernetes/job-batch-v1.34.json.gz");
     let mut schema = String::new();
     flate2::read::GzDecoder::new(&packed[..]).read_to_string(&mut schema).unwrap();

@@ -411,7 +411,7 @@ fn damaged_tables_are_calibrated_or_refused() {
 
 #[test]
 #[ignore = "minutes; see the head of the file"]
-fn damaged_models_predict_finite_numbers_or_are_refused() {
+fn damaged_models_are_refused() {
     let (table, models) = small_table_and_models();
     campaign("model files", 1000, |seed, random| {
         let chosen = &models[random.random_range(0..models.len())];
@@ -524,7 +524,7 @@ fn sweep_text(random: &mut ChaCha8Rng) -> String {
 
 #[test]
 #[ignore = "minutes; see the head of the file"]
-fn sweeps_are_made_or_refused_and_a_dry_run_refuses_the_same() {
+fn random_sweeps_match_dry_run() {
     campaign("sweeps", 1000, |seed, random| {
         let mut text = sweep_text(random).into_bytes();
         if seed % 4 == 0 {

@@ -21,7 +21,7 @@ const SETS: [&[&str]; 3] = [
 ];
 
 #[test]
-fn a_killed_set_is_whole_or_has_no_manifest() {
+fn killed_set_is_recognisably_incomplete() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &'static str, set: usize| [SETS[set], &["--out", name]].concat();
     let mut whole_run_s = [0.0; SETS.len()];
@@ -101,7 +101,7 @@ int unlink(const char *path) {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_set_killed_at_every_file_is_whole_or_has_no_manifest() {
+fn set_survives_kill_at_every_file() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("killer.c"), KILLER).unwrap();
     let compiler = Command::new("cc")

@@ -110,7 +110,7 @@ pub(super) fn configurations() -> impl Strategy<Value = Configuration> {
 }
 
 #[test]
-fn random_configurations_give_valid_parts_or_one_clear_error() {
+fn random_configurations_build_or_fail_clearly() {
     let cases = std::env::var("PINSWITCH_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(60);
     let (built, refused) = (AtomicU32::new(0), AtomicU32::new(0));
     let mut runner = TestRunner::new_with_rng(

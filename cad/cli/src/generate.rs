@@ -11,13 +11,13 @@ use super::failure::unconverted;
 use super::law::LawChoice;
 use super::second_kernel::requested_kernel;
 use super::slicing;
-use super::source::{LoadedDesign, Source};
+use super::source::{Fix, LoadedDesign, Source};
 use super::terminal::warn;
 use super::{Failure, print_data, print_text};
 use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
-use pinswitch_switch::output::BuildError;
+use pinswitch_switch::output::{BuildError, OutputFile};
 use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 
@@ -59,6 +59,10 @@ pub(super) struct Arguments {
     /// within what the chord tolerance allows. The manifest records the differences; a larger one is an error.
     #[arg(long)]
     verify: bool,
+    /// If the configuration cannot be built, make the set of the nearest one that can: print every change with its reason, and
+    /// write the fixed configuration to fixed.toml in the set.
+    #[arg(long)]
+    fix: bool,
     /// Replace a set that was made from another configuration, and files that are no set's.
     #[arg(long)]
     force: bool,
@@ -80,6 +84,9 @@ fn default_formats() -> Vec<&'static str> {
     FORMATS.iter().filter(|f| f.inclusion == Inclusion::Default).map(|f| f.name).collect()
 }
 
+/// Name of the file with a fixed configuration.
+const FIXED: &str = "fixed.toml";
+
 fn refused(error: PublishError) -> Failure {
     match error {
         PublishError::Write(e) => e.into(),
@@ -90,7 +97,12 @@ fn refused(error: PublishError) -> Failure {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kernel = requested_kernel(arguments.verify)?;
     let slicer = if arguments.slice { slicing::installed()? } else { None };
-    let LoadedDesign { design, origin, law } = arguments.source.load()?;
+    let (LoadedDesign { design, origin, law }, fix) = if arguments.fix {
+        let (design, fix) = arguments.source.load_fixed()?;
+        (design, Some(fix))
+    } else {
+        (arguments.source.load()?, None)
+    };
     let prediction = match &arguments.model {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.or_of_set(law.as_deref()).prediction(&design)?,
@@ -121,10 +133,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Ok(Some((slicing, files))) = &sliced {
         set = set.sliced(slicing.entry(), files.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
     }
+    if let Some(fix) = &fix {
+        set = set
+            .with_file(OutputFile::new(FIXED, fix.text.clone().into_bytes()))
+            .map_err(|e| Failure::failed(unconverted(e)))?;
+    }
     let set = set.made_from(origin.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
     for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
         let location = Location::file(folder.join(changed).display().to_string());
         warn(Diagnostic::new("was changed since it was written, and stays").with_location(location));
+    }
+    if let Some(fix) = &fix {
+        report_fix(fix, &folder);
     }
     report(arguments, &set, &folder, &prediction);
     if let (Some((slicing, _)), false) = (sliced?, arguments.json) {
@@ -136,7 +156,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Says what was made, with all that is not ideal of it.
+/// Reports each change of a fixed configuration, or that there is none.
+fn report_fix(fix: &Fix, folder: &Path) {
+    for change in &fix.changes {
+        log::info!("changed {change}");
+    }
+    match fix.changes.len() {
+        0 => log::info!("nothing to fix: the configuration can be built"),
+        _ => log::info!("{}: the changed configuration", folder.join(FIXED).display()),
+    }
+}
+
+/// Reports the set, with its warnings.
 fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Prediction) {
     for warning in &set.manifest.warnings {
         warn(warning.to_string());

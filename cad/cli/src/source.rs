@@ -5,10 +5,12 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::read_three_mf;
-use pinswitch_switch::config::{Configuration, FieldLocations, Name, assign, read, read_over, text};
+use pinswitch_switch::config::{
+    Configuration, FieldLocations, Name, assign, read, read_over, rewritten, text,
+};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
-use pinswitch_switch::feasibility;
+use pinswitch_switch::feasibility::{self, ParameterChange, Proposal};
 use pinswitch_switch::templates;
 
 use super::Failure;
@@ -124,14 +126,24 @@ impl Source {
     pub(super) fn load(&self) -> Result<LoadedDesign, Failure> {
         let (text, file, kind) = read_configuration_text(self.config())?;
         let design = self.design_of_text(&text, &file)?;
-        let (origin, law) = match kind {
-            Kind::Text => (Origin::of(&file, &text), None),
-            Kind::Package(source, law) => {
-                let from_set = source.and_then(|source| Origin::from_set(source, &file));
-                (from_set.unwrap_or_else(|| Origin::of_package(&file, design.configuration())), law)
-            }
-        };
-        Ok(LoadedDesign { design, origin, law })
+        Ok(loaded(design, &text, &file, kind))
+    }
+
+    /// As [`Self::load`], of the nearest configuration that can be built.
+    ///
+    /// # Errors
+    /// [`Failure::bad_input`] if the configuration cannot be read, [`Failure::failed`] if no configuration can be built.
+    pub(super) fn load_fixed(&self) -> Result<(LoadedDesign, Fix), Failure> {
+        let (text, file, kind) = read_configuration_text(self.config())?;
+        let (configuration, _) = self.configuration_of_text(&text, &file)?;
+        let proposal = feasibility::repair(&configuration).map_err(|e| Failure::failed(unconverted(e)))?;
+        let proposal = proposal.unwrap_or(Proposal { configuration, changes: Vec::new() });
+        let (written, _) = read(&text, &file).map_err(Failure::bad_input)?;
+        let text_of_fix =
+            rewritten(&text, &file, &written, &proposal.configuration).map_err(Failure::bad_input)?;
+        let design = Design::new(proposal.configuration).map_err(Failure::bad_input)?;
+        let fix = Fix { changes: proposal.changes, text: text_of_fix };
+        Ok((loaded(design, &text, &file, kind), fix))
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
@@ -219,6 +231,27 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
                 .with_help("give a TOML file, or an assembly.3mf that pinswitch wrote"),
         )
     })
+}
+
+/// The changes that make a configuration feasible, and the text of the changed configuration.
+#[derive(Clone, Debug)]
+pub(super) struct Fix {
+    /// Each change with its reason; empty if the configuration was feasible.
+    pub(super) changes: Vec<ParameterChange>,
+    /// The text of the source with the changed values, and with those of preset and options.
+    pub(super) text: String,
+}
+
+/// Returns a design with its origin.
+fn loaded(design: Design, text: &str, file: &str, kind: Kind) -> LoadedDesign {
+    let (origin, law) = match kind {
+        Kind::Text => (Origin::of(file, text), None),
+        Kind::Package(source, law) => {
+            let from_set = source.and_then(|source| Origin::from_set(source, file));
+            (from_set.unwrap_or_else(|| Origin::of_package(file, design.configuration())), law)
+        }
+    };
+    LoadedDesign { design, origin, law }
 }
 
 /// A validated design with its origin.

@@ -73,6 +73,16 @@ impl Set {
         self.with_manifest()
     }
 
+    /// The same set with another file.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn with_file(mut self, file: OutputFile) -> Result<Self, SetError> {
+        self.manifest.files.push(FileEntry::of(&file));
+        self.files.push(file);
+        self.with_manifest()
+    }
+
     /// The same set, whose manifest records the agreement of its parts with a second kernel, in the order of the parts.
     ///
     /// # Errors

@@ -73,7 +73,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     );
     assert!(said.contains("second/plateaus.csv answers "), "{said}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
-    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; by the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
+    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; with the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
     // The runs are told with the story, and descending loads come from a heavier one in their mount.
     assert!(page.contains("proposed runs:<ul><li>") && page.contains("with loads descending"));
     let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();

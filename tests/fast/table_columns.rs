@@ -31,7 +31,7 @@ fn calibrated(text: &str) -> (String, Value) {
     let said = String::from_utf8(output.stdout).unwrap();
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(!page.contains("NaN") && !page.contains("inf "), "the page shows what is no number");
-    assert!(page.contains("The noise by its parts") && page.contains("What this data excludes"));
+    assert!(page.contains("Noise components") && page.contains("Limits on undetected effects"));
     let report = std::fs::read(folder.path().join("out/report.json")).unwrap();
     (said, serde_json::from_slice(&report).unwrap())
 }

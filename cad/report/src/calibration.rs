@@ -1,4 +1,5 @@
-//! Plots of a calibration: friction per condition, and residuals over each covariate before and after.
+//! Figures of a calibration: friction per condition, and residuals of baseline and augmented model
+//! over each covariate.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -8,43 +9,42 @@ use pinswitch_calibration::effects::Covariate;
 use pinswitch_calibration::table::{Frame, Point};
 use plotters::prelude::*;
 
+use super::PlotError;
 use super::scale::drawable;
 
 /// Width and height of a condition's figure in pixels.
 const CONDITION: (u32, u32) = (440, 300);
-/// Width and height of a pair of residual panels in pixels.
+/// Width and height of both residual panels in pixels.
 const RESIDUAL: (u32, u32) = (900, 320);
-pub(super) const BEFORE: RGBColor = RGBColor(190, 80, 20);
-pub(super) const AFTER: RGBColor = RGBColor(0, 90, 156);
-pub(super) const DATA: RGBColor = RGBColor(60, 60, 60);
-/// Points of one residual panel at most; a table has thousands of rows.
-const SHOWN: usize = 900;
-/// Stretches of a covariate over which residuals are averaged.
-const STRETCHES: usize = 24;
-
-/// A figure cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-#[error("a plot of the calibration cannot be drawn: {0}")]
-pub struct PlotFailure(pub(super) String);
+/// Colour of the baseline.
+pub(super) const BASELINE: RGBColor = RGBColor(190, 80, 20);
+/// Colour of the augmented model.
+pub(super) const AUGMENTED: RGBColor = RGBColor(0, 90, 156);
+const DATA: RGBColor = RGBColor(60, 60, 60);
+/// Most points of one residual panel; a table has thousands of rows.
+const MAX_POINTS: usize = 900;
+/// Bins of a covariate for mean residuals.
+const BINS: usize = 24;
 
 /// One figure.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    /// Name of its file.
+    /// File name.
     pub file: String,
-    /// What it shows.
+    /// Caption.
     pub caption: String,
-    /// The figure.
+    /// Figure as SVG.
     pub svg: String,
 }
 
-/// How a covariate is read off a point, and how it is written at the axis.
+/// The axis of a covariate.
 struct Axis {
     label: String,
+    /// Value of a point.
     read: Box<dyn Fn(&Point) -> f64>,
-    /// Names of its values 0, 1, ..., if it has names.
+    /// Names of the values 0, 1, ..., if they have names.
     names: Vec<String>,
-    /// Whether its values are whole numbers.
+    /// Whether the values are whole numbers.
     is_count: bool,
 }
 
@@ -86,7 +86,7 @@ impl Axis {
                 Box::new(|p| p.descending),
             ),
             Covariate::Condition => named(
-                "condition, numbered as above",
+                "condition (number as in its figure)",
                 (1..=frame.conditions.len()).map(|n| n.to_string()).collect(),
                 Box::new(|p| p.condition as f64),
             ),
@@ -94,13 +94,13 @@ impl Axis {
     }
 }
 
-/// All figures: one per condition, and one per covariate that varies.
+/// Draws all figures: one per condition, and one per covariate that varies.
 ///
 /// # Errors
-/// [`PlotFailure`] if the drawing library refuses a coordinate.
-pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
+/// [`PlotError`] if the drawing library refuses a coordinate.
+pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotError> {
     let mut all = Vec::new();
-    let failure = |e: Box<dyn Error>| PlotFailure(e.to_string());
+    let failure = |e: Box<dyn Error>| PlotError::new(&*e);
     let frame = &calibration.selection.baseline.model.frame;
     for (index, condition) in frame.conditions.iter().enumerate() {
         let mut svg = String::new();
@@ -122,17 +122,21 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
         residual(&mut svg, calibration, &axis, range).map_err(failure)?;
         all.push(Plot {
             file: format!("residual-{}.svg", covariate.as_str()),
-            caption: format!("over {}: before (left) and after (right)", covariate.as_str()),
+            caption: format!(
+                "residuals over {}: baseline (left), augmented model (right)",
+                covariate.as_str()
+            ),
             svg,
         });
     }
     Ok(all)
 }
 
-/// Mean readings per load and direction of one condition with both models.
+/// Draws mean readings per load and direction of one condition, with both models.
 fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Result<(), Box<dyn Error>> {
     let (data, selection) = (&calibration.data, &calibration.selection);
-    // Per direction and load: sums of readings, of the baseline and of the augmented model, and their number.
+    // Per direction and load: sums of readings, of the baseline and of the augmented model, and
+    // their number.
     let mut means: BTreeMap<(bool, u64), [f64; 5]> = BTreeMap::new();
     for (i, p) in data.points.iter().enumerate().filter(|(_, p)| p.condition == condition) {
         let y = data.force_n[i];
@@ -167,15 +171,15 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
     chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("load F (N)").y_desc("T - F (N)").draw()?;
     for up in [false, true] {
         let of = |i: usize| lines.iter().filter(move |l| l.0 == up).map(move |l| (l.1[0], l.1[i]));
-        chart.draw_series(LineSeries::new(of(2), BEFORE.stroke_width(2)))?;
-        chart.draw_series(LineSeries::new(of(3), AFTER.stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(of(2), BASELINE.stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(of(3), AUGMENTED.stroke_width(2)))?;
         chart.draw_series(of(1).map(|at| Circle::new(at, 3, DATA.filled())))?;
     }
     root.present()?;
     Ok(())
 }
 
-/// Residuals over one covariate, before and after, on the same axes, with their mean.
+/// Draws residuals of both models over one covariate, with means, on equal axes.
 fn residual(
     svg: &mut String,
     calibration: &Calibration,
@@ -191,11 +195,11 @@ fn residual(
     let high = sizes.get(sizes.len() * 995 / 1000).copied().unwrap_or(1.0).max(1e-3) * 1.1;
     let root = SVGBackend::with_string(svg, RESIDUAL).into_drawing_area();
     root.fill(&WHITE)?;
-    let stride = data.points.len().div_ceil(SHOWN);
+    let stride = data.points.len().div_ceil(MAX_POINTS);
     let panels = root.split_evenly((1, 2));
     let sides = [
-        (&selection.baseline.residual_n, BEFORE, "the paper's model, refitted"),
-        (&selection.augmented.residual_n, AFTER, "the better model"),
+        (&selection.baseline.residual_n, BASELINE, "baseline"),
+        (&selection.augmented.residual_n, AUGMENTED, "augmented model"),
     ];
     for (panel, (residual, colour, title)) in panels.iter().zip(sides) {
         let mut chart = ChartBuilder::on(panel)
@@ -216,7 +220,7 @@ fn residual(
         }
         mesh.draw()?;
         let shown = (0..xs.len()).step_by(stride).filter(|i| residual[*i].abs() < high);
-        // Names have no width of their own: their points are spread a little.
+        // Points of named values are spread horizontally, since they would cover each other.
         let spread = |i: usize| if named { 0.3 * ((i * 37 % 101) as f64 / 50.0 - 1.0) } else { 0.0 };
         chart.draw_series(
             shown.map(|i| Circle::new((xs[i] + spread(i), residual[i]), 2, colour.mix(0.3).filled())),
@@ -232,7 +236,7 @@ fn residual(
     Ok(())
 }
 
-/// The name of a value at an axis; nothing between two values.
+/// Returns the name of a value on the axis; empty between two values.
 fn name_at(names: &[String], x: f64) -> String {
     let near = x.round();
     if (x - near).abs() > 0.05 || near < 0.0 {
@@ -242,30 +246,30 @@ fn name_at(names: &[String], x: f64) -> String {
     names.get(near as usize).cloned().unwrap_or_default()
 }
 
-/// A count at an axis; nothing between two counts.
+/// Formats a count on the axis; empty between two counts.
 fn whole_at(x: f64) -> String {
     if (x - x.round()).abs() < 1e-6 { format!("{:.0}", x.round() + 0.0) } else { String::new() }
 }
 
-/// Labels of an axis of counts: one each, as long as they find room.
+/// Returns the number of labels on an axis of counts: one per count, at most 12.
 fn counts_between(least: f64, most: f64) -> usize {
-    const MOST: f64 = 12.0;
+    const MAX: f64 = 12.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 12")]
-    let labels = (most.floor() - least.ceil() + 1.0).clamp(1.0, MOST) as usize;
+    let labels = (most.floor() - least.ceil() + 1.0).clamp(1.0, MAX) as usize;
     labels
 }
 
-/// Weighted means of the residuals over stretches of a covariate.
+/// Returns weighted means of the residuals in bins of a covariate.
 fn means(xs: &[f64], residual: &[f64], weights: &[f64], least: f64, most: f64) -> Vec<(f64, f64)> {
-    let mut sums = vec![[0.0; 3]; STRETCHES];
+    let mut sums = vec![[0.0; 3]; BINS];
     for ((x, r), w) in xs.iter().zip(residual).zip(weights) {
-        let share = (x - least) / (most - least).max(1e-12) * STRETCHES as f64;
+        let share = (x - least) / (most - least).max(1e-12) * BINS as f64;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "0 to the number of stretches"
+            reason = "0 to the number of bins"
         )]
-        let at = (share.max(0.0) as usize).min(STRETCHES - 1);
+        let at = (share.max(0.0) as usize).min(BINS - 1);
         sums[at][0] += w;
         sums[at][1] += w * x;
         sums[at][2] += w * r;
@@ -278,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_written_as_counts() {
+    fn counts_are_whole_numbers() {
         assert_eq!([1.0, 1.5, 12.0, -0.0].map(whole_at), ["1", "", "12", "0"]);
         assert_eq!(
             (counts_between(1.0, 5.0), counts_between(1.0, 400.0), counts_between(1.0, 1.5)),
@@ -287,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_of_counts_has_a_tick_for_each() {
+    fn each_count_has_a_tick() {
         for most in [2.0, 3.0, 5.0, 10.0, 60.0] {
             let mut svg = String::new();
             {

@@ -1,5 +1,6 @@
-//! The tendon over its pins: gap to the silicone along the wrap, at several loads. The legend stands beside the figure, with
-//! the forces of the pins: at a pin the curves of all loads lie within a few pixels.
+//! The figure of the tendon over its pins: gap to the silicone along the wrap, at several loads.
+//! The legend is on the right and lists the forces of the pins, since the curves of all loads are a
+//! few pixels apart at a pin.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -12,12 +13,12 @@ use super::scale::{drawn_size, fine, shown_at_size};
 
 /// Width and height of the figure in pixels.
 const SIZE: (u32, u32) = (1000, 420);
-/// Width of what stands beside it, in pixels.
+/// Width of the legend in pixels.
 const LEGEND: u32 = 260;
-/// Forces of pins that fit into a line of the legend.
-const FORCES_IN_A_LINE: usize = 6;
+/// Forces of pins in one line of the legend.
+const FORCES_PER_LINE: usize = 6;
 const SILICONE: RGBColor = RGBColor(214, 226, 236);
-/// From a light load to a heavy one.
+/// Colours from the lightest to the heaviest load.
 const LOADS: [RGBColor; 4] =
     [RGBColor(120, 170, 210), RGBColor(0, 90, 156), RGBColor(178, 74, 0), RGBColor(120, 20, 40)];
 
@@ -53,8 +54,8 @@ fn draw(
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.10).stroke_width(fine(1)))
-        .x_desc("angle along the wrap (deg); the load hangs on the left")
-        .y_desc("gap over the resting silicone (mm)")
+        .x_desc("angle along the wrap (deg), loaded end on the left")
+        .y_desc("gap to the undeformed silicone (mm)")
         .set_all_tick_mark_size(fine::<u32>(5))
         .axis_style(BLACK.stroke_width(fine(1)))
         .label_style(("sans-serif", fine::<i32>(14)))
@@ -80,7 +81,7 @@ fn draw(
     Ok(())
 }
 
-/// What the marks mean, line by line beside the figure: each load with the silicone's share and the force on every pin.
+/// Draws the legend: each load with the silicone's share of the wrap and the force on every pin.
 fn draw_legend(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     profiles: &[(f64, ContactProfile)],
@@ -91,20 +92,20 @@ fn draw_legend(
     let text = 32 * unit;
     let mut y = 60 * unit;
     area.draw(&Rectangle::new([(4 * unit, y - 6 * unit), (24 * unit, y + 6 * unit)], SILICONE.filled()))?;
-    area.draw(&Text::new("silicone that the tendon can touch", (text, y), style.clone()))?;
+    area.draw(&Text::new("silicone in reach of the tendon", (text, y), style.clone()))?;
     for ((load, profile), colour) in profiles.iter().zip(LOADS.iter().cycle()) {
         y += 28 * unit;
         area.draw(&PathElement::new([(4 * unit, y), (24 * unit, y)], colour.stroke_width(fine(2))))?;
         let on_silicone = profile.silicone_turn_rad
             / (profile.silicone_turn_rad + profile.pin_turn_rad.iter().sum::<f64>()).max(f64::MIN_POSITIVE);
-        let words = format!("{load:.1} N: {:.0} % of the turn on silicone", 100.0 * on_silicone);
+        let words = format!("{load:.1} N: {:.0} % of the wrap on silicone", 100.0 * on_silicone);
         area.draw(&Text::new(words, (text, y), style.clone()))?;
         let forces: Vec<String> = profile.pin_n.iter().map(|force| format!("{force:.1}")).collect();
-        for (i, row) in forces.chunks(FORCES_IN_A_LINE).enumerate() {
+        for (i, row) in forces.chunks(FORCES_PER_LINE).enumerate() {
             y += 17 * unit;
             let row = row.join(", ");
-            let words = if i == 0 { format!("on pins {row}") } else { row };
-            let words = if (i + 1) * FORCES_IN_A_LINE >= forces.len() { format!("{words} N") } else { words };
+            let words = if i == 0 { format!("pins: {row}") } else { row };
+            let words = if (i + 1) * FORCES_PER_LINE >= forces.len() { format!("{words} N") } else { words };
             area.draw(&Text::new(words, (text, y), style.color(colour)))?;
         }
     }
@@ -118,7 +119,7 @@ mod tests {
     use pinswitch_friction::{Contact, Direction, PinPattern, Substrate, published};
 
     #[test]
-    fn no_word_of_the_legend_lies_on_the_figure() {
+    fn the_legend_is_outside_of_the_plot() {
         let pins = PinPattern::even(3, 0.3);
         let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
         let profiles = [10.0, 40.0].map(|n| (n, contact_profile(&contact, n, Direction::Eccentric).unwrap()));
@@ -129,7 +130,7 @@ mod tests {
             let tag = &svg[svg[..end].rfind("<text").unwrap()..end];
             tag.split("x=\"").nth(1).and_then(|x| x.split('"').next()).unwrap().parse().unwrap()
         };
-        for words in ["silicone that the", "40.0 N: ", "on pins"] {
+        for words in ["silicone in reach", "40.0 N: ", "pins: "] {
             assert!(x_of(words) > edge, "{words} at {} of {edge}", x_of(words));
         }
     }

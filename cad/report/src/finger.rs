@@ -1,4 +1,5 @@
-//! What a switch buys a finger, as one figure: force difference over load and over the joint, beside the human finger.
+//! The figure of a finger with a switch: force difference over load and over the joint angle,
+//! compared with the human finger.
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -18,9 +19,9 @@ const PANELS: (u32, u32) = (960, 400);
 const ROW: u8 = 21;
 /// Columns of the legend.
 const COLUMNS: usize = 3;
-/// Letters of a name that fit into a column of the legend.
+/// Most letters of a name in the legend.
 const NAME_LETTERS: usize = 30;
-/// Okabe and Ito's palette, which colour-blind readers can tell apart; again from the first.
+/// Okabe and Ito's palette, distinct for colour-blind readers; repeated.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -29,10 +30,10 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(204, 121, 167),
     RGBColor(86, 180, 233),
 ];
-/// Dash and gap in pixels, so that lines differ without colour too; no gap is a full line.
+/// Dash and gap in pixels, so that lines also differ without colour; a line without a gap is solid.
 const DASHES: [(u8, u8); 4] = [(1, 0), (9, 4), (4, 3), (12, 2)];
 const HUMAN: RGBColor = RGBColor(230, 159, 0);
-/// Share of a colour in its band.
+/// Opacity of a band.
 const BAND: f64 = 0.13;
 /// Ticks of the second axis: extra holding in percent.
 const EXTRA_TICKS: [f64; 8] = [0.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0];
@@ -46,19 +47,20 @@ type Failed = Box<dyn std::error::Error>;
 pub struct FingerLayout<'a> {
     /// Its name in the legend.
     pub name: &'a str,
-    /// Wrap of the curve over load, degrees.
+    /// Wrap angle of the curve over load, degrees.
     pub wrap_deg: f64,
     /// Gains over load.
     pub over_load: &'a [FingerPoint],
-    /// What was measured of it.
+    /// Measured gains.
     pub measured: &'a [MeasuredGain],
-    /// Gains over the joint; the last one, at the heaviest load, with its band.
+    /// Gains over the joint angle, by ascending load; only the last one is drawn with its band.
     pub over_joint: &'a [JointCurve],
-    /// The flexion at which the measured points stand, degrees.
+    /// Flexion of the measured points, degrees.
     pub measured_joint_deg: Option<f64>,
 }
 
-/// Draws the force differences of `layouts` as a self-contained SVG of two panels: over load and over the joint.
+/// Draws the force differences of `layouts` as a self-contained SVG of two panels: over load and
+/// over the joint angle.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
@@ -83,8 +85,8 @@ fn draw(
     let (left, right) = panels.split_horizontally(PANELS.0 * fine::<u32>(1) * 47 / 100);
     let heaviest_n = layouts.iter().filter_map(|l| l.over_load.last()).map(|p| p.load_n).fold(0.0, f64::max);
     let joints = || layouts.iter().flat_map(|l| l.over_joint).flat_map(|c| &c.points);
-    let farthest_deg = joints().map(|p| p.joint_deg).fold(0.0, f64::max);
-    let nearest_deg = joints().map(|p| p.joint_deg).fold(farthest_deg, f64::min);
+    let max_deg = joints().map(|p| p.joint_deg).fold(0.0, f64::max);
+    let min_deg = joints().map(|p| p.joint_deg).fold(max_deg, f64::min);
     let top = top(layouts);
     let over_load = Panel {
         title: format!("(a)  over load{}", common("wrap", "deg", layouts.iter().map(|l| l.wrap_deg), 2)),
@@ -106,9 +108,9 @@ fn draw(
     })?;
     let joint_loads = layouts.iter().filter_map(|l| l.over_joint.last()).map(|c| c.load_n);
     let over_joint = Panel {
-        title: format!("(b)  over the joint{}", common("load", "N", joint_loads, 1)),
+        title: format!("(b)  over the joint angle{}", common("load", "N", joint_loads, 1)),
         x_title: "flexion of the joint (deg)",
-        x: (nearest_deg, farthest_deg.max(nearest_deg + 1.0)),
+        x: (min_deg, max_deg.max(min_deg + 1.0)),
         top,
         second_axis: true,
     };
@@ -129,7 +131,7 @@ fn draw(
                 marker(chart, index, (joint_deg, 100.0 * measured.force_difference))?;
             }
         }
-        if (nearest_deg..=farthest_deg).contains(&HUMAN_PEAK_JOINT_DEG) {
+        if (min_deg..=max_deg).contains(&HUMAN_PEAK_JOINT_DEG) {
             let at = (HUMAN_PEAK_JOINT_DEG, 100.0 * HUMAN_PEAK_DIFFERENCE);
             chart.draw_series([TriangleMarker::new(at, fine::<i32>(7), BLACK.filled())])?;
         }
@@ -140,15 +142,15 @@ fn draw(
     Ok(())
 }
 
-/// `, wrap 63.89 deg` if all layouts have the same; nothing otherwise.
+/// Returns `, wrap 63.89 deg` if all layouts have the same value, or else nothing.
 fn common(what: &str, unit: &str, values: impl Iterator<Item = f64>, digits: usize) -> String {
     let mut texts: Vec<String> = values.map(|v| format!(", {what} {v:.digits$} {unit}")).collect();
     texts.dedup();
     if texts.len() == 1 { texts.remove(0) } else { String::new() }
 }
 
-/// Top of both panels in percent: what the lines and the measured points reach, and a little of the bands above. The band
-/// of a guess would otherwise press all lines to the ground.
+/// Top of both panels in percent: 15 % above the lines and the measured points. Wide bands are cut,
+/// so that the lines remain distinct.
 fn top(layouts: &[FingerLayout<'_>]) -> f64 {
     let over_load = layouts.iter().flat_map(|l| l.over_load).map(|p| p.force_difference.value);
     let over_joint = layouts
@@ -161,7 +163,7 @@ fn top(layouts: &[FingerLayout<'_>]) -> f64 {
     drawable(0.0, 115.0 * highest).end
 }
 
-/// One panel: its axes, the human strip, and what is drawn into it.
+/// One panel with its axes and the range of the human finger.
 struct Panel {
     title: String,
     x_title: &'static str,
@@ -209,7 +211,8 @@ impl Panel {
     }
 }
 
-/// The extra holding that belongs to each force difference, at the right: `d = 2 sinh(ln(1 + e))`.
+/// Draws the axis of extra holding `e` on the right; the force difference is `d = 2 sinh(ln(1 +
+/// e))`.
 fn second_axis(area: &Area<'_>, chart: &Chart<'_, '_>, right: f64, top: f64) -> Result<(), Failed> {
     let corner = area.get_base_pixel();
     let at = |difference_pct: f64| {
@@ -236,14 +239,14 @@ fn second_axis(area: &Area<'_>, chart: &Chart<'_, '_>, right: f64, top: f64) -> 
     Ok(())
 }
 
-/// Points of a line: where, and the share with its band.
+/// Points of a line: coordinate, and gain with its band.
 type Points = Vec<(f64, Gain)>;
 
 fn percent(share: f64, top: f64) -> f64 {
     (100.0 * share).min(top)
 }
 
-/// The bands of all layouts, then their lines: a band over a line would change its colour.
+/// Draws the bands of all layouts, then their lines: a band over a line would change its colour.
 fn curves(chart: &mut Chart<'_, '_>, layouts: &[Points], top: f64) -> Result<(), Failed> {
     for (index, points) in layouts.iter().enumerate().filter(|(_, points)| points.len() > 1) {
         let upper = points.iter().map(|(x, gain)| (*x, percent(gain.high, top)));
@@ -254,7 +257,7 @@ fn curves(chart: &mut Chart<'_, '_>, layouts: &[Points], top: f64) -> Result<(),
     layouts.iter().enumerate().try_for_each(|(index, points)| line(chart, index, points, top, 2))
 }
 
-/// One line, `width` pixels wide.
+/// Draws one line, `width` pixels wide.
 fn line(chart: &mut Chart<'_, '_>, index: usize, points: &Points, top: f64, width: u8) -> Result<(), Failed> {
     let line = points.iter().map(|(x, gain)| (*x, percent(gain.value, top)));
     let style = COLOURS[index % COLOURS.len()].stroke_width(fine(width));
@@ -267,15 +270,15 @@ fn line(chart: &mut Chart<'_, '_>, index: usize, points: &Points, top: f64, widt
     Ok(())
 }
 
-/// A measured point, in the colour of its line.
+/// Draws a measured point in the colour of its line.
 fn marker(chart: &mut Chart<'_, '_>, index: usize, at: (f64, f64)) -> Result<(), Failed> {
     chart.draw_series([Circle::new(at, fine::<i32>(5), COLOURS[index % COLOURS.len()].filled())])?;
     chart.draw_series([Circle::new(at, fine::<i32>(5), BLACK.stroke_width(fine(1)))])?;
     Ok(())
 }
 
-/// What an entry of the legend shows.
-enum Sign {
+/// Sample of an entry of the legend.
+enum Sample {
     /// The line of a layout.
     Line(usize),
     /// The thin line of a light load.
@@ -287,12 +290,12 @@ enum Sign {
 }
 
 struct Entry {
-    sign: Sign,
+    sample: Sample,
     text: String,
 }
 
 fn legend_entries(layouts: &[FingerLayout<'_>]) -> Vec<Entry> {
-    let entry = |sign, text: String| Entry { sign, text };
+    let entry = |sample, text: String| Entry { sample, text };
     let mut entries: Vec<Entry> = layouts
         .iter()
         .enumerate()
@@ -301,23 +304,25 @@ fn legend_entries(layouts: &[FingerLayout<'_>]) -> Vec<Entry> {
             if text.len() < layout.name.len() {
                 text.push('…');
             }
-            entry(Sign::Line(index), text)
+            entry(Sample::Line(index), text)
         })
         .collect();
-    entries.push(entry(Sign::Band, "band of each line".to_owned()));
+    entries.push(entry(Sample::Band, "95 % band of each line".to_owned()));
     let light = layouts.iter().filter(|l| l.over_joint.len() > 1).find_map(|l| l.over_joint.first());
     if let Some(light) = light {
-        entries.push(entry(Sign::Thin, format!("thin, in (b): at {:.1} N", light.load_n)));
+        entries.push(entry(Sample::Thin, format!("thin lines in (b): at {:.1} N", light.load_n)));
     }
     if layouts.iter().any(|l| !l.measured.is_empty()) {
-        entries
-            .push(entry(Sign::Measured, format!("measured maximum, wrap {} deg", published::WRAP_ANGLE_DEG)));
+        entries.push(entry(
+            Sample::Measured,
+            format!("measured maximum, wrap {} deg", published::WRAP_ANGLE_DEG),
+        ));
     }
     let percent = |share: f64| format!("{:.0}", 100.0 * share);
     let (low, high) = HUMAN_FORCE_DIFFERENCE;
-    entries.push(entry(Sign::HumanStrip, format!("human finger, {} to {} %", percent(low), percent(high))));
+    entries.push(entry(Sample::HumanStrip, format!("human finger, {} to {} %", percent(low), percent(high))));
     entries.push(entry(
-        Sign::HumanPeak,
+        Sample::HumanPeak,
         format!("human maximum, {} % at {HUMAN_PEAK_JOINT_DEG:.0} deg", percent(HUMAN_PEAK_DIFFERENCE)),
     ));
     entries
@@ -337,8 +342,8 @@ fn draw_legend(area: &Area<'_>, entries: &[Entry]) -> Result<(), Failed> {
         );
         let (end, half) = (x + fine::<i32>(34), fine::<i32>(5));
         let middle = (i32::midpoint(x, end), y);
-        match entry.sign {
-            Sign::Line(index) => {
+        match entry.sample {
+            Sample::Line(index) => {
                 let style = COLOURS[index % COLOURS.len()].stroke_width(fine(2));
                 let (dash, gap) = DASHES[index % DASHES.len()];
                 let step = if gap == 0 { end - x } else { fine::<i32>(dash) + fine::<i32>(gap) };
@@ -349,21 +354,21 @@ fn draw_legend(area: &Area<'_>, entries: &[Entry]) -> Result<(), Failed> {
                     from += step;
                 }
             }
-            Sign::Thin => {
+            Sample::Thin => {
                 area.draw(&PathElement::new([(x, y), (end, y)], BLACK.mix(0.7).stroke_width(fine(1))))?;
             }
-            Sign::Band => {
+            Sample::Band => {
                 let colour = COLOURS[0].mix(2.0 * BAND);
                 area.draw(&Rectangle::new([(x, y - half), (end, y + half)], colour.filled()))?;
             }
-            Sign::Measured => {
+            Sample::Measured => {
                 area.draw(&Circle::new(middle, half, WHITE.filled()))?;
                 area.draw(&Circle::new(middle, half, black))?;
             }
-            Sign::HumanStrip => {
+            Sample::HumanStrip => {
                 area.draw(&Rectangle::new([(x, y - half), (end, y + half)], HUMAN.mix(0.45).filled()))?;
             }
-            Sign::HumanPeak => {
+            Sample::HumanPeak => {
                 area.draw(&TriangleMarker::new(middle, fine::<i32>(7), BLACK.filled()))?;
             }
         }

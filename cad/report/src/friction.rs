@@ -1,4 +1,5 @@
-//! The friction curve as a figure: curve and band, the limits of both materials, and what the paper measured.
+//! The figure of a friction curve: curve and band, limits of both materials, and the paper's
+//! measurements.
 
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -7,11 +8,12 @@ use pinswitch_friction::{
     Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points,
 };
 
+use super::PlotError;
 use super::legend::{Legend, Measures};
 use super::scale::{drawn_size, fine, shown_at_size};
 use super::text_size::Svg;
 
-/// A piece of a dashed line in the legend.
+/// Sample of a dashed line in the legend.
 type DashedSample = DashedPathElement<std::vec::IntoIter<(i32, i32)>, u32>;
 
 /// Width and height of the figure in pixels.
@@ -19,7 +21,7 @@ const SIZE: (u32, u32) = (760, 480);
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
-/// Lines of other laws, in the order of [`Law::predictive`], again from the first.
+/// Colours of other laws in the order of [`Law::predictive`], repeated.
 const OTHERS: [RGBColor; 3] = [RGBColor(0, 120, 90), RGBColor(140, 60, 150), RGBColor(190, 20, 60)];
 /// Pixels of dash and gap of a limit line, and of a published onset.
 const LIMIT_DASHES: [u8; 2] = [6, 4];
@@ -27,19 +29,8 @@ const ONSET_DASHES: [u8; 2] = [2, 3];
 /// Points of a limit line.
 const LIMIT_POINTS: u32 = 60;
 
-/// The figure cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-#[error("the friction plot cannot be drawn: {0}")]
-pub struct PlotError(String);
-
-impl PlotError {
-    /// The error of the drawing library.
-    pub fn new(error: &dyn std::error::Error) -> Self {
-        Self(error.to_string())
-    }
-}
-
-/// Draws `curve` for `contact` with its band as a self-contained SVG titled `name`, the `others` beside it as thin lines.
+/// Draws `curve` of `contact` with its band as a self-contained SVG titled `name`, and the curves
+/// of other laws as thin lines.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
@@ -93,7 +84,7 @@ fn draw(
     let lower = curve.load_n.iter().copied().zip(curve.band_low_n.iter().copied());
     let band: Vec<_> = upper.chain(lower.rev()).collect();
     chart.draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?;
-    legend.line(format!("band ({})", trust_label(curve.trust)), |(x, y)| {
+    legend.line(format!("95 % band ({})", trust_label(curve.trust)), |(x, y)| {
         Rectangle::new(
             [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
             CURVE.mix(0.18).filled(),
@@ -155,7 +146,7 @@ fn dashed(
     DashedLineSeries::new(line, fine::<u32>(dash), fine::<u32>(gap), colour.stroke_width(fine(1)))
 }
 
-/// The same dashes for the legend.
+/// A dashed line of the legend.
 fn dashed_sample((x, y): (i32, i32), [dash, gap]: [u8; 2], colour: RGBColor) -> DashedSample {
     let ends = vec![(x, y), (x + fine::<i32>(22), y)];
     DashedPathElement::new(ends, fine::<u32>(dash), fine::<u32>(gap), colour.stroke_width(fine(1)))
@@ -165,7 +156,7 @@ fn trust_label(trust: Trust) -> &'static str {
     match trust {
         Trust::Published => "published layout",
         Trust::Interpolated => "interpolated",
-        Trust::Extrapolated => "extrapolated: a guess",
+        Trust::Extrapolated => "extrapolated",
     }
 }
 
@@ -180,9 +171,9 @@ mod tests {
         friction_svg("mine", contact, &curve, &[]).unwrap()
     }
 
-    /// The words stand for numbers of the paper: on anything that the paper did not measure they would be a lie.
+    /// Contacts that differ from the paper's in one property have no published measurements.
     #[test]
-    fn nothing_is_called_published_that_the_paper_did_not_measure() {
+    fn only_measured_contacts_are_called_published() {
         let layout = &published::LAYOUTS[1];
         let even = |pitch| PinPattern::even(layout.pins, pitch);
         let of = |substrate, pins, wrap| Contact::new(substrate, pins, wrap).unwrap();
@@ -204,7 +195,7 @@ mod tests {
         for (nth, contact) in others.iter().enumerate() {
             assert!(!drawn(contact).contains("published"), "contact {nth} of {}", others.len());
         }
-        // Pins on ABS switch nothing: there is a maximum, and no onset.
+        // Pins on ABS do not switch: they have a maximum and no onset.
         let abs = drawn(&of(Substrate::Abs, even(pitch), wrap));
         assert!(abs.contains("published maximum") && !abs.contains("published onset"), "{abs}");
     }

@@ -1,4 +1,4 @@
-//! What every page needs that is written: text that stays text, templates filled once, and what a browser may load.
+//! Parts of HTML pages: escapes, templates, and the Content-Security-Policy.
 
 use std::borrow::Cow;
 
@@ -8,11 +8,11 @@ use sha2::{Digest, Sha256};
 
 pub use pinswitch_drafting::escape;
 
-/// JSON that can stand in a script element: it holds no `<`, so that neither an end tag nor `<!--<script>`, after which a
-/// browser does not look for the end tag, can occur.
+/// Escapes JSON for a script element. Without `<` it contains neither an end tag nor
+/// `<!--<script>`, after which a browser ignores the end tag.
 #[must_use]
 pub fn json_in_script(json: &str) -> String {
-    // Within JSON these characters stand in strings only, where an escape means the same.
+    // JSON has these characters in strings only, where an escape is equivalent.
     json.replace('<', "\\u003c")
         .replace('>', "\\u003e")
         .replace('&', "\\u0026")
@@ -20,13 +20,14 @@ pub fn json_in_script(json: &str) -> String {
         .replace('\u{2029}', "\\u2029")
 }
 
-/// `template` with every `{{PLACE}}` filled in, in one pass: what is filled in is not searched for places again.
+/// Replaces every `{{NAME}}` in `template` by its content, in one pass: the content is not searched
+/// again. A name without content is kept.
 pub fn filled<'a>(template: &'a str, content: impl Fn(&str) -> Option<Cow<'a, str>>) -> String {
     let mut page = String::new();
     let mut rest = template;
     while let Some((before, after)) = rest.split_once("{{") {
         page.push_str(before);
-        match after.split_once("}}").and_then(|(place, after)| Some((content(place)?, after))) {
+        match after.split_once("}}").and_then(|(name, after)| Some((content(name)?, after))) {
             Some((text, after)) => {
                 page.push_str(&text);
                 rest = after;
@@ -40,8 +41,8 @@ pub fn filled<'a>(template: &'a str, content: impl Fn(&str) -> Option<Cow<'a, st
     page + rest
 }
 
-/// The Content-Security-Policy of a page whose script elements hold these texts and no others: nothing is loaded from
-/// elsewhere, and no script that came in with data would run.
+/// Returns the Content-Security-Policy of a page with these scripts: nothing is loaded from other
+/// hosts, and no other script runs.
 #[must_use]
 pub fn policy(scripts: &[&str]) -> String {
     let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script.as_bytes())));
@@ -58,8 +59,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_filled_in_is_not_filled_again() {
-        let content = |place: &str| match place {
+    fn content_is_not_filled_again() {
+        let content = |name: &str| match name {
             "A" => Some("{{B}}".into()),
             "B" => Some("b".into()),
             _ => None,
@@ -68,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_is_markup() {
+    fn escaped_text_has_no_markup() {
         assert_eq!(escape("<!--<script>'\"&"), "&lt;!--&lt;script&gt;&#39;&quot;&amp;");
         let json = r#"{"a":"<!--<script></script>]]>&"}"#;
         let safe = json_in_script(json);
@@ -78,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_scripts_that_are_named_may_run() {
+    fn only_named_scripts_are_allowed() {
         // `printf alert | openssl dgst -sha256 -binary | base64`
         let policy = policy(&["alert"]);
         assert!(policy.contains("script-src 'sha256-"), "{policy}");

@@ -1,7 +1,23 @@
-//! Figures of friction curves, layouts and calibrations, the page of a calibration, and technical drawings on paper.
+//! Figures of friction curves, layouts and calibrations, and the HTML pages of a calibration.
 //!
-//! It knows the friction model, what a calibration found, and paper; it knows no solids, and does no input or output: figures,
-//! pages and drawings are returned as text or bytes.
+//! The crate does no input or output and uses no solids: each function returns the text of an SVG
+//! or HTML file. Figures are the same bytes on every platform.
+//!
+//! | function | result |
+//! | --- | --- |
+//! | [`friction_svg`] | friction over load with band, limits, other laws and published measurements |
+//! | [`contact_svg`] | gap between tendon and silicone along the wrap |
+//! | [`finger_svg`] | force difference of a finger over load and joint angle |
+//! | [`pareto_svg`] | threshold and friction of searched layouts, with the Pareto front |
+//! | [`log_svg`] | a raw log with its plateaus |
+//! | [`plots`], [`page`] | figures and page of a [calibration](pinswitch_calibration::Calibration) |
+//! | [`published_plot`], [`published_page`] | figure and page of the calibration with the paper's seven maxima |
+//! | [`run_sheet`] | the runs of a proposed experiment, to print |
+//!
+//! [`html`] has the parts of pages that other crates share: templates, escapes and the
+//! Content-Security-Policy.
+//!
+//! # Examples
 //!
 //! ```
 //! use pinswitch_friction::{Contact, PinPattern, Substrate, other_laws, predict, published};
@@ -16,6 +32,24 @@
 //! assert!(svg.starts_with("<svg") && svg.contains("four pins"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Layouts of a search, with the front of the target region:
+//!
+//! ```
+//! use pinswitch_friction::layout_search::LayoutCandidate;
+//! use pinswitch_report::{TargetRegion, pareto_svg};
+//!
+//! let layout = |threshold_n: f64, friction_n| LayoutCandidate {
+//!     pins: vec![5, 8],
+//!     threshold_n: Some(threshold_n),
+//!     friction_n,
+//! };
+//! let layouts = [layout(10.0, 5.0), layout(20.0, 4.0)];
+//! let region = TargetRegion { threshold_n: (15.0, f64::INFINITY), friction_n: (0.0, 6.0) };
+//! let svg = pareto_svg(&layouts, &layouts[1..], Some(region))?;
+//! assert!(svg.contains("higher threshold, less friction"));
+//! # Ok::<(), pinswitch_report::PlotError>(())
+//! ```
 
 #![warn(clippy::disallowed_methods)]
 
@@ -24,23 +58,25 @@ mod calibration_page;
 mod contact;
 mod finger;
 mod friction;
-mod front;
 pub mod html;
 mod legend;
 mod log;
 mod pareto;
+mod pareto_front;
+mod plot_error;
 mod published_page;
 mod run_sheet;
 mod scale;
 mod text_size;
 
-pub use calibration::{Plot, PlotFailure, plots};
+pub use calibration::{Plot, plots};
 pub use calibration_page::page;
 pub use contact::contact_svg;
 pub use finger::{FingerLayout, finger_svg};
-pub use friction::{PlotError, friction_svg};
+pub use friction::friction_svg;
 pub use log::log_svg;
-pub use pareto::{AskedRegion, pareto_svg};
+pub use pareto::{TargetRegion, pareto_svg};
+pub use plot_error::PlotError;
 pub use published_page::{UNEXPLAINED, published_page, published_plot};
 pub use run_sheet::run_sheet;
 pub use scale::{drawable, drawn_size, fine, shown_at_size};

@@ -1,37 +1,37 @@
-//! A raw log with its plateaus marked.
+//! The figure of a raw log with its plateaus.
 
 use std::error::Error;
 
 use pinswitch_calibration::segmentation::{Log, Segmented};
 use plotters::prelude::*;
 
-use super::PlotFailure;
+use super::PlotError;
 use super::scale::drawable;
 
 /// Width and height in pixels.
 const SIZE: (u32, u32) = (1100, 360);
-/// Points of the curve at most: lowest and highest sample of each stretch.
-const STRETCHES: usize = 900;
+/// Most sections of the curve; each shows its lowest and its highest sample.
+const MAX_SECTIONS: usize = 900;
 
-/// The log as an SVG: the force, and a mark at each plateau.
+/// Draws a log as an SVG titled `name`: force over time, with a mark at each plateau.
 ///
 /// # Errors
-/// [`PlotFailure`] if the drawing library refuses a coordinate.
-pub fn log_svg(name: &str, log: &Log, found: &Segmented) -> Result<String, PlotFailure> {
+/// [`PlotError`] if the drawing library refuses a coordinate.
+pub fn log_svg(name: &str, log: &Log, segmented: &Segmented) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, name, log, found).map_err(|e| PlotFailure(e.to_string()))?;
+    draw(&mut svg, name, log, segmented).map_err(|e| PlotError::new(&*e))?;
     Ok(svg)
 }
 
-fn draw(svg: &mut String, name: &str, log: &Log, found: &Segmented) -> Result<(), Box<dyn Error>> {
+fn draw(svg: &mut String, name: &str, log: &Log, segmented: &Segmented) -> Result<(), Box<dyn Error>> {
     let mut line = Vec::new();
-    let stretch = log.time_s.len().div_ceil(STRETCHES).max(1);
-    for (t, f) in log.time_s.chunks(stretch).zip(log.force_n.chunks(stretch)) {
+    let section = log.time_s.len().div_ceil(MAX_SECTIONS).max(1);
+    for (t, f) in log.time_s.chunks(section).zip(log.force_n.chunks(section)) {
         let low = f.iter().copied().fold(f64::INFINITY, f64::min);
         let high = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         line.extend([(t[0], low), (t[0], high)]);
     }
-    let plateaus: Vec<f64> = found.plateaus.iter().map(|p| p.force_n).collect();
+    let plateaus: Vec<f64> = segmented.plateaus.iter().map(|p| p.force_n).collect();
     let least = plateaus.iter().copied().fold(f64::INFINITY, f64::min).min(1e6);
     let most = plateaus.iter().copied().fold(f64::NEG_INFINITY, f64::max).max(-1e6);
     let pad = 0.25 * (most - least).abs().max(0.5);
@@ -46,7 +46,7 @@ fn draw(svg: &mut String, name: &str, log: &Log, found: &Segmented) -> Result<()
         .build_cartesian_2d(drawable(0.0, end), drawable(least - pad, most + pad))?;
     chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("time (s)").y_desc("force (N)").draw()?;
     chart.draw_series(LineSeries::new(line, RGBColor(150, 150, 150).stroke_width(1)))?;
-    chart.draw_series(found.plateaus.iter().map(|p| {
+    chart.draw_series(segmented.plateaus.iter().map(|p| {
         let colour = if p.direction.sign() > 0.0 { RGBColor(190, 80, 20) } else { RGBColor(0, 90, 156) };
         Circle::new((p.time_s, p.force_n), 3, colour.filled())
     }))?;

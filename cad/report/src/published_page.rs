@@ -1,4 +1,5 @@
-//! The page of the loop on the paper's own numbers: seven maxima, what explains them, what stays unexplained.
+//! The page of the calibration with the paper's seven maxima: candidate explanations, and what they
+//! leave open.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -6,21 +7,22 @@ use std::fmt::Write;
 use pinswitch_calibration::Explanation;
 use plotters::prelude::*;
 
-use super::calibration::{AFTER, BEFORE};
+use super::calibration::{AUGMENTED, BASELINE};
 use super::calibration_page::head;
 use super::html::escape;
-use super::{Plot, PlotFailure};
+use super::{Plot, PlotError};
 
 /// Width and height of the figure in pixels.
 const SIZE: (u32, u32) = (900, 380);
 
-/// Relative errors of the seven maxima: the paper's model as printed, refitted, and the best explanation.
+/// Draws relative errors of the seven maxima: the paper's model as printed, refitted, and with the
+/// best effect.
 ///
 /// # Errors
-/// [`PlotFailure`] if the drawing library refuses a coordinate.
-pub fn published_plot(all: &[Explanation]) -> Result<Plot, PlotFailure> {
+/// [`PlotError`] if the drawing library refuses a coordinate.
+pub fn published_plot(all: &[Explanation]) -> Result<Plot, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, all).map_err(|e| PlotFailure(e.to_string()))?;
+    draw(&mut svg, all).map_err(|e| PlotError::new(&*e))?;
     Ok(Plot {
         file: "maxima.svg".to_owned(),
         caption: "Relative error of each published maximum".to_owned(),
@@ -31,8 +33,8 @@ pub fn published_plot(all: &[Explanation]) -> Result<Plot, PlotFailure> {
 fn draw(svg: &mut String, all: &[Explanation]) -> Result<(), Box<dyn Error>> {
     let shown: Vec<(&Explanation, RGBColor)> = [
         (all.iter().find(|e| e.id == "as printed"), RGBColor(150, 150, 150)),
-        (all.iter().find(|e| e.id == "refitted"), BEFORE),
-        (all.iter().find(|e| !["as printed", "refitted"].contains(&e.id)), AFTER),
+        (all.iter().find(|e| e.id == "refitted"), BASELINE),
+        (all.iter().find(|e| !["as printed", "refitted"].contains(&e.id)), AUGMENTED),
     ]
     .into_iter()
     .filter_map(|(e, colour)| e.map(|e| (e, colour)))
@@ -82,36 +84,39 @@ fn draw(svg: &mut String, all: &[Explanation]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What seven maxima at one load cannot tell, whatever explains them (model/doc/physics.md).
+/// Questions that seven maxima at one load leave open, whatever the explanation
+/// (model/doc/physics.md).
 pub const UNEXPLAINED: [&str; 5] = [
-    "All seven lie at the heaviest load: how friction grows with load is not in them, so a coating that stiffens is the \
-     refitted constant again, and the ploughing exponent 1/2 in load rests on its form alone",
-    "On the device three-double and three-single differ (published 9.67 and 8.50 N): the published thresholds of eq. 4 make \
-     that difference here, they are not derived; a string over sinking pins gives both the same",
-    "The thresholds need one common factor; why, and why the pitch trend is what it is, is open: the tendon's path outside the \
-     pins, 14 to 20 degrees a side with three pins, is never described",
-    "Only half the gap of the two directions is published: errors of load, cell and direction cancel in it and are invisible",
-    "Three constants are fitted to seven numbers, and a layout left out leaves five: the left-out error is the one to trust",
+    "All seven maxima are at the heaviest load and do not show how friction grows with load: a stiffening coating equals the \
+     refitted constant, and the exponent 1/2 of ploughing in load is an assumption",
+    "On the device, three-double and three-single differ (published 9.67 and 8.50 N). Here the published thresholds of eq. 4 \
+     make the difference; they are not derived. A string over sinking pins gives both layouts the same friction",
+    "The thresholds need a common factor. Its reason, and the reason for the trend with the pitch, are open: the paper does not \
+     describe the path of the tendon outside the pins, 14 to 20 degrees on each side of three pins",
+    "Only half the difference between the directions is published. Errors of load, load cell and direction cancel in it and are \
+     invisible",
+    "Three constants are fitted to seven numbers, and leaving a layout out leaves five: the leave-one-layout-out error is the \
+     reliable one",
 ];
 
-/// An error in percent, a dash where there is none.
+/// Formats an error in percent; a dash if there is none.
 fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |value| format!("{value:.1} %"))
 }
 
-/// The page.
+/// Returns the page.
 pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
-    let mut html = head("Calibration on the published maxima");
-    html.push_str("<h1>The paper's seven maxima: what its model misses</h1>\n");
+    let mut html = head("Calibration with the published maxima");
+    html.push_str("<h1>The paper's seven maxima: effects that its model lacks</h1>\n");
     let printed = all.iter().find(|e| e.id == "as printed");
     let refitted = all.iter().find(|e| e.id == "refitted");
     let best = all.iter().find(|e| !["as printed", "refitted"].contains(&e.id));
     if let (Some(printed), Some(refitted), Some(best)) = (printed, refitted, best) {
         let _ = writeln!(
             html,
-            "<p class=\"verdict\">The paper's model lacks: {}.<br>Root mean square relative error on its seven maxima: {:.1} % as printed, \
-             <b class=\"b\">{:.1} %</b> with its constants refitted, <b class=\"a\">{:.1} %</b> with the effect.<br>\
-             Each layout with nothing of it given, its threshold neither: <b class=\"b\">{}</b> before, <b class=\"a\">{}</b> after.</p>",
+            "<p class=\"verdict\">The paper's model lacks: {}.<br>Root mean square relative error of its seven maxima: {:.1} % as printed, \
+             <b class=\"b\">{:.1} %</b> with refitted constants, <b class=\"a\">{:.1} %</b> with the effect.<br>\
+             Leave-one-layout-out, without the layout's threshold: <b class=\"b\">{}</b> without the effect, <b class=\"a\">{}</b> with it.</p>",
             escape(best.id),
             printed.rms_pct,
             refitted.rms_pct,
@@ -120,7 +125,7 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
             percent(best.left_out_rms_pct)
         );
     }
-    html.push_str("<h2>1. Where it misses</h2>\n");
+    html.push_str("<h2>1. Errors of the models</h2>\n");
     let _ = writeln!(
         html,
         "<figure class=\"plot\">{}<figcaption>{}</figcaption></figure>",
@@ -143,14 +148,16 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
         }
         html.push_str("</tr>\n");
     }
-    html.push_str("</table>\n<h2>2. The candidates</h2><table><tr><th>explanation</th><th>in sample</th><th>layout left out</th><th>constants</th><th>decision</th></tr>\n");
+    html.push_str("</table>\n<h2>2. Candidates</h2><table><tr><th>explanation</th><th>in-sample error</th><th>leave-one-layout-out error</th><th>constants</th><th>decision</th></tr>\n");
     for e in all {
         let constants: Vec<String> = e.constants.iter().map(|(n, v)| format!("{n} = {v:.4}")).collect();
         let (class, decision) = match e.id {
-            "as printed" | "refitted" => ("", "the baseline"),
-            id if best.is_some_and(|b| b.id == id) => ("kept", "kept: lowest error on layouts left out"),
-            "coating_stiffening" => ("", "dropped: at one load it is the refitted constant again"),
-            _ => ("", "dropped: explains less, and less on layouts left out"),
+            "as printed" | "refitted" => ("", "baseline"),
+            id if best.is_some_and(|b| b.id == id) => {
+                ("selected", "selected: lowest leave-one-layout-out error")
+            }
+            "coating_stiffening" => ("", "rejected: equals the refitted constant at one load"),
+            _ => ("", "rejected: larger errors, in sample and leave-one-layout-out"),
         };
         let _ = writeln!(
             html,
@@ -161,13 +168,14 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
             escape(&constants.join(", "))
         );
     }
-    html.push_str("</table>\n<h2>3. What stays unexplained</h2><ul>\n");
+    html.push_str("</table>\n<h2>3. Open questions</h2><ul>\n");
     for text in UNEXPLAINED {
         let _ = writeln!(html, "<li>{}.</li>", escape(text));
     }
     html.push_str(
-        "</ul>\n<h2>4. The experiment that would settle it</h2><p>The three layouts on the rigid proxy at eleven loads, both directions \
-         kept: ploughing predicts friction that grows as F<sup>1.5</sup> and with the sum of theta<sup>1.5</sup>, one constant for all.</p>\n\
+        "</ul>\n<h2>4. Experiment that would decide</h2><p>Measure the three layouts on the rigid proxy at eleven loads, and record \
+         both directions. Ploughing predicts friction that grows with F<sup>1.5</sup> and with the sum of theta<sup>1.5</sup>, with one \
+         constant for all layouts.</p>\n\
          </body></html>\n",
     );
     html

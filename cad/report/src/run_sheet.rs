@@ -1,4 +1,4 @@
-//! `run-sheet.html`: the runs of a proposed experiment, to print and to take to the rig.
+//! `run-sheet.html`: the runs of a proposed experiment, to print for use at the rig.
 
 use std::fmt::Write;
 
@@ -9,21 +9,21 @@ use pinswitch_friction::published;
 use super::calibration_page::head;
 use super::html::escape;
 
-/// The sheet; `source` names the calibration that it continues.
+/// Returns the sheet; `source` is the name of the calibration that it continues.
 pub fn run_sheet(source: &str, proposal: &Proposal) -> String {
     let mut html = head("Run sheet");
     html.push_str(STYLE);
     let _ = write!(
         html,
-        "<h1>Next runs after {}</h1>\n<p>{} runs, about {:.0} minutes. Make them in this order: it is part of the \
-         experiment. Save each log or its plateaus under the number of its run.</p>\n",
+        "<h1>Next runs after {}</h1>\n<p>{} runs, about {:.0} minutes. Keep this order: it is part of the \
+         experiment. Save each log, or its plateaus, under the number of its run.</p>\n",
         escape(source),
         proposal.runs.len(),
         proposal.minutes
     );
     html.push_str(&questions(proposal));
     if proposal.runs.is_empty() {
-        html.push_str("<p>There is nothing to run.</p>\n");
+        html.push_str("<p>No runs are proposed.</p>\n");
     } else {
         html.push_str(&runs(&proposal.runs));
         html.push_str(NOTES);
@@ -38,17 +38,17 @@ td.done { width: 2.2em } td.done::before { content: '\\2610' } .mount td { backg
 @media print { table { font-size: 9pt } tr { break-inside: avoid } h1 { margin-top: 0 } }
 </style>\n";
 
-const NOTES: &str = "<h2>To write down</h2>
+const NOTES: &str = "<h2>To record</h2>
 <ul>
-<li>Date, room temperature, operator, which printed part and which tendon: _______________________________</li>
+<li>Date, room temperature, operator, printed part, tendon: _______________________________</li>
 <li>Zero of the load cell before the first run and after the last: ____________ N, ____________ N</li>
-<li>Every time the switch was taken off and put back; a run that was repeated; whatever went otherwise than planned.</li>
+<li>Each removal and refitting of the switch, each repeated run, each deviation from the plan.</li>
 </ul>
-<p>Then: <code>pinswitch calibrate FIRST.csv SECOND.csv --plan PLAN --out DIR</code>, with the plateau table of before, that of
-these runs, and the folder that this sheet lies in.</p>\n";
+<p>Then run <code>pinswitch calibrate FIRST.csv SECOND.csv --plan PLAN --out DIR</code> with the earlier plateau table, the
+table of these runs, and the folder of this sheet as PLAN.</p>\n";
 
 fn questions(proposal: &Proposal) -> String {
-    // Nothing is certain.
+    // Probabilities are estimates: 0 and 100 % are not shown.
     let percent = |p: f64| match p {
         p if p > 0.99 => "&gt; 99 %".to_owned(),
         p if p < 0.01 => "&lt; 1 %".to_owned(),
@@ -57,8 +57,8 @@ fn questions(proposal: &Proposal) -> String {
     let mut html = String::new();
     if !proposal.questions.is_empty() {
         html.push_str(
-            "<h2>What they settle</h2><table><tr><th>question</th><th>settled with these runs</th><th>with as many minutes \
-             of the paper's protocol</th></tr>\n",
+            "<h2>Questions</h2><table><tr><th>question</th><th>probability of an answer</th><th>with the same time for the \
+             paper's protocol</th></tr>\n",
         );
         for q in &proposal.questions {
             let [of, or] = q.between.each_ref().map(|id| escape(id));
@@ -72,7 +72,7 @@ fn questions(proposal: &Proposal) -> String {
         html.push_str("</table>\n");
     }
     if !proposal.unanswerable.is_empty() {
-        html.push_str("<h2>What no run on this rig settles</h2><ul>\n");
+        html.push_str("<h2>Questions that no run on this rig answers</h2><ul>\n");
         for u in &proposal.unanswerable {
             let [of, or] = u.between.each_ref().map(|id| escape(id));
             let _ = writeln!(html, "<li>{of} or {or}: {}</li>", escape(&u.why));
@@ -83,8 +83,8 @@ fn questions(proposal: &Proposal) -> String {
 }
 
 fn runs(runs: &[PlannedRun]) -> String {
-    let mut html = "<h2>The runs</h2><div class=\"wide\"><table class=\"runs\"><tr><th></th><th>run</th><th>weight</th><th>load</th><th>speed</th><th>dwell</th>\
-                    <th>repetitions ecc. + conc.</th><th>loads go</th><th>ends at</th><th>asks</th></tr>\n"
+    let mut html = "<h2>Runs</h2><div class=\"wide\"><table class=\"runs\"><tr><th></th><th>run</th><th>weight</th><th>load</th><th>speed</th><th>dwell</th>\
+                    <th>repetitions ecc. + conc.</th><th>load order</th><th>ends at</th><th>question</th></tr>\n"
         .to_owned();
     let (mut mount, mut minutes) = (0, 0.0);
     for (i, run) in runs.iter().enumerate() {
@@ -117,7 +117,7 @@ fn runs(runs: &[PlannedRun]) -> String {
     html
 }
 
-/// Minutes since the start as hours and minutes.
+/// Formats minutes as hours and minutes.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn clock(minutes: f64) -> String {
     let whole = minutes.round().clamp(0.0, 1e6) as u64;

@@ -1,32 +1,33 @@
-//! How large text is taken to be where a figure is laid out: the same on every platform.
+//! Estimated sizes of text, the same on every platform.
 //!
-//! A figure of vectors is drawn with whatever font its reader has, so that any size is a guess. plotters guesses from the
-//! number of bytes, but asks the document's canvas where it is compiled for a browser: there a worker has none, and the
-//! figure would be another one. The guess below is that of plotters, for all platforms.
+//! An SVG is drawn with the font of its reader, so that each size is an estimate. plotters
+//! estimates it from the number of bytes, but compiled for a browser it measures text on the
+//! document's canvas: a worker has none, and the figure would differ. The estimate here is that of
+//! plotters, for all platforms.
 
 use plotters::prelude::*;
 use plotters_backend::{BackendColor, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
-/// Sizes of fonts in plotters are larger than those that it writes.
-const WRITTEN: f64 = 1.24;
-/// Widths of letters, and how far they reach below their line, as shares of their height.
+/// Ratio of a font size in plotters to the size that it writes.
+const SIZE_RATIO: f64 = 1.24;
+/// Width of a letter and depth below the line, relative to the height.
 const WIDTH: f64 = 0.7;
 const BELOW: f64 = 0.24;
 
-/// Width and height of `text` in a font of this size, all in units of the drawing.
+/// Estimates width and height of `text` in a font of this size, all in units of the drawing.
 pub(crate) fn text_size(text: &str, size: f64) -> (i32, i32) {
-    let em = size / WRITTEN / WRITTEN;
+    let em = size / SIZE_RATIO / SIZE_RATIO;
     // A drawing has some ten thousand units.
     #[allow(clippy::cast_possible_truncation)]
     let whole = |length: f64| length.round() as i32;
     (whole(em * WIDTH * text.len() as f64), whole(em) + whole(em * BELOW))
 }
 
-/// Draws an SVG, and knows how large text is.
+/// An SVG backend with [`text_size`].
 pub(crate) struct Svg<'a>(SVGBackend<'a>);
 
 impl<'a> Svg<'a> {
-    /// A drawing of this size in its own units, written into `buffer`.
+    /// Creates a drawing of this size in units, written into `buffer`.
     pub(crate) fn with_string(buffer: &'a mut String, size: (u32, u32)) -> Self {
         Self(SVGBackend::with_string(buffer, size))
     }
@@ -122,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_as_large_as_plotters_takes_it_to_be() {
+    fn sizes_equal_those_of_plotters() {
         for (text, size) in [("", 12.0), ("load F (N)", 14.0), ("Größe, Ø 3 mm", 112.0), ("x", 19.5)] {
             let (width, height) = ("sans-serif", size).into_font().box_size(text).unwrap();
             let (own_width, own_height) = text_size(text, size);

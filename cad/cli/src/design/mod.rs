@@ -17,7 +17,7 @@ use crate::write::write_set;
 use flags::AskFlags;
 use pinswitch_app::CalibratedSwitch;
 use pinswitch_friction::published::GROOVES;
-use pinswitch_report::{AskedRegion, pareto_svg};
+use pinswitch_report::{TargetRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{
@@ -209,7 +209,7 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
 }
 
 /// What the ask says of threshold and friction at the heaviest load, if it says anything of either.
-fn asked_region(ask: &Ask, range_n: (f64, f64)) -> Option<AskedRegion> {
+fn asked_region(ask: &Ask, range_n: (f64, f64)) -> Option<TargetRegion> {
     let of = |is_it: &dyn Fn(Quantity) -> bool| {
         let intervals = ask.targets.iter().filter(|t| is_it(t.quantity)).map(|t| t.wish.interval());
         intervals.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))
@@ -221,7 +221,7 @@ fn asked_region(ask: &Ask, range_n: (f64, f64)) -> Option<AskedRegion> {
         _ => false,
     });
     let anything = (0.0, f64::INFINITY);
-    (threshold.is_some() || friction.is_some()).then(|| AskedRegion {
+    (threshold.is_some() || friction.is_some()).then(|| TargetRegion {
         threshold_n: threshold.unwrap_or(anything),
         friction_n: friction.unwrap_or(anything),
     })

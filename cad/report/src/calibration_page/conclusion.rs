@@ -1,4 +1,4 @@
-//! The conclusion of a calibration in plain words: the verdict, what is open, and the errors that it promises.
+//! The conclusion of a calibration: verdict, open questions, and expected errors.
 
 use std::fmt::Write;
 
@@ -8,17 +8,16 @@ use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
 use super::number::{newtons, short};
 
-/// Open effects that the conclusion names; the section on limits has them all.
-const NAMED: usize = 4;
+/// Most open effects in the conclusion; the section on limits lists all.
+const MAX_NAMED: usize = 4;
 
-/// The box at the top of the page.
+/// Returns the box at the top of the page, and the verdicts of several tables.
 pub(super) fn conclusion(report: &Report) -> String {
-    let told = [changes(report), verdict(report), trials(report), errors(report), adequacy(report)].concat();
-    let told = format!("<div class=\"verdict\">{told}</div>\n");
-    format!("{told}{}", story(report))
+    let html = [changes(report), verdict(report), trials(report), errors(report), adequacy(report)].concat();
+    format!("<div class=\"verdict\">{html}</div>\n{}", sessions(report))
 }
 
-/// What is not the same switch any more.
+/// Returns the differences of the switch between tables.
 fn changes(report: &Report) -> String {
     let unequal: String =
         report.unequal.iter().map(|effect| format!("<p>{}.</p>", escape(&effect.words()))).collect();
@@ -29,16 +28,16 @@ fn changes(report: &Report) -> String {
         report.changes.iter().map(|change| format!("<li>{}</li>", escape(&change.words()))).collect();
     unequal
         + &format!(
-            "<p><b>The switch is not the same in all tables.</b> Curves and predictions are those of the latest:</p><ul>{each}</ul>"
+            "<p><b>The switch differs between the tables.</b> Curves and predictions are for the latest one:</p><ul>{each}</ul>"
         )
 }
 
-/// What the data say of each effect of one's own, asked for alone.
+/// Returns the outcome of each confirmation test.
 fn trials(report: &Report) -> String {
     if report.trials.is_empty() {
         return String::new();
     }
-    let told = |trial: &TrialReport| {
+    let item = |trial: &TrialReport| {
         format!(
             "<li><b>{}</b>: {}; {}</li>",
             escape(&trial.id),
@@ -46,22 +45,22 @@ fn trials(report: &Report) -> String {
             escape(&trial.words())
         )
     };
-    let each: String = report.trials.iter().map(told).collect();
+    let each: String = report.trials.iter().map(item).collect();
     format!(
-        "<p>Effects of one's own, each asked for alone with its shape as it was written down:</p><ul>{each}</ul>"
+        "<p>Confirmation tests of user-defined effects, each alone with its shape from the file:</p><ul>{each}</ul>"
     )
 }
 
-/// What changed its mind: the verdict after each of several tables.
-fn story(report: &Report) -> String {
+/// Returns the verdict after each of several tables.
+fn sessions(report: &Report) -> String {
     if report.sessions.is_empty() {
         return String::new();
     }
-    let mut html = "<h2>From table to table</h2><table><tr><th>table</th><th>rows so far</th><th>verdict</th><th>error expected \
-                    on a new session</th></tr>"
+    let mut html = "<h2>Verdict after each table</h2><table><tr><th>table</th><th>rows so far</th><th>verdict</th><th>expected error of \
+                    a new session</th></tr>"
         .to_owned();
     for session in &report.sessions {
-        html.push_str(&session.asked.as_ref().map_or_else(String::new, asked));
+        html.push_str(&session.asked.as_ref().map_or_else(String::new, plan_answers));
         let _ = write!(
             html,
             "<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td></tr>",
@@ -75,7 +74,7 @@ fn story(report: &Report) -> String {
     html
 }
 
-/// A probability in percent, as `experiment` prints it: nothing is certain.
+/// Formats a probability in percent, as `experiment` does: an estimate is never 0 or 100 %.
 fn percent(probability: f64) -> String {
     match probability {
         p if p > 0.99 => ">99".to_owned(),
@@ -84,62 +83,66 @@ fn percent(probability: f64) -> String {
     }
 }
 
-/// What a session was made for, how probably it was to be answered, and what came of it.
-fn asked(plan: &Asked) -> String {
-    let told = |q: &AskedQuestion| {
+/// Returns the questions of the plan for a session, with the predicted probability of an answer,
+/// and the answers.
+fn plan_answers(plan: &Asked) -> String {
+    let item = |q: &AskedQuestion| {
         let percent = percent(q.resolved_probability);
         let size = q.size.map_or_else(String::new, |size| format!(" at a size of {}", short(size)));
         let repeated = q.by_repeating.map_or_else(String::new, |p| {
-            format!("; by the paper's protocol repeated {} %", self::percent(p))
+            format!("; with the paper's protocol repeated {} %", self::percent(p))
         });
-        let words = format!("{} or {}{size} ({percent} %{repeated})", q.between[0], q.between[1]);
-        // What is smaller than what was asked about may still be of consequence, and then stands in the verdict.
+        let question = format!("{} or {}{size} ({percent} %{repeated})", q.between[0], q.between[1]);
+        // A smaller size may still be of consequence; it is then in the verdict.
         let at = if q.answer == Answer::Excluded && q.size.is_some() { " at this size" } else { "" };
-        format!("<li>{}: <b>{}{at}</b></li>", escape(&words), q.answer.as_str())
+        format!("<li>{}: <b>{}{at}</b></li>", escape(&question), q.answer.as_str())
     };
-    let questions: String = plan.questions.iter().map(told).collect();
+    let questions: String = plan.questions.iter().map(item).collect();
     let runs: String = plan.runs.iter().map(|run| format!("<li>{}</li>", escape(run))).collect();
     let runs = if runs.is_empty() { runs } else { format!("proposed runs:<ul>{runs}</ul>") };
     format!(
-        "<tr><td colspan=\"4\">{runs}asked for in {:.0} minutes, with the probability of an answer that was expected, and what \
-         came of it:<ul>{questions}</ul></td></tr>",
+        "<tr><td colspan=\"4\">{runs}questions of the plan of {:.0} minutes, with the predicted probability of an answer, and \
+         the answers:<ul>{questions}</ul></td></tr>",
         plan.minutes
     )
 }
 
-/// The verdict, with what would settle what it leaves open.
+/// Returns the verdict, with experiments for what it leaves open.
 fn verdict(report: &Report) -> String {
     let names: Vec<&str> =
         report.effects.iter().map(|e| e.id.as_str()).filter(|id| *id != "unattributed").collect();
-    let beside =
-        if names.is_empty() { String::new() } else { format!(" beside {}", escape(&names.join(", "))) };
+    let besides = if names.is_empty() {
+        String::new()
+    } else {
+        format!(" in addition to {}", escape(&names.join(", ")))
+    };
     match report.verdict {
-        Verdict::None => "<p>The paper's model explains this data down to its noise. Each effect that this data can see is \
-                          smaller than what would change friction or reading by 5 % anywhere in the table.</p>"
+        Verdict::None => "<p>The paper's model explains this data within its noise. Each visible effect is smaller than \
+                          its size of consequence, which changes friction or reading by 5 % somewhere in the table.</p>"
             .to_owned(),
         Verdict::Inconclusive => inconclusive(report),
         Verdict::Attributed => format!("<p>The paper's model lacks: {}.</p>", escape(&names.join(", "))),
         Verdict::Ambiguous => {
             let sets: Vec<String> = report.effects.iter().map(alternatives).collect();
             let mut html =
-                format!("<p>The paper's model lacks {}; this data cannot tell which.</p>", sets.join(", and "));
+                format!("<p>The paper's model lacks {}; this data does not decide which.</p>", sets.join(", and "));
             for rival in report.effects.iter().filter_map(|e| e.rivals.first()) {
-                let _ = write!(html, "<p>To settle it: {}.</p>", escape(&rival.experiment));
+                let _ = write!(html, "<p>Experiment that would decide: {}.</p>", escape(&rival.experiment));
             }
             html
         }
         Verdict::Unattributed => {
             let of = |e: &&EffectReport| e.id == "unattributed";
-            let places: Vec<&str> = report.effects.iter().filter(of).map(|e| e.covariate.as_str()).collect();
+            let covariates: Vec<&str> = report.effects.iter().filter(of).map(|e| e.covariate.as_str()).collect();
             format!(
-                "<p>Something is left{beside} that no named effect explains; it lies in {}.</p>",
-                escape(&places.join(", "))
+                "<p>The residuals have a structure{besides} that no named effect explains, in {}.</p>",
+                escape(&covariates.join(", "))
             )
         }
     }
 }
 
-/// An effect with what it may be instead.
+/// Lists an effect with its rivals.
 fn alternatives(effect: &EffectReport) -> String {
     let ids = std::iter::once(effect.id.as_str()).chain(effect.rivals.iter().map(|r| r.id.as_str()));
     escape(&ids.collect::<Vec<_>>().join(" or "))
@@ -147,18 +150,18 @@ fn alternatives(effect: &EffectReport) -> String {
 
 fn inconclusive(report: &Report) -> String {
     let open = open_limits(report);
-    let settles =
-        if report.changes.is_empty() { "This data settles nothing" } else { "It settles nothing else" };
-    let why = match (open.is_empty(), report.reservations()) {
-        (true, told) if !told.is_empty() => escape(&told.join("; ")),
-        _ => "no effect gains more than chance may, yet effects of consequence are not excluded".into(),
+    let summary = if report.changes.is_empty() { "Inconclusive" } else { "Otherwise inconclusive" };
+    let reason = match (open.is_empty(), report.reservations()) {
+        (true, reservations) if !reservations.is_empty() => escape(&reservations.join("; ")),
+        _ => "no effect detected, but effects of consequence cannot be ruled out".into(),
     };
-    let mut html = format!("<p>{settles}: {why}. To know more, record more.</p>");
+    let mut html = format!("<p>{summary}: {reason}. Record more data.</p>");
     html.push_str(if open.is_empty() { "" } else { "<ul>" });
-    for limit in open.iter().take(NAMED) {
+    for limit in open.iter().take(MAX_NAMED) {
         let _ = write!(
             html,
-            "<li><b>{}</b>: {} is possible ({} changes friction or reading by 5 % somewhere). To settle it: {}.</li>",
+            "<li><b>{}</b>: {} is possible ({} changes friction or reading by 5 % somewhere). Experiment that would decide: \
+             {}.</li>",
             escape(&limit.id),
             possible(limit),
             typical(limit),
@@ -169,27 +172,27 @@ fn inconclusive(report: &Report) -> String {
     if let Some(group) = report.noise_parts.iter().find(|part| part.part == "group") {
         let _ = write!(
             html,
-            "<p>What this data does show is told as a part of the noise: {}, by {}. No curve of a part holds it, and no reading of \
-             another one is predicted without it.</p>",
+            "<p>Part of the noise: {}, {}. It is not in the curve of a part, but in the uncertainty of each predicted \
+             reading.</p>",
             escape(&group.what),
             newtons(group.size)
         );
     }
-    if let Some(more) = open.len().checked_sub(NAMED).filter(|n| *n > 0) {
-        let _ = write!(html, "<p>{more} more are open: section 8.</p>");
+    if let Some(more) = open.len().checked_sub(MAX_NAMED).filter(|n| *n > 0) {
+        let _ = write!(html, "<p>{more} more effects are open, see section 8.</p>");
     }
     html
 }
 
-/// Errors on data that no fit has seen, of both models, beside the noise.
+/// Returns the held-out and expected errors of both models, with the noise.
 fn errors(report: &Report) -> String {
     let held = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
-    let promised = [report.promise_baseline_n, report.promise_n];
-    if held.iter().all(|e| !e.is_finite()) && promised.iter().all(Option::is_none) {
-        return "<p>There is too little to hold anything out of the fit: no error is known.</p>".to_owned();
+    let expected = [report.promise_baseline_n, report.promise_n];
+    if held.iter().all(|e| !e.is_finite()) && expected.iter().all(Option::is_none) {
+        return "<p>The data is too small for cross-validation: no error is known.</p>".to_owned();
     }
-    let promise = |value: Option<f64>| value.map_or("not known".to_owned(), newtons);
-    // Where nothing was found, both models are one.
+    let or_unknown = |value: Option<f64>| value.map_or("unknown".to_owned(), newtons);
+    // Without effects both models are equal.
     let both = !report.effects.is_empty();
     let row = |name: &str, before: String, after: String| match both {
         true => {
@@ -198,31 +201,34 @@ fn errors(report: &Report) -> String {
         false => format!("<tr><td>{name}</td><td class=\"n\">{after}</td></tr>"),
     };
     let (columns, span) = match both {
-        true => ("<th class=\"b\">the paper's model</th><th class=\"a\">the better model</th>", 2),
-        false => ("<th>the paper's model</th>", 1),
+        true => ("<th class=\"b\">baseline</th><th class=\"a\">augmented model</th>", 2),
+        false => ("<th>baseline</th>", 1),
     };
     format!(
         "<div class=\"wide\"><table><tr><th>error</th>{columns}</tr>{}{}\
-         <tr><td>noise of one reading</td><td class=\"n\" colspan=\"{span}\">{}</td></tr></table></div>",
-        row("on series and loads held out of the fit", newtons(held[0]), newtons(held[1])),
-        row("to expect in a new session of the same rig", promise(promised[0]), promise(promised[1])),
+         <tr><td>noise of a reading</td><td class=\"n\" colspan=\"{span}\">{}</td></tr></table></div>",
+        row("held-out error (series and loads)", newtons(held[0]), newtons(held[1])),
+        row(
+            "expected error of a new session of the same rig",
+            or_unknown(expected[0]),
+            or_unknown(expected[1])
+        ),
         newtons(report.noise_floor_n)
     )
 }
 
-/// Whether anything is left, plainly.
+/// Returns whether the held-out error exceeds the noise.
 fn adequacy(report: &Report) -> String {
     let (error, noise) = (report.augmented.heldout_series_rmse_n, report.noise_floor_n);
     if !error.is_finite() {
         return String::new();
     }
     if report.adequate {
-        return "<p>The model is adequate: on series held out it misses by no more than the noise.</p>"
-            .to_owned();
+        return "<p>The model is adequate: its held-out error on series is within the noise.</p>".to_owned();
     }
     format!(
-        "<p><b>Something is left.</b> On series held out the model misses by {}, and the noise explains {} only: look at the right \
-         panels of section 4, and at the series listed in section 1.</p>",
+        "<p><b>The model is not adequate.</b> Its held-out error on series is {}, the noise only {}. Check the right panels of \
+         section 4, and the series listed in section 1.</p>",
         newtons(error),
         newtons(noise)
     )
@@ -233,7 +239,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_certain() {
+    fn probabilities_are_never_certain() {
         assert_eq!([0.001, 0.014, 0.5, 0.99, 0.996].map(percent), ["<1", "1", "50", "99", ">99"]);
     }
 }

@@ -1,4 +1,5 @@
-//! What a table excludes: sizes of absent effects that remain possible, and what this design cannot tell apart.
+//! Limits: sizes of undetected effects that are not excluded, and effects that the design of the
+//! table cannot separate.
 
 use std::fmt::Write;
 
@@ -10,34 +11,34 @@ use pinswitch_friction::sort_by_number;
 use super::super::html::escape;
 use super::number::{number, short, with_unit};
 
-/// Multiples of the size of consequence that the strips show to either side.
-const REACH: f64 = 3.0;
-/// Height of one strip in pixels.
+/// Range of the intervals in the figure, in sizes of consequence to each side.
+const RANGE: f64 = 3.0;
+/// Height of one row in pixels.
 const ROW: f64 = 24.0;
-/// Where the strips begin and end, in pixels.
-const STRIPS: (f64, f64) = (170.0, 525.0);
+/// Start and end of the intervals in pixels.
+const INTERVALS: (f64, f64) = (170.0, 525.0);
 
-/// Limits that leave room for an effect of consequence, the widest first.
+/// Returns the limits that do not exclude an effect of consequence, the widest first.
 pub(super) fn open_limits(report: &Report) -> Vec<&LimitReport> {
     let mut open: Vec<&LimitReport> = report.limits.iter().filter(|l| !l.excluded).collect();
-    sort_by_number(&mut open, |limit| -reach(limit));
+    sort_by_number(&mut open, |limit| -largest_size(limit));
     open
 }
 
-/// Largest possible size, in sizes of consequence.
-fn reach(limit: &LimitReport) -> f64 {
+/// Returns the largest possible size, in sizes of consequence.
+fn largest_size(limit: &LimitReport) -> f64 {
     let [low, high] = ends(limit);
     (low.abs().max(high.abs()) / limit.typical.abs()).min(f64::MAX)
 }
 
-/// The interval, without the side on which the effect cannot be.
+/// Returns the interval, cut to the sizes that the effect can have.
 fn ends(limit: &LimitReport) -> [f64; 2] {
     let present = limit.parameter == "present";
     let low = if limit.one_sided || present { limit.low.max(0.0) } else { limit.low };
     [low, if present { limit.high.clamp(0.0, 1.0) } else { limit.high.max(low) }]
 }
 
-/// The sizes that remain possible, in words.
+/// Describes the sizes that are not excluded.
 pub(super) fn possible(limit: &LimitReport) -> String {
     let [low, high] = ends(limit);
     if limit.parameter == "present" {
@@ -54,7 +55,7 @@ pub(super) fn possible(limit: &LimitReport) -> String {
     }
 }
 
-/// The size of consequence, in words.
+/// Describes the size of consequence.
 pub(super) fn typical(limit: &LimitReport) -> String {
     match limit.parameter.as_str() {
         "present" if limit.typical >= 1.0 => "more than the whole effect".to_owned(),
@@ -63,49 +64,50 @@ pub(super) fn typical(limit: &LimitReport) -> String {
     }
 }
 
-/// A size with its unit; a number without one stands alone, since it need not be a share.
+/// Formats a size with its unit. A number without a unit is not formatted as a percentage, since it
+/// need not be a share.
 fn sized(value: f64, unit: &str) -> String {
     if unit == "1" { short(value) } else { with_unit(value, unit) }
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn limits(report: &Report) -> String {
-    let mut html = "<h2>8. What this data excludes</h2>\n".to_owned();
+    let mut html = "<h2>8. Limits on undetected effects</h2>\n".to_owned();
     if report.limits.is_empty() {
-        html.push_str("<p>Nothing: it can see no effect beside those found.</p>\n");
+        html.push_str("<p>None: no other effect is visible in this data.</p>\n");
     } else {
         html.push_str(
-            "<p>Each effect that this data can see and that was not found: the sizes that 95 % do not exclude, against the size that \
-             would change friction or reading by 5 % somewhere in the table. An effect is excluded if only smaller sizes are left.</p>\n",
+            "<p>Each visible effect that was not detected, with the sizes that are not excluded at 95 %. The size of consequence \
+             changes friction or reading by 5 % somewhere in the table; an effect is excluded if all its possible sizes are smaller.</p>\n",
         );
         let all = sorted(report);
-        // A limit of the cell is no interval about zero, and has no place on the strips.
+        // The limit of a load cell is not an interval about zero and is not in the figure.
         let about_zero = |l: &LimitReport| {
             effect_named(&l.id).is_none_or(|e| e.description().scales || e.parameters().is_empty())
         };
-        html.push_str(&strips(&all.iter().copied().filter(|l| about_zero(l)).collect::<Vec<_>>()));
+        html.push_str(&interval_figure(&all.iter().copied().filter(|l| about_zero(l)).collect::<Vec<_>>()));
         html.push_str(&table(&all));
     }
-    html.push_str(&together(report));
+    html.push_str(&confounding(report));
     html
 }
 
-/// Open limits first, the widest first.
+/// Sorts the limits: open ones first, the widest first.
 fn sorted(report: &Report) -> Vec<&LimitReport> {
     let mut excluded: Vec<&LimitReport> = report.limits.iter().filter(|l| l.excluded).collect();
-    sort_by_number(&mut excluded, |limit| -reach(limit));
+    sort_by_number(&mut excluded, |limit| -largest_size(limit));
     open_limits(report).into_iter().chain(excluded).collect()
 }
 
 fn table(all: &[&LimitReport]) -> String {
-    let mut html = "<div class=\"wide\"><table><tr><th>effect</th><th>sizes left</th><th>size of consequence</th><th></th></tr>\n"
+    let mut html = "<div class=\"wide\"><table><tr><th>effect</th><th>possible sizes</th><th>size of consequence</th><th></th></tr>\n"
         .to_owned();
     for limit in all {
-        let (class, word) = if limit.excluded { (" class=\"soft\"", "excluded") } else { ("", "open") };
+        let (class, status) = if limit.excluded { (" class=\"soft\"", "excluded") } else { ("", "open") };
         let typical = typical(limit);
         let _ = writeln!(
             html,
-            "<tr{class}><td>{}</td><td>{}</td><td>{typical}</td><td>{word}</td></tr>",
+            "<tr{class}><td>{}</td><td>{}</td><td>{typical}</td><td>{status}</td></tr>",
             escape(&limit.id),
             possible(limit)
         );
@@ -114,13 +116,13 @@ fn table(all: &[&LimitReport]) -> String {
     html
 }
 
-/// Intervals over multiples of the size of consequence, one strip each.
-fn strips(all: &[&LimitReport]) -> String {
-    let (left, right) = STRIPS;
-    let x = |multiple: f64| left + (right - left) * (multiple.clamp(-REACH, REACH) + REACH) / (2.0 * REACH);
+/// Draws one interval per effect, in sizes of consequence.
+fn interval_figure(all: &[&LimitReport]) -> String {
+    let (left, right) = INTERVALS;
+    let x = |multiple: f64| left + (right - left) * (multiple.clamp(-RANGE, RANGE) + RANGE) / (2.0 * RANGE);
     let foot = ROW * all.len() as f64 + 6.0;
     let mut svg = format!(
-        "<figure class=\"wide\"><svg class=\"strip\" viewBox=\"0 0 535 {0:.0}\" role=\"img\" aria-label=\"Sizes that remain possible\">\
+        "<figure class=\"wide\"><svg class=\"strip\" viewBox=\"0 0 535 {0:.0}\" role=\"img\" aria-label=\"Possible sizes\">\
          <rect class=\"band\" x=\"{1:.1}\" y=\"0\" width=\"{2:.1}\" height=\"{foot:.0}\"/>\
          <line class=\"zero\" x1=\"{3:.1}\" x2=\"{3:.1}\" y1=\"0\" y2=\"{foot:.0}\"/>",
         foot + 22.0,
@@ -130,7 +132,7 @@ fn strips(all: &[&LimitReport]) -> String {
     );
     for (i, limit) in all.iter().enumerate() {
         let y = ROW * (i as f64 + 0.5) + 3.0;
-        let (stroke, text) = if limit.excluded { ("shut", " class=\"quiet\"") } else { ("open", "") };
+        let (stroke, text) = if limit.excluded { ("excluded", " class=\"quiet\"") } else { ("open", "") };
         let _ = write!(svg, "<text{text} x=\"0\" y=\"{:.1}\">{}</text>", y + 4.5, escape(&limit.id));
         let [low, high] = ends(limit).map(|end| end / limit.typical.abs());
         if !low.is_finite() || !high.is_finite() {
@@ -142,9 +144,9 @@ fn strips(all: &[&LimitReport]) -> String {
             x(low) - 1.0,
             x(high) + 1.0
         );
-        // What goes on beyond the figure ends in an arrow.
+        // An interval beyond the range ends in an arrow.
         for (_, end, sign) in
-            [(low, -REACH, 1.0), (high, REACH, -1.0)].iter().filter(|(at, end, _)| at / end > 1.0)
+            [(low, -RANGE, 1.0), (high, RANGE, -1.0)].iter().filter(|(at, end, _)| at / end > 1.0)
         {
             let (tip, back) = (x(*end) - 9.0 * sign, x(*end));
             let _ = write!(
@@ -155,31 +157,31 @@ fn strips(all: &[&LimitReport]) -> String {
             );
         }
     }
-    for (multiple, word) in [(-1.0, "-5 %"), (0.0, "0"), (1.0, "5 %")] {
+    for (multiple, label) in [(-1.0, "-5 %"), (0.0, "0"), (1.0, "5 %")] {
         let _ = write!(
             svg,
-            "<text class=\"quiet\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{word}</text>",
+            "<text class=\"quiet\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{label}</text>",
             x(multiple),
             foot + 16.0
         );
     }
     svg.push_str(
-        "</svg><figcaption>Sizes that remain possible, in multiples of the size of consequence. Where a bar stays inside the \
-         shaded band, nothing of consequence can hide; an arrow goes on.</figcaption></figure>\n",
+        "</svg><figcaption>Possible sizes in multiples of the size of consequence. An effect of consequence is excluded if its bar \
+         is within the shaded band; an arrow marks an interval beyond the figure.</figcaption></figure>\n",
     );
     svg
 }
 
-/// Effects and covariates that this design cannot tell apart.
-fn together(report: &Report) -> String {
+/// Lists aliased effects and confounded covariates.
+fn confounding(report: &Report) -> String {
     if report.classes.is_empty() && report.aliasing.is_empty() {
         return String::new();
     }
-    let mut html = "<h3>What this design cannot tell apart</h3><ul>\n".to_owned();
+    let mut html = "<h3>Aliased effects and confounded covariates</h3><ul>\n".to_owned();
     for class in &report.classes {
         let _ = writeln!(
             html,
-            "<li>{}: after the refit their traces are the same. Whichever of them is named, or left open, it may be another of them.</li>",
+            "<li>aliased: {}. After the refit their sensitivities are equal; each may replace another.</li>",
             escape(&class.join(", "))
         );
     }
@@ -187,7 +189,7 @@ fn together(report: &Report) -> String {
         let [a, b] = &pair.covariates;
         let _ = writeln!(
             html,
-            "<li>{} and {} move together (correlation {}): whatever lies in one may lie in the other.</li>",
+            "<li>confounded: {} and {} (r = {}). An effect of one may be an effect of the other.</li>",
             escape(a),
             escape(b),
             number(pair.correlation, 2)
@@ -217,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_told_in_words_with_their_unit() {
+    fn possible_sizes_have_units() {
         assert_eq!(possible(&limit("guide_drag", "c", -0.1, 0.31)), "c up to 0.310 N");
         assert_eq!(possible(&limit("load_cell_offset", "b", -0.1, 0.31)), "b from -0.100 N to 0.310 N");
         assert_eq!(possible(&limit("switch_local_tension", "present", -0.4, 1.7)), "the whole effect");
@@ -228,10 +230,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_not_drawn() {
+    fn non_finite_limits_are_not_drawn() {
         for (low, high) in [(f64::NAN, f64::NAN), (f64::NEG_INFINITY, f64::INFINITY), (-9.0, 9.0)] {
-            let odd = limit("load_cell_offset", "b", low, high);
-            let html = strips(&[&odd]) + &table(&[&odd]);
+            let invalid = limit("load_cell_offset", "b", low, high);
+            let html = interval_figure(&[&invalid]) + &table(&[&invalid]);
             assert!(!html.contains("NaN") && !html.contains("inf"), "{html}");
         }
     }

@@ -1,4 +1,4 @@
-//! `report.html`: one self-contained page, from data to conclusion.
+//! `report.html`: the self-contained page of a calibration.
 
 mod conclusion;
 mod limits;
@@ -19,23 +19,23 @@ use noise::noise;
 use number::{newtons, number, probability};
 pub(super) use style::head;
 
-/// The page.
+/// Returns the page, with figures from [`plots`](super::plots).
 pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
     let report = &calibration.report;
     let mut html = head("Calibration");
     let sections = [
-        format!("<h1>{}: what the paper's model misses</h1>\n", escape(title)),
+        format!("<h1>Calibration with {}</h1>\n", escape(title)),
         conclusion(report),
         data(report),
         noise(report),
         conditions(plots),
         residuals(plots),
         candidates(report),
-        found(report),
+        detected(report),
         errors(report),
         limits(report),
         constants(report),
-        blind(report),
+        invisible(report),
     ];
     sections.iter().for_each(|s| html.push_str(s));
     html.push_str("</body></html>\n");
@@ -45,24 +45,24 @@ pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
 fn data(report: &Report) -> String {
     let d = &report.data;
     let mut html = format!(
-        "<h2>1. The data</h2><p>{} rows in {} series on {} condition(s); {} rows weighed down as outliers.</p>\n",
+        "<h2>1. Data</h2><p>{} rows in {} series of {} condition(s); {} outliers with reduced weight.</p>\n",
         d.rows, d.series, d.conditions, d.outliers
     );
     if !report.ignored_columns.is_empty() {
         let _ = writeln!(
             html,
-            "<p>Columns that no calibration reads, kept in residuals.csv: {}.</p>",
+            "<p>Unused columns, copied to residuals.csv: {}.</p>",
             escape(&report.ignored_columns.join(", "))
         );
     }
     if !report.bad_series.is_empty() {
         html.push_str(
-            "<p>To look at (mislabelled weight, bad run, slipped reading); they decide nothing:</p><ul>",
+            "<p>Suspicious series (wrong weight, failed run, wrong reading), without effect on the verdict:</p><ul>",
         );
         for bad in &report.bad_series {
             let _ = write!(
                 html,
-                "<li>{}: off by {} ({} standard deviations)</li>",
+                "<li>{}: deviates by {} ({} standard deviations)</li>",
                 escape(&bad.place()),
                 newtons(bad.offset_n),
                 number(bad.standard_deviations, 1)
@@ -74,9 +74,9 @@ fn data(report: &Report) -> String {
 }
 
 fn conditions(plots: &[Plot]) -> String {
-    let mut html = "<h2>3. Measured and predicted</h2><p>Mean readings (dots) above and below the load they hold, \
-                    <span class=\"b\">the paper's model, refitted</span>, and <span class=\"a\">the better model</span>, \
-                    on each condition: concentric above zero, eccentric below.</p>\n<div class=\"grid\">"
+    let mut html = "<h2>3. Readings and models</h2><p>Mean difference between reading and load for each condition: readings (dots), \
+                    <span class=\"b\">baseline</span> (the paper's model, refitted) and <span class=\"a\">augmented model</span>; \
+                    concentric above zero, eccentric below.</p>\n<div class=\"grid\">"
         .to_owned();
     for plot in plots.iter().filter(|p| p.file.starts_with("condition-")) {
         let _ = writeln!(
@@ -91,8 +91,8 @@ fn conditions(plots: &[Plot]) -> String {
 }
 
 fn residuals(plots: &[Plot]) -> String {
-    let mut html = "<h2>4. Where the paper's model misses</h2><p>What is left of each reading, over everything that varied; \
-                    heavy dots are means. A course in the left panel is what the model lacks; the right panel should be flat.</p>\n"
+    let mut html = "<h2>4. Residuals</h2><p>Residuals over each covariate that varies; large dots are means. A trend on the left \
+                    (baseline) shows what the model lacks; the right panel (augmented model) should have none.</p>\n"
         .to_owned();
     for plot in plots.iter().filter(|p| p.file.starts_with("residual-")) {
         let _ = writeln!(
@@ -102,33 +102,38 @@ fn residuals(plots: &[Plot]) -> String {
             plot.svg
         );
     }
-    let fixed: Vec<&str> = Covariate::ALL
+    let constant: Vec<&str> = Covariate::ALL
         .iter()
         .map(|c| c.as_str())
-        .filter(|word| !plots.iter().any(|p| p.file == format!("residual-{word}.svg")))
+        .filter(|name| !plots.iter().any(|p| p.file == format!("residual-{name}.svg")))
         .collect();
-    if !fixed.is_empty() {
-        let _ = writeln!(html, "<p>Never varied here, and so never seen: {}.</p>", fixed.join(", "));
+    if !constant.is_empty() {
+        let _ = writeln!(
+            html,
+            "<p>Constant in this data, effects of them are invisible: {}.</p>",
+            constant.join(", ")
+        );
     }
     html
 }
 
 fn candidates(report: &Report) -> String {
-    let mut html = "<h2>5. The candidates</h2><p>What each effect alone would gain over the paper's model, in squares of the \
-                    noise, how likely chance gains as much over the whole vocabulary, and what it would still gain beside \
-                    those that were kept.</p><div class=\"wide\"><table><tr><th>effect</th><th>gain</th><th>by chance</th><th>gain left</th>\
+    let mut html = "<h2>5. Candidates</h2><p>Gain of each effect alone over the baseline, in units of the noise variance; \
+                    probability of such a gain by chance among all effects; and remaining gain in addition to the detected \
+                    effects.</p><div class=\"wide\"><table><tr><th>effect</th><th>gain</th><th>probability by chance</th><th>remaining gain</th>\
                     <th>decision</th></tr>\n"
         .to_owned();
     for c in &report.candidates {
         let (class, decision) = match c.fate {
-            Fate::Kept => ("kept", "kept"),
-            Fate::Rival => ("rival", "a rival: explains the data as well as the one kept"),
-            Fate::Invisible => ("", "dropped: this data cannot show it"),
-            Fate::Chance => ("", "dropped: may be chance"),
-            Fate::Superfluous => ("", "dropped: superfluous beside what was kept"),
-            Fate::Unsettled => {
-                ("", "not believed: scatter explains the data as well, or it did not help on data held out")
-            }
+            Fate::Kept => ("selected", "detected"),
+            Fate::Rival => ("rival", "rival: explains the data as well as a detected effect"),
+            Fate::Invisible => ("", "rejected: invisible in this data"),
+            Fate::Chance => ("", "rejected: may be chance"),
+            Fate::Superfluous => ("", "rejected: no gain in addition to the detected effects"),
+            Fate::Unsettled => (
+                "",
+                "rejected: random effects explain the data as well, or the held-out error is not smaller",
+            ),
         };
         let left = c.gain_left.map_or_else(String::new, |g| number(g, 1));
         let _ = writeln!(
@@ -143,20 +148,20 @@ fn candidates(report: &Report) -> String {
     html
 }
 
-fn found(report: &Report) -> String {
-    let mut html = "<h2>6. What was found</h2>\n".to_owned();
+fn detected(report: &Report) -> String {
+    let mut html = "<h2>6. Detected effects</h2>\n".to_owned();
     if report.effects.is_empty() {
-        html.push_str("<p>Nothing beyond the noise.</p>\n");
+        html.push_str("<p>None.</p>\n");
     }
     for effect in &report.effects {
         let side = match effect.side.as_deref() {
-            Some("switch") => "It belongs to the switch and stays in predicted curves.",
-            Some(_) => "It belongs to the rig and stays out of the curves of a printed part.",
-            None => "It has no name: a smooth correction stands in the model.",
+            Some("switch") => "It is an effect of the switch and part of predicted curves.",
+            Some(_) => "It is an effect of the rig and not part of the curves of a printed part.",
+            None => "No named effect explains it: the model has a smooth correction.",
         };
         let _ = write!(
             html,
-            "<h3>{}</h3><p>{}<br>It lies in {}. {side} Chance of such a gain without it: {}. \
+            "<h3>{}</h3><p>{}<br>Covariate: {}. {side} Probability of such a gain by chance: {}. \
              Held-out error without it <b class=\"b\">{}</b>, with it <b class=\"a\">{}</b>.</p>{}",
             escape(&effect.id),
             escape(&effect.formula),
@@ -167,12 +172,12 @@ fn found(report: &Report) -> String {
             table(effect.parameters.iter())
         );
         if let Some(form) = &effect.form {
-            html.push_str(&drawn(form));
+            html.push_str(&discovered(form));
         }
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
-                "<p>It may as well be <b>{}</b>: {}.<br><b>The experiment that would settle it:</b> {}.</p>",
+                "<p>Rival: <b>{}</b>. {}.<br><b>Experiment that would decide:</b> {}.</p>",
                 escape(&rival.id),
                 escape(&rival.why),
                 escape(&rival.experiment)
@@ -182,11 +187,11 @@ fn found(report: &Report) -> String {
     html
 }
 
-/// What a structure without a name looks like, and how that is confirmed or refuted.
-fn drawn(form: &FormReport) -> String {
+/// Describes the discovered effect of a structure, and its confirmation test.
+fn discovered(form: &FormReport) -> String {
     let mut html = format!(
-        "<p>It looks like <b>{}</b> on {}: <code>{}</code>. That explains {:.0} % of what the smooth correction does; held-out \
-         error with it in place of the correction: {}.</p>{}",
+        "<p>Discovered effect: <b>{}</b> on {}: <code>{}</code>. It explains {:.0} % of the smooth correction; held-out error with \
+         it instead of the correction: {}.</p>{}",
         escape(&form.words()),
         escape(&form.acts_on),
         escape(&form.formula),
@@ -198,23 +203,22 @@ fn drawn(form: &FormReport) -> String {
         let rivals: Vec<String> = form
             .rivals
             .iter()
-            .map(|r| format!("{} on {} (worse by {} squares)", r.shape, r.acts_on, number(r.worse_by, 1)))
+            .map(|r| format!("{} on {} (deviance larger by {})", r.shape, r.acts_on, number(r.worse_by, 1)))
             .collect();
-        let _ = write!(html, "<p>Forms that fit as well: {}.</p>", escape(&rivals.join(", ")));
+        let _ = write!(html, "<p>Equally good shapes: {}.</p>", escape(&rivals.join(", ")));
     }
     let _ = writeln!(
         html,
-        "<p>Drawn, not confirmed: <code>pinswitch calibrate next.csv --effects discovered.toml</code> lets other data decide on \
-         {}.</p>",
+        "<p>Not confirmed. Test {} with other data: <code>pinswitch calibrate next.csv --effects discovered.toml</code>.</p>",
         escape(&form.id)
     );
     html
 }
 
 fn errors(report: &Report) -> String {
-    let mut html = "<h2>7. The error before and after</h2><p>Root mean square, in newtons. Whole layouts: friction and effects come from \
-                    the other layouts, only the threshold and range are the layout's own.</p>\
-                    <div class=\"wide\"><table><tr><th>judged on</th><th>before</th><th>after</th></tr>\n"
+    let mut html = "<h2>7. Errors</h2><p>Root mean square, in newtons. For leave-one-layout-out, friction and effects come from the \
+                    other layouts; only threshold and range come from the layout itself.</p>\
+                    <div class=\"wide\"><table><tr><th>data</th><th class=\"b\">baseline</th><th class=\"a\">augmented model</th></tr>\n"
         .to_owned();
     let of = |m: &ModelReport| {
         [
@@ -224,8 +228,7 @@ fn errors(report: &Report) -> String {
             m.heldout_layouts_rmse_n,
         ]
     };
-    let names =
-        ["the rows fitted", "whole series held out", "whole loads held out", "whole layouts held out"];
+    let names = ["in-sample", "leave-series-out", "leave-loads-out", "leave-one-layout-out"];
     for ((name, before), after) in names.iter().zip(of(&report.baseline)).zip(of(&report.augmented)) {
         if let (Some(before), Some(after)) = (before, after) {
             let _ = writeln!(
@@ -240,8 +243,8 @@ fn errors(report: &Report) -> String {
     if let Some(e) = &report.extrapolation {
         let _ = writeln!(
             html,
-            "<p>Fitted up to {:.1} N only and judged on the {} rows above: <span class=\"b\">{} N</span> before, \
-             <span class=\"a\">{} N</span> after (medians {} and {} N); {} N without {} bad reading(s).</p>",
+            "<p>Extrapolation: fitted up to {:.1} N, the error on the {} rows above is <span class=\"b\">{} N</span> (baseline) and \
+             <span class=\"a\">{} N</span> (augmented model), medians {} and {} N; {} N without {} wrong reading(s).</p>",
             e.fitted_below_n,
             e.rows,
             number(e.rmse_before_n, 2),
@@ -257,7 +260,7 @@ fn errors(report: &Report) -> String {
 
 fn constants(report: &Report) -> String {
     format!(
-        "<h2>9. Constants</h2><h3 class=\"b\">The paper's model, refitted</h3>{}<h3 class=\"a\">The better model</h3>{}",
+        "<h2>9. Constants</h2><h3 class=\"b\">Baseline</h3>{}<h3 class=\"a\">Augmented model</h3>{}",
         table(report.baseline.parameters.iter()),
         table(report.augmented.parameters.iter())
     )
@@ -283,10 +286,10 @@ fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
     if any { html } else { String::new() }
 }
 
-fn blind(report: &Report) -> String {
-    let mut html = "<h2>10. What this data cannot see, and what would</h2>\n".to_owned();
+fn invisible(report: &Report) -> String {
+    let mut html = "<h2>10. Invisible effects</h2>\n".to_owned();
     if !report.invisible.is_empty() {
-        html.push_str("<div class=\"wide\"><table><tr><th>effect</th><th>why not</th><th>what would show it</th></tr>\n");
+        html.push_str("<div class=\"wide\"><table><tr><th>effect</th><th>reason</th><th>experiment that would show it</th></tr>\n");
         for i in &report.invisible {
             let _ = writeln!(
                 html,
@@ -298,7 +301,7 @@ fn blind(report: &Report) -> String {
         }
         html.push_str("</table></div>\n");
     }
-    html.push_str("<p>No data of such a rig can see, once the model is refitted:</p><ul>\n");
+    html.push_str("<p>Invisible on any such rig, since the refit absorbs them:</p><ul>\n");
     for text in &report.never_visible {
         let _ = writeln!(html, "<li>{}.</li>", escape(text));
     }

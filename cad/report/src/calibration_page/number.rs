@@ -1,16 +1,17 @@
-//! Numbers as a page shows them: what is not known is said to be so.
+//! Numbers on a page; a number that is not finite is shown as unknown.
 
-/// A number with so many decimals, or the word for none.
+/// Formats a number with `decimals` decimals.
 pub(super) fn number(value: f64, decimals: usize) -> String {
-    if value.is_finite() { format!("{value:.decimals$}") } else { "not known".to_owned() }
+    if value.is_finite() { format!("{value:.decimals$}") } else { "unknown".to_owned() }
 }
 
-/// A force in newtons.
+/// Formats a force in newtons.
 pub(super) fn newtons(value: f64) -> String {
     if value.is_finite() { format!("{value:.4} N") } else { number(value, 4) }
 }
 
-/// A number with three digits that count, without an exponent where it can do without.
+/// Formats a number with three significant digits, with an exponent only if it is very small or
+/// large.
 pub(super) fn short(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -26,7 +27,7 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// A number with its unit; a share as a percentage.
+/// Formats a number with its unit; a share as a percentage.
 pub(super) fn with_unit(value: f64, unit: &str) -> String {
     match unit {
         "1" if value.is_finite() => format!("{} %", short(100.0 * value)),
@@ -35,7 +36,7 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
     }
 }
 
-/// A probability as people write it.
+/// Formats a probability.
 pub(super) fn probability(p: f64) -> String {
     if !p.is_finite() {
         number(p, 0)
@@ -53,21 +54,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn three_digits_count_and_what_is_no_number_is_said() {
+    fn numbers_have_three_digits_or_are_unknown() {
         let cases = [(0.0, "0"), (1234.5, "1234"), (-0.0123, "-0.0123"), (2e-7, "2.0e-7"), (12.34, "12.3")];
         for (value, expected) in cases {
             assert_eq!(short(value), expected);
         }
-        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for text in [
-                short(odd),
-                newtons(odd),
-                number(odd, 2),
-                with_unit(odd, "1"),
-                with_unit(odd, "N"),
-                probability(odd),
+                short(value),
+                newtons(value),
+                number(value, 2),
+                with_unit(value, "1"),
+                with_unit(value, "N"),
+                probability(value),
             ] {
-                assert_eq!(text, "not known");
+                assert_eq!(text, "unknown");
             }
         }
         assert_eq!(with_unit(0.029, "1"), "2.90 %");

@@ -1,13 +1,14 @@
-//! The head of a page of a calibration: title, style in light and dark, and what a browser may load.
+//! The head of a calibration page: title, style for both colour schemes, and policy.
 
 use super::super::html::{escape, policy};
 
-/// Colours are named once, and again for the dark; figures, which are drawn on white, are turned around there.
+/// Colours are variables for both schemes; the figures, drawn on white, are inverted in the dark
+/// one.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--page:#fff;--ink:#222;--soft:#555;--line:#ccc;--rule:#dde5ec;--box:#eef3f8;--before:#a8460f;\
---after:#005a9c;--kept:#e6f0f8;--rival:#fbf1e8;--band:#e4eaf0}\
+--after:#005a9c;--selected:#e6f0f8;--rival:#fbf1e8;--band:#e4eaf0}\
 @media(prefers-color-scheme:dark){:root{--page:#14181c;--ink:#e2e6ea;--soft:#a4adb6;--line:#3c444c;--rule:#2c343c;--box:#1d252d;\
---before:#f09a62;--after:#74b8f0;--kept:#1c3044;--rival:#3a2a1c;--band:#2a323a}\
+--before:#f09a62;--after:#74b8f0;--selected:#1c3044;--rival:#3a2a1c;--band:#2a323a}\
 figure.plot svg{filter:invert(.92) hue-rotate(180deg)}}\
 body{font:16px/1.5 sans-serif;max-width:940px;margin:2em auto;padding:0 1em;color:var(--ink);background:var(--page);\
 overflow-wrap:break-word}\
@@ -19,11 +20,11 @@ td.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}\
 figure{margin:.6em 0}.grid{display:grid;grid-template-columns:1fr 1fr;gap:.4em}.grid figure{margin:0}\
 @media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}.wide td:not(.n){min-width:7em}}\
 figcaption,.soft,tr.soft td{color:var(--soft)}svg{max-width:100%;height:auto}.b{color:var(--before)}.a{color:var(--after)}\
-tr.kept td{background:var(--kept)}tr.rival td{background:var(--rival)}\
+tr.selected td{background:var(--selected)}tr.rival td{background:var(--rival)}\
 .strip{width:700px;min-width:320px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\
-.strip .open{stroke:var(--before)}.strip .shut{stroke:var(--soft)}.strip .quiet{fill:var(--soft)}";
+.strip .open{stroke:var(--before)}.strip .excluded{stroke:var(--soft)}.strip .quiet{fill:var(--soft)}";
 
-/// Everything before the first heading of a page.
+/// Returns everything before the first heading of a page.
 pub(in super::super) fn head(title: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\

@@ -1,4 +1,4 @@
-// Designing: pins, templates, every kind of control, undo, the address, and a kept curve.
+// Pins, templates, every kind of control, undo, the address, and the comparison of curves.
 
 export const START = '#v=1&layout.pins=4,8,12';
 
@@ -34,9 +34,9 @@ export async function pinsByMouse(visit, site) {
   await visit.click('#mirror-pins');
   await visit.addressHas('layout.pins=4,9,12');
   await visit.settled();
-  await visit.check('what is drawn has the pins', (pin) => document.querySelector(pin) !== null, checked(9));
+  await visit.check('the drawing has the pins', (pin) => document.querySelector(pin) !== null, checked(9));
   await visit.click('#clear-pins');
-  await visit.check('without pins the tendon lies bare', () => document.querySelector('#pins-say').textContent === 'No pins');
+  await visit.check('a layout without pins is named', () => document.querySelector('#pins-title').textContent === 'No pins');
   await visit.settled();
 }
 
@@ -53,21 +53,21 @@ export async function pinsByKeys(visit, site) {
   await keyboard.press('ArrowRight');
   await keyboard.up('Shift');
   await visit.addressHas('layout.pins=4,8,9,12');
-  await visit.check('the focus goes with the pin', () => document.activeElement.dataset.groove === '9');
+  await visit.check('the focus follows the pin', () => document.activeElement.dataset.groove === '9');
   await keyboard.press('Delete');
   await visit.addressHas('layout.pins=4,8,12');
   await keyboard.press('Home');
   await keyboard.press('Enter');
   await visit.addressHas('layout.pins=1,4,8,12');
   await keyboard.press('Tab');
-  await visit.check('one stop of the focus order holds all grooves', () => !document.activeElement.dataset.groove);
+  await visit.check('all grooves are one tab stop', () => !document.activeElement.dataset.groove);
   await visit.settled();
 }
 
 export async function templates(visit, site) {
   await visit.open(site.address + START);
   const names = await visit.page.$$eval('#chips button', (chips) => chips.map((c) => c.textContent));
-  visit.findings.check('published layouts are one click away', ['three-double', 'six-single'].every((n) => names.includes(n)), names);
+  visit.findings.check('published layouts have buttons', ['three-double', 'six-single'].every((n) => names.includes(n)), names);
   await visit.click(`#chips button:nth-child(${names.indexOf('six-single') + 1})`);
   await visit.settled();
   await visit.check('the template is shown', () => document.querySelector('#name').textContent === 'six-single' && document.querySelector('#chips [aria-pressed=true]').textContent === 'six-single');
@@ -75,15 +75,15 @@ export async function templates(visit, site) {
   const printer = await visit.page.evaluateHandle(() => [...document.querySelectorAll('#template-list button')].find((b) => b.textContent.startsWith('printer-')));
   await printer.click();
   await visit.settled();
-  await visit.check('a printer goes under the design', () => location.hash.includes('print.') && document.querySelector('#name').textContent.startsWith('six-single'));
+  await visit.check('a printer changes the settings, not the layout', () => location.hash.includes('print.') && document.querySelector('#name').textContent.startsWith('six-single'));
 }
 
 export async function parameters(visit, site, { facts }) {
   await visit.open(site.address + START);
   const shown = await visit.page.$$eval('#fields .field', (fields) => fields.length);
   visit.findings.check('every field of the table has a control', shown === facts.fields.length, `${shown} of ${facts.fields.length}`);
-  const wordless = await visit.page.$$eval('#fields input, #fields select', (all) => all.filter((e) => !e.labels?.length && !e.getAttribute('aria-label')).map((e) => e.id));
-  visit.findings.check('every control has a name', wordless.length === 0, wordless);
+  const unnamed = await visit.page.$$eval('#fields input, #fields select', (all) => all.filter((e) => !e.labels?.length && !e.getAttribute('aria-label')).map((e) => e.id));
+  visit.findings.check('every control has a name', unnamed.length === 0, unnamed);
   await visit.type('#f-silicone-thickness_mm', '2.5');
   await visit.addressHas('silicone.thickness_mm=2.5');
   await visit.settled();
@@ -93,14 +93,14 @@ export async function parameters(visit, site, { facts }) {
   await visit.click('#f-silicone-thickness_mm-field [aria-label^="Reset"]');
   await visit.addressLacks('silicone.thickness_mm');
   await visit.click('#f-silicone-thickness_mm-field [aria-label^="About"]');
-  await visit.check('reason, range, default and origin are told', () => /Range: .*Default: .*(published|chosen|assumed)/.test(document.querySelector('#f-silicone-thickness_mm-about').textContent));
+  await visit.check('reason, range, default and origin are shown', () => /Range: .*Default: .*(published|chosen|assumed)/.test(document.querySelector('#f-silicone-thickness_mm-about').textContent));
   await visit.type('#find', 'engrave');
   await visit.check('a search narrows the list', () => [...document.querySelectorAll('#fields .field')].filter((f) => f.checkVisibility()).length < 8);
   await visit.click('#f-label-engrave');
   await visit.addressHas('label.engrave=');
   await visit.type('#find', ' ');
   await visit.click('#only-changed');
-  await visit.check('what was changed is shown alone', () => [...document.querySelectorAll('#fields .field')].filter((f) => f.checkVisibility()).length === 2);
+  await visit.check('only changed parameters are shown', () => [...document.querySelectorAll('#fields .field')].filter((f) => f.checkVisibility()).length === 2);
   await visit.click('#only-changed');
   await visit.page.$eval('#f-fasteners-kind', (e) => { e.closest('details').open = true; });
   await visit.page.select('#f-fasteners-kind', 'insert');
@@ -110,42 +110,42 @@ export async function parameters(visit, site, { facts }) {
 
 export async function outOfBounds(visit, site) {
   await visit.open(site.address + START);
-  const before = await visit.text('#friction-words');
+  const before = await visit.text('#friction-text');
   await visit.type('#f-segment-grooves', '40');
-  await visit.check('the error stands at the control', () => !document.querySelector('#f-segment-grooves-error').hidden && document.querySelector('#f-segment-grooves').getAttribute('aria-invalid') === 'true');
+  await visit.check('the error is shown at the control', () => !document.querySelector('#f-segment-grooves-error').hidden && document.querySelector('#f-segment-grooves').getAttribute('aria-invalid') === 'true');
   await visit.settled();
-  await visit.check('above the view it is told, too, with a remedy', () => /lower it to|raise/.test(document.querySelector('#trouble').textContent));
-  visit.findings.check('the last good part stays, in grey', await visit.text('#friction-words') === before && await visit.page.$eval('body', (b) => b.classList.contains('stale')));
+  await visit.check('it is shown above the view, too, with help', () => /lower it to|raise/.test(document.querySelector('#trouble').textContent));
+  visit.findings.check('the last valid design is shown in grey', await visit.text('#friction-text') === before && await visit.page.$eval('body', (b) => b.classList.contains('stale')));
   await visit.click('#download');
-  await visit.check('what cannot be built has no files, and says so', () => /cannot be built/.test(document.querySelector('#files-say').textContent) && document.querySelector('#zip').disabled);
+  await visit.check('a refused design has no files, with a message', () => /cannot be built/.test(document.querySelector('#files-status').textContent) && document.querySelector('#zip').disabled);
   await visit.click('#files-close');
-  await visit.click('#f-segment-grooves-error .mend');
+  await visit.click('#f-segment-grooves-error .fix');
   await visit.settled();
-  await visit.check('its button mends it', () => document.querySelector('#trouble').hidden && !document.body.classList.contains('stale') && document.querySelector('#f-segment-grooves-error').hidden);
+  await visit.check('its button fixes it', () => document.querySelector('#trouble').hidden && !document.body.classList.contains('stale') && document.querySelector('#f-segment-grooves-error').hidden);
   await visit.type('#f-shell-wall_mm', '1e9');
-  await visit.check('a value out of its range is told', () => /to|range|most/.test(document.querySelector('#f-shell-wall_mm-error').textContent));
+  await visit.check('a value out of its range is reported', () => /to|range|most/.test(document.querySelector('#f-shell-wall_mm-error').textContent));
   await visit.settled();
-  await visit.click('#f-shell-wall_mm-error .mend');
+  await visit.click('#f-shell-wall_mm-error .fix');
   await visit.addressHas('shell.wall_mm=60');
   await visit.settled();
-  await visit.click('#f-shell-wall_mm-error .mend');
+  await visit.click('#f-shell-wall_mm-error .fix');
   await visit.settled();
-  await visit.check('a value out of its range is mended to the nearest that can be built', () => document.querySelector('#trouble').hidden && Number(document.querySelector('#f-shell-wall_mm').value) < 60);
+  await visit.check('a value out of its range becomes the nearest valid one', () => document.querySelector('#trouble').hidden && Number(document.querySelector('#f-shell-wall_mm').value) < 60);
   await visit.type('#f-segment-grooves', '7.5');
-  await visit.check('what is no whole number is told at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'A whole number goes here.');
+  await visit.check('a fraction is reported at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'Enter a whole number.');
 }
 
 export async function errorUnderAFilter(visit, site) {
   await visit.open(site.address + START);
   const isShown = () => document.querySelector('#f-segment-grooves-error').checkVisibility() && document.querySelector('#f-segment-grooves').checkVisibility();
-  const isGone = () => !document.querySelector('#f-segment-grooves').checkVisibility();
+  const isHidden = () => !document.querySelector('#f-segment-grooves').checkVisibility();
   await visit.type('#find', 'engrave');
-  await visit.check('what does not fit is hidden', isGone);
+  await visit.check('other fields are hidden', isHidden);
   await visit.page.evaluate(() => { location.hash += '&segment.grooves=40'; });
-  await visit.check('a field with an error is shown, whatever is looked for', isShown);
+  await visit.check('a field with an error is shown under any filter', isShown);
   await visit.settled();
-  await visit.click('#trouble .mend');
-  await visit.check('mended, it goes again', isGone);
+  await visit.click('#trouble .fix');
+  await visit.check('once fixed, it is hidden again', isHidden);
   await visit.settled();
 }
 
@@ -174,7 +174,7 @@ export async function undoAndRedo(visit, site) {
   await visit.settled();
 }
 
-// However quickly pins are set, each is a step of its own.
+// Each pin is one step of the history, however quickly they follow each other.
 export async function undoOfQuickPins(visit, site) {
   await visit.open(`${site.address}#v=1&layout.pins=8`);
   for (const groove of [3, 6, 12]) {
@@ -186,29 +186,29 @@ export async function undoOfQuickPins(visit, site) {
     await visit.click('#undo');
     await visit.addressHas(`layout.pins=${before}`);
   }
-  await visit.check('then nothing is left to undo', () => document.querySelector('#undo').disabled);
+  await visit.check('then there is nothing to undo', () => document.querySelector('#undo').disabled);
   await visit.settled();
 }
 
-export async function undoOfAnAsk(visit, site) {
+export async function undoOfTargets(visit, site) {
   await visit.open(site.address + START);
   const undo = async () => {
     await visit.page.keyboard.down('Control');
     await visit.page.keyboard.press('z');
     await visit.page.keyboard.up('Control');
   };
-  await visit.type('#ask-threshold', '24');
+  await visit.type('#target-threshold', '24');
   await visit.addressHas('ask.threshold_n=24');
   await undo();
   await visit.addressLacks('ask.threshold_n');
-  visit.findings.check('the box has no number that is not asked', await visit.page.$eval('#ask-threshold', (e) => e.value === ''));
+  visit.findings.check('the input of a removed target is empty', await visit.page.$eval('#target-threshold', (e) => e.value === ''));
   await visit.click('#add-friction');
   await visit.addressHas('ask.friction=');
-  const before = await visit.page.$eval('#ask-frictions input', (e) => e.value);
-  await visit.type('#ask-frictions input', '8.25');
+  const before = await visit.page.$eval('#target-frictions input', (e) => e.value);
+  await visit.type('#target-frictions input', '8.25');
   await visit.addressHas('8.25');
   await undo();
-  await visit.check('nor has that of a friction', (value) => document.querySelector('#ask-frictions input').value === value, before);
+  await visit.check('undo restores a target friction', (value) => document.querySelector('#target-frictions input').value === value, before);
   await visit.settled();
 }
 
@@ -218,50 +218,50 @@ export async function address(visit, site) {
   await visit.page.reload();
   await visit.settled();
   for (const part of ['layout.pins=3,8,13', 'label.text=a b,c', 'silicone.thickness_mm=2.5', 'ask.threshold_n=24', 'ask.friction=40:8.5']) await visit.addressHas(part);
-  visit.findings.check('an address that is whole needs no words', !(await visit.shown('#notice')), await visit.text('#notice'));
+  visit.findings.check('a complete address gives no message', !(await visit.shown('#notice')), await visit.text('#notice'));
   await visit.page.goto(`${site.address}#v=1&layout.pins=7,9`);
   await visit.addressHas('layout.pins=7,9');
   await visit.addressLacks('thickness_mm');
   await visit.settled();
-  // Without an address, the last visit goes on.
+  // Without an address the page continues with the last visit.
   if (site.name === 'module') {
     await visit.open(site.address);
     await visit.addressHas('layout.pins=7,9');
   }
 }
 
-// What the page itself wrote into the address is read again, with its error.
-export async function reloadOfWhatIsRefused(visit, site) {
+// The page reads its own address again, with the same error.
+export async function reloadOfRefusedValues(visit, site) {
   for (const [box, text, part] of [['#f-layout-pins', '0, 4, -3, 8', 'layout.pins=-3,0,4,8'], ['#f-layout-pins', '4, 12345678901', 'layout.pins=4,12345678901'], ['#f-silicone-thickness_mm', '1e-9', 'silicone.thickness_mm=1e-9'],
     ['#f-segment-grooves', '-2', 'segment.grooves=-2']]) {
     await visit.open(site.address + START);
     await visit.type(box, text);
     await visit.addressHas(part);
     await visit.settled();
-    const said = await visit.text(`${box}-error`);
+    const message = await visit.text(`${box}-error`);
     await visit.page.reload();
     await visit.settled();
     await visit.addressHas(part);
-    visit.findings.check(`${text} has its error again after loading`, said !== '' && await visit.text(`${box}-error`) === said && await visit.shown(`${box}-error`), said);
-    visit.findings.check('and no other words', !await visit.shown('#notice'), await visit.text('#notice'));
+    visit.findings.check(`${text} has the same error after a reload`, message !== '' && await visit.text(`${box}-error`) === message && await visit.shown(`${box}-error`), message);
+    visit.findings.check('and no other message', !await visit.shown('#notice'), await visit.text('#notice'));
   }
 }
 
 const LINKS = {
-  'cut off': ['#layout.pi', /holds no design|cut off/], 'no words at all': ['#%%%', /holds no design/], 'of a later version': ['#v=9&layout.pins=6,10', /version 9, newer/],
-  'of no version that there was': ['#v=0&layout.pins=6,10', /version 0/],
-  'with a field that went': ['#v=1&shell.colour=red&layout.pins=6,10', /shell\.colour.*does not have.*rest was taken/s],
-  'with a value of the wrong kind': ['#v=1&shell.wall_mm=thick&layout.pins=6,10', /shell\.wall_mm.*cannot be.*rest was taken/s],
-  'with a model that is cut off': ['#v=1&layout.pins=6,10&model=mine.toml~eJyrVkrL', /model that is cut off/],
+  'that is cut off': ['#layout.pi', /contains no design, or is cut off/], 'without names': ['#%%%', /contains no design/], 'of a later version': ['#v=9&layout.pins=6,10', /version 9, newer/],
+  'of an invalid version': ['#v=0&layout.pins=6,10', /version 0/],
+  'with an unknown field': ['#v=1&shell.colour=red&layout.pins=6,10', /Unknown in the address: shell\.colour\..*rest is applied/s],
+  'with a value of the wrong kind': ['#v=1&shell.wall_mm=thick&layout.pins=6,10', /Invalid value in the address: shell\.wall_mm\..*rest is applied/s],
+  'with a truncated model': ['#v=1&layout.pins=6,10&model=mine.toml~eJyrVkrL', /model in the address is cut off/],
   'with a value out of its range': ['#v=1&shell.wall_mm=1e9', /shell|wall/i],
 };
 
 export async function links(visit, site) {
-  for (const [kind, [hash, words]] of Object.entries(LINKS)) {
+  for (const [kind, [hash, pattern]] of Object.entries(LINKS)) {
     await visit.open(site.address + hash);
-    const said = await visit.text('#notice') + await visit.text('#trouble');
-    visit.findings.check(`a link ${kind} is explained`, words.test(said), said);
-    visit.findings.check(`after a link ${kind} a part is shown`, Number(await visit.page.$eval('body', (b) => b.dataset.generation)) > 0);
+    const message = await visit.text('#notice') + await visit.text('#trouble');
+    visit.findings.check(`a link ${kind} is explained`, pattern.test(message), message);
+    visit.findings.check(`after a link ${kind} a design is shown`, Number(await visit.page.$eval('body', (b) => b.dataset.generation)) > 0);
     if (/layout.pins/.test(hash)) await visit.addressHas('layout.pins=6,10');
   }
 }
@@ -269,17 +269,17 @@ export async function links(visit, site) {
 export async function compare(visit, site) {
   await visit.open(site.address + START);
   const legend = () => visit.text('#legend');
-  await visit.click('#keep');
-  visit.findings.check('a kept curve is named', (await legend()).includes('kept: '), await legend());
+  await visit.click('#keep-curve');
+  visit.findings.check('the comparison is in the legend', (await legend()).includes('comparison: '), await legend());
   await visit.type('#f-silicone-thickness_mm', '5');
   await visit.settled();
   const both = await visit.picture('#chart');
-  visit.findings.check('it stays beside the next design, with what differs', /4, 8, 12\], thickness 2 mm/.test(await legend()), await legend());
+  visit.findings.check('it is shown next to the changed design, with the difference', /4, 8, 12\], thickness 2 mm/.test(await legend()), await legend());
   await visit.page.reload();
   await visit.settled();
-  visit.findings.check('it outlives a reload', (await legend()).includes('4, 8, 12'));
-  await visit.click('#keep');
-  visit.findings.check('it can be let go', !(await legend()).includes('kept: ') && await visit.picture('#chart') !== both);
-  await visit.click('#rivals');
-  visit.findings.check('other laws are drawn when asked for', /layout|paper/.test(await legend()), await legend());
+  visit.findings.check('it survives a reload', (await legend()).includes('4, 8, 12'));
+  await visit.click('#keep-curve');
+  visit.findings.check('it can be cleared', !(await legend()).includes('comparison: ') && await visit.picture('#chart') !== both);
+  await visit.click('#other-laws');
+  visit.findings.check('other laws are drawn on request', /layout|paper/.test(await legend()), await legend());
 }

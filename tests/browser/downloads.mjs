@@ -1,4 +1,4 @@
-// Downloads are those of the command line, byte for byte.
+// Downloads equal the files of the command line, byte for byte.
 
 import { execFile } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { inflateRawSync } from 'node:zlib';
 
-// Twelve configurations that differ in what they have, by the address.
+// Twelve configurations with different parts, as addresses.
 export const CONFIGURATIONS = [
   'layout.pins=5,8,11&switch.name=three', 'layout.pins=3,5,7,9,11,13&switch.name=six', 'layout.pins=&switch.name=bare', 'layout.pins=8&switch.name=one',
   'layout.pins=4,8,12&layout.substrate=abs&switch.name=rigid', 'layout.pins=5,8,11&fasteners.kind=insert&switch.name=inserts', 'layout.pins=5,8,11&mould.kind=one-piece&mould.layers=2&switch.name=gang',
@@ -17,23 +17,23 @@ export const CONFIGURATIONS = [
 
 const hash = (bytes) => createHash('sha256').update(bytes).digest('hex');
 
-// The files of an archive, by name: those of the central directory.
+// The files of a ZIP archive by name, from its central directory.
 function unpacked(archive) {
   const end = archive.lastIndexOf(Buffer.from([0x50, 0x4b, 5, 6]));
   const files = new Map();
-  let place = archive.readUInt32LE(end + 16);
+  let offset = archive.readUInt32LE(end + 16);
   for (let i = archive.readUInt16LE(end + 10); i > 0; i -= 1) {
-    const [method, packed, name, extra, comment, local] = [archive.readUInt16LE(place + 10), archive.readUInt32LE(place + 20), archive.readUInt16LE(place + 28),
-      archive.readUInt16LE(place + 30), archive.readUInt16LE(place + 32), archive.readUInt32LE(place + 42)];
-    const begin = local + 30 + archive.readUInt16LE(local + 26) + archive.readUInt16LE(local + 28);
-    const content = archive.subarray(begin, begin + packed);
-    files.set(archive.toString('utf8', place + 46, place + 46 + name), method === 8 ? inflateRawSync(content) : content);
-    place += 46 + name + extra + comment;
+    const [method, packed, name, extra, comment, local] = [archive.readUInt16LE(offset + 10), archive.readUInt32LE(offset + 20), archive.readUInt16LE(offset + 28),
+      archive.readUInt16LE(offset + 30), archive.readUInt16LE(offset + 32), archive.readUInt32LE(offset + 42)];
+    const start = local + 30 + archive.readUInt16LE(local + 26) + archive.readUInt16LE(local + 28);
+    const content = archive.subarray(start, start + packed);
+    files.set(archive.toString('utf8', offset + 46, offset + 46 + name), method === 8 ? inflateRawSync(content) : content);
+    offset += 46 + name + extra + comment;
   }
   return files;
 }
 
-// Where the browser puts downloads of this visit, and waiting for one of them.
+// Directs the downloads of a visit to a folder; returns a function that waits for one of them.
 async function downloading(visit, folder) {
   const session = await visit.browser.real.target().createCDPSession();
   await session.send('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: folder, browserContextId: visit.context.id });
@@ -51,12 +51,13 @@ async function downloading(visit, folder) {
   };
 }
 
-// What the command line makes of a configuration that was downloaded; the same for both engines, so that it is made once.
-const made = new Map();
+// Hashes of the files that the command line generates from a downloaded configuration, once for
+// both engines.
+const generatedSets = new Map();
 function byCommandLine(binary, scratch, name, toml) {
   const key = hash(toml);
-  if (!made.has(key)) made.set(key, generated(binary, mkdtempSync(join(scratch, 'set-')), name, toml));
-  return made.get(key);
+  if (!generatedSets.has(key)) generatedSets.set(key, generated(binary, mkdtempSync(join(scratch, 'set-')), name, toml));
+  return generatedSets.get(key);
 }
 
 async function generated(binary, folder, name, toml, options = []) {
@@ -67,8 +68,8 @@ async function generated(binary, folder, name, toml, options = []) {
   return files;
 }
 
-// Opens the page with a configuration, or changes the address of the page that is open.
-async function turnTo(visit, site, configuration, name) {
+// Opens the page with a configuration, or changes the address of the open page.
+async function show(visit, site, configuration, name) {
   if (visit.page.url().startsWith('about:')) await visit.open(`${site.address}#v=1&${configuration}`);
   else await visit.page.evaluate((hash) => { location.hash = hash; }, `v=1&${configuration}`);
   await visit.page.waitForFunction((now) => document.querySelector('#name').textContent === now && document.body.dataset.pending === 'false', {}, name);
@@ -80,7 +81,7 @@ export async function downloads(visit, site, { binary, scratch, findings }) {
   const wait = await downloading(visit, folder);
   for (const [i, configuration] of CONFIGURATIONS.entries()) {
     const name = /switch\.name=(\w+)/.exec(configuration)[1];
-    await turnTo(visit, site, configuration, name);
+    await show(visit, site, configuration, name);
     await visit.click('#download');
     await visit.page.waitForSelector('#file-list button', { timeout: 60_000 });
     await visit.click('#toml');
@@ -90,16 +91,16 @@ export async function downloads(visit, site, { binary, scratch, findings }) {
     const line = await byCommandLine(binary, scratch, name, toml);
     const own = new Map([...files].map(([file, bytes]) => [file, hash(bytes)]));
     const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
-    findings.check(`the files of ${name} have the names of the command line's`, own.size > 20 && [...line.keys()].every((file) => own.has(file)), [...own.keys()]);
-    findings.check(`${own.size} files of ${name} are those of the command line`, differ.length === 0, differ.join(' '));
-    await liesAsInTheFiles(visit, JSON.parse(files.get('manifest.json').toString()).plates, name);
+    findings.check(`the files of ${name} have the names of the command line's files`, own.size > 20 && [...line.keys()].every((file) => own.has(file)), [...own.keys()]);
+    findings.check(`${own.size} files of ${name} equal those of the command line`, differ.length === 0, differ.join(' '));
+    await compareBeds(visit, JSON.parse(files.get('manifest.json').toString()).plates, name);
     if (i === 0) await oneByOne(visit, wait, own, findings);
     await visit.click('#files-close');
   }
 }
 
-// The beds of the page are the plates of the files, with each part where it lies there.
-async function liesAsInTheFiles(visit, plates, name) {
+// The beds on the page equal the plates in the files.
+async function compareBeds(visit, plates, name) {
   const drawn = await visit.page.$$eval('#bed svg', (beds) => beds.map((bed) => {
     const side = Number(bed.querySelector('.plate').getAttribute('width'));
     return [...bed.querySelectorAll('.outline')].map((outline) => {
@@ -107,13 +108,13 @@ async function liesAsInTheFiles(visit, plates, name) {
       return [x + width / 2, side - y - height / 2];
     });
   }));
-  const isThere = (lies, { x_mm, y_mm }) => lies.some(([x, y]) => Math.hypot(x - x_mm, y - y_mm) < 0.05);
-  const agree = drawn.length === plates.length && plates.every((plate, k) => plate.parts.length === drawn[k].length && plate.parts.every((part) => isThere(drawn[k], part)));
-  visit.findings.check(`the parts of ${name} lie on the bed as in its files`, agree, JSON.stringify([drawn, plates]));
+  const contains = (positions, { x_mm, y_mm }) => positions.some(([x, y]) => Math.hypot(x - x_mm, y - y_mm) < 0.05);
+  const agree = drawn.length === plates.length && plates.every((plate, k) => plate.parts.length === drawn[k].length && plate.parts.every((part) => contains(drawn[k], part)));
+  visit.findings.check(`the parts of ${name} are arranged as in its files`, agree, JSON.stringify([drawn, plates]));
 }
 
-// With a calibrated model, too.
-export async function downloadsByAModel(visit, site, { binary, scratch, findings, table }) {
+// Also with a calibrated model.
+export async function downloadsWithAModel(visit, site, { binary, scratch, findings, table }) {
   const folder = join(scratch, `modelled-${site.name}`);
   mkdirSync(folder);
   const wait = await downloading(visit, folder);
@@ -123,7 +124,7 @@ export async function downloadsByAModel(visit, site, { binary, scratch, findings
   const model = join(rig, 'rig', 'model.toml');
   await visit.open(`${site.address}#v=1&layout.pins=4,9,12&silicone.thickness_mm=2.5&switch.name=modelled`);
   await visit.drop('model.toml', readFileSync(model, 'utf8'));
-  await visit.check('the model is in the design', () => /your model/.test(document.querySelector('#trust').textContent));
+  await visit.check('the design uses the model', () => /your model/.test(document.querySelector('#trust').textContent));
   await visit.settled();
   await visit.click('#download');
   await visit.page.waitForSelector('#file-list button', { timeout: 60_000 });
@@ -133,27 +134,28 @@ export async function downloadsByAModel(visit, site, { binary, scratch, findings
   const own = new Map([...unpacked(await wait('modelled.zip'))].map(([file, bytes]) => [file, hash(bytes)]));
   const line = await generated(binary, mkdtempSync(join(scratch, 'set-')), 'modelled', toml, ['--model', model]);
   const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
-  findings.check(`${own.size} files by a model are those of the command line`, own.size > 20 && differ.length === 0, differ.join(' '));
+  findings.check(`${own.size} files with a model equal those of the command line`, own.size > 20 && differ.length === 0, differ.join(' '));
   await visit.click('#files-close');
-  // What stands in for a design that the model cannot be carried to is by the published constants, and says so.
+  // If the model does not cover the first design, the published design shown instead does not name
+  // it.
   const address = await visit.page.evaluate(() => location.hash);
   await visit.page.goto('about:blank');
   await visit.open(`${site.address}${address}&segment.grooves=14`);
-  await visit.check('a published curve is not called that of a model', () => !document.querySelector('#trouble').hidden && !/your model/.test(document.querySelector('#trust').textContent));
+  await visit.check('a published curve is not attributed to the model', () => !document.querySelector('#trouble').hidden && !/your model/.test(document.querySelector('#trust').textContent));
 }
 
-// Chromium drops what a page saves beyond ten files a second; no hand is so fast.
-const PACE_MS = 110;
+// Chromium drops downloads beyond ten a second.
+const DOWNLOAD_INTERVAL_MS = 110;
 
-// One by one, they are those of the archive.
+// Files one by one equal those of the archive.
 async function oneByOne(visit, wait, archive, findings) {
   const buttons = await visit.page.$$('#file-list button');
   const differ = [];
   for (const button of buttons) {
     const name = await button.evaluate((b) => b.firstChild.textContent);
     await button.click();
-    await new Promise((done) => setTimeout(done, PACE_MS));
+    await new Promise((done) => setTimeout(done, DOWNLOAD_INTERVAL_MS));
     if (hash(await wait(name)) !== archive.get(name)) differ.push(name);
   }
-  findings.check('one by one they are the same', differ.length === 0 && buttons.length === archive.size, `${buttons.length} of ${archive.size}, ${differ.join(' ')}`);
+  findings.check('files one by one equal those of the archive', differ.length === 0 && buttons.length === archive.size, `${buttons.length} of ${archive.size}, ${differ.join(' ')}`);
 }

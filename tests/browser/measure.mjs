@@ -1,12 +1,12 @@
-// Prints what the page weighs and how fast it is: node measure.mjs JOB.json, with the job of run.mjs. Nothing is asserted: the
-// figures of cad/doc/configurator.md were made by this, on a machine that did nothing else.
+// Prints size and speed of the page, the figures in cad/doc/configurator.md: node measure.mjs
+// JOB.json, with the job of run.mjs, on an otherwise idle machine.
 
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
-import { Browser, Findings, Visit } from './drive.mjs';
-import { moduleSite, viewSite } from './engines.mjs';
+import { Browser, Findings, Visit } from './driver.mjs';
+import { moduleSite, viewSite } from './sites.mjs';
 
 const CHANGES = 200;
 const MANY = 1000;
@@ -14,15 +14,15 @@ const job = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const scratch = mkdtempSync(join(tmpdir(), 'pinswitch-measure-'));
 
 const kilo = (bytes) => `${Math.round(bytes / 1000)} kB`;
-const share = (sorted, p) => sorted[Math.min(sorted.length - 1, Math.floor(p * sorted.length))];
+const quantile = (sorted, p) => sorted[Math.min(sorted.length - 1, Math.floor(p * sorted.length))];
 
-function weigh(folder) {
+function printSize(folder) {
   const page = readFileSync(join(folder, 'index.html'));
   console.log(`page with module: ${kilo(page.length)} as a file, ${kilo(gzipSync(page, { level: 9 }).length)} by gzip, ${kilo(brotliCompressSync(page).length)} by brotli`);
 }
 
-// From the click on the address to a design that is shown.
-async function begin(browser, site) {
+// Time from opening the address to a design that is shown.
+async function firstDisplay(browser, site) {
   const times = [];
   for (let i = 0; i < 5; i += 1) {
     const visit = await Visit.begin(browser, { findings: new Findings() });
@@ -32,10 +32,11 @@ async function begin(browser, site) {
     times.push(await visit.page.evaluate(() => performance.now()));
     await visit.end();
   }
-  console.log(`${site.name}: interactive after ${times.map((t) => Math.round(t)).sort((a, b) => a - b).join(', ')} ms`);
+  console.log(`${site.name}: first display after ${times.map((t) => Math.round(t)).sort((a, b) => a - b).join(', ')} ms`);
 }
 
-// Random values of number fields, by a generator with a seed, each within a tenth of its default: most can be built.
+// Random values of number fields, from a seeded generator, within 5 % of the default: most designs
+// can be built.
 function changes(facts, count) {
   let seed = 1;
   const random = () => { seed = (seed * 48271) % 2147483647; return seed / 2147483647; };
@@ -47,31 +48,31 @@ function changes(facts, count) {
   });
 }
 
-// A change, as a slider makes it, until part and curve of it are drawn. Refused ones count, too: the answer is the refusal. What is not
-// answered at all counts as five seconds; null is no change.
-async function change(page, [path, value]) {
+// Time in ms from a change of a slider until part and curve, or the refusal, are drawn; 5000
+// without an answer, null if the value does not change.
+async function timeOfChange(page, [path, value]) {
   return page.evaluate(async (field, to) => {
     const { dataset } = document.body;
     const input = document.getElementById(`f-${field.replace('.', '-')}`);
     if (Number(input.value) === to) return null;
-    const before = dataset.asked;
-    const began = performance.now();
+    const before = dataset.requested;
+    const start = performance.now();
     input.value = to;
     input.dispatchEvent(new Event('input', { bubbles: true }));
-    if (dataset.asked === before) return null;
-    // Not the exact answer to the change before, which may come first.
-    while (dataset.answered !== dataset.asked) {
-      if (performance.now() - began > 5000) return 5000;
+    if (dataset.requested === before) return null;
+    // The exact answer to the change before may come first.
+    while (dataset.answered !== dataset.requested) {
+      if (performance.now() - start > 5000) return 5000;
       await new Promise((done) => { const { port1, port2 } = new MessageChannel(); port1.onmessage = () => { port1.close(); done(); }; port2.postMessage(0); });
     }
-    // What is shown is drawn in the next frame.
+    // The answer is drawn in the next frame.
     await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
-    return performance.now() - began;
+    return performance.now() - start;
   }, path, value);
 }
 
-// Takes a refused change back, so that the next one is seen to be answered.
-async function takeBack(page) {
+// Undoes a refused change.
+async function undoRefused(page) {
   await page.evaluate(async () => {
     const isRefused = () => document.getElementById('trouble').textContent !== '';
     const end = performance.now() + 3000;
@@ -85,12 +86,12 @@ async function speed(browser, site, facts) {
   await visit.open(`${site.address}#v=1&layout.pins=4,8,12`);
   const times = [];
   for (const step of changes(facts, CHANGES)) {
-    const time = await change(visit.page, step);
+    const time = await timeOfChange(visit.page, step);
     if (time !== null) times.push(time);
-    await takeBack(visit.page);
+    await undoRefused(visit.page);
   }
   times.sort((a, b) => a - b);
-  console.log(`${site.name}: ${times.length} random changes to part and curve: median ${Math.round(share(times, 0.5))} ms, 95th percentile ${Math.round(share(times, 0.95))} ms, worst ${Math.round(times.at(-1))} ms`);
+  console.log(`${site.name}: ${times.length} random changes to part and curve: median ${Math.round(quantile(times, 0.5))} ms, 95th percentile ${Math.round(quantile(times, 0.95))} ms, worst ${Math.round(times.at(-1))} ms`);
   await visit.end();
 }
 
@@ -107,28 +108,28 @@ async function memory(browser, site, facts) {
   };
   console.log(`${site.name}: memory at first: ${await used()}`);
   for (const [i, step] of changes(facts, MANY).entries()) {
-    await change(visit.page, step);
-    await takeBack(visit.page);
+    await timeOfChange(visit.page, step);
+    await undoRefused(visit.page);
     if ((i + 1) % 250 === 0) console.log(`${site.name}: memory after ${i + 1} changes: ${await used()}`);
   }
   await visit.end();
 }
 
-// What takes seconds: a search, a calibration, all files.
-async function slow(browser, site, table) {
+// Times of long requests: a search, all files, a calibration.
+async function longRequests(browser, site, table) {
   const visit = await Visit.begin(browser, { findings: new Findings() });
   await visit.open(`${site.address}#v=1&layout.pins=4,8,12&ask.threshold_n=24`);
   const timed = async (what, act, done) => {
-    const began = performance.now();
+    const start = performance.now();
     await act();
     await visit.page.waitForFunction(done, { timeout: 600_000 });
-    console.log(`${site.name}: ${what} ${((performance.now() - began) / 1000).toFixed(1)} s`);
+    console.log(`${site.name}: ${what} ${((performance.now() - start) / 1000).toFixed(1)} s`);
   };
   await timed('a search takes', () => visit.click('#search'), () => document.querySelectorAll('.design').length > 0);
   await timed('all files take', () => visit.click('#download'), () => document.querySelectorAll('#file-list button').length > 0);
   await visit.click('#files-close');
   const rows = table.trim().split('\n').length - 1;
-  await timed(`a calibration of ${rows} rows takes`, () => visit.drop('plateaus.csv', table), () => !document.querySelector('#take-model').hidden);
+  await timed(`a calibration of ${rows} rows takes`, () => visit.drop('plateaus.csv', table), () => !document.querySelector('#use-model').hidden);
   await visit.end();
 }
 
@@ -137,12 +138,12 @@ async function main() {
   const sites = [await viewSite(job.binary, scratch, ['mine.toml'])];
   const { origin } = sites[0];
   const facts = await (await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"ask": "facts"}' })).json();
-  if (job.site) { weigh(job.site); sites.push(await moduleSite(job.site)); }
+  if (job.site) { printSize(job.site); sites.push(await moduleSite(job.site)); }
   const browser = await Browser.start({ tools: job.tools, executable: job.browser });
   for (const site of sites.reverse()) {
-    for (const [name, act] of Object.entries({ begin, speed, slow, memory })) {
+    for (const [name, act] of Object.entries({ firstDisplay, speed, longRequests, memory })) {
       if (job.only && !job.only.split(' ').includes(name)) continue;
-      await act(browser, site, name === 'slow' ? readFileSync(job.table, 'utf8') : facts);
+      await act(browser, site, name === 'longRequests' ? readFileSync(job.table, 'utf8') : facts);
     }
     await site.end();
   }

@@ -1,41 +1,43 @@
-// Drives the configurator in a real browser, with `pinswitch view` and with the module: node run.mjs JOB.json, where the job
-// names `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and axe-core), `table` (a table of plateaus),
-// `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/app/build made). Exit code 1
-// if anything did not hold; `only` runs the scenarios whose names hold one of its words.
+// Tests the configurator in a browser, with `pinswitch view` and with the module: node run.mjs
+// JOB.json. The job has `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and
+// axe-core), `table` (a table of plateaus), `pictures` (a folder for screenshots), optionally
+// `site` (a folder that cad/app/build wrote), and optionally `only` (runs scenarios whose names
+// contain one of its words). Exit code 1 if a check failed.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { Browser, Findings, Visit } from './drive.mjs';
-import { moduleSite, viewSite } from './engines.mjs';
-import * as around from './around.mjs';
-import * as belongs from './belongs.mjs';
+import { Browser, Findings, Visit } from './driver.mjs';
+import { moduleSite, viewSite } from './sites.mjs';
+import * as appearance from './appearance.mjs';
+import * as consistency from './consistency.mjs';
 import * as design from './design.mjs';
 import * as downloads from './downloads.mjs';
+import * as embedding from './embedding.mjs';
+import * as errors from './errors.mjs';
 import * as focus from './focus.mjs';
-import * as look from './look.mjs';
-import * as served from './served.mjs';
+import * as search from './search.mjs';
+import * as server from './server.mjs';
 import * as tables from './tables.mjs';
-import * as trouble from './trouble.mjs';
 
 const job = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const scratch = mkdtempSync(join(tmpdir(), 'pinswitch-job-'));
 
-// A page that a double click opened: from a file, without any server.
+// The page from a file, without a server.
 async function fromFile(visit, site, { findings }) {
   if (!site.file) return;
   await visit.open(site.file + design.START);
   await visit.click('#mirror-pins');
   await visit.settled();
-  findings.check('a file that was opened by a double click works', (await visit.text('#friction-words')).includes('of load'));
-  const sent = gzipSync(readFileSync(fileURLToPath(site.file)), { level: 9 }).length;
-  findings.check('page and module weigh at most 1.2 MB as a server sends them', sent <= 1.2e6, `${sent} bytes`);
+  findings.check('the page works from a file', (await visit.text('#friction-text')).includes('of load'));
+  const packed = gzipSync(readFileSync(fileURLToPath(site.file)), { level: 9 }).length;
+  findings.check('page and module have at most 1.2 MB with gzip', packed <= 1.2e6, `${packed} bytes`);
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...focus, ...served, ...downloads };
+  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...server, ...downloads };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 
@@ -45,23 +47,23 @@ async function factsOf(site) {
   return response.json();
 }
 
-// All scenarios with one engine, in a browser of their own; what they found.
-async function drive(site, shared) {
+// Runs all scenarios with one engine, in one browser; returns their findings.
+async function runScenarios(site, shared) {
   const findings = new Findings();
   const given = { ...shared, findings };
   const browser = await Browser.start({ tools: job.tools, executable: job.browser });
   browser.axeText = readFileSync(browser.tools.axe, 'utf8');
   for (const [name, act] of scenarios()) {
     findings.scenario = `${site.name}, ${name}`;
-    const began = performance.now();
+    const start = performance.now();
     const visit = await Visit.begin(browser, { findings });
     try {
       await act(visit, site, given);
     } catch (problem) {
-      findings.check('it came to its end', false, problem.stack);
+      findings.check('the scenario ends without an exception', false, problem.stack);
     }
     await visit.end();
-    console.log(`${findings.scenario}: ${((performance.now() - began) / 1000).toFixed(1)} s`);
+    console.log(`${findings.scenario}: ${((performance.now() - start) / 1000).toFixed(1)} s`);
   }
   await browser.end();
   return findings;
@@ -73,20 +75,20 @@ async function main() {
     writeFileSync(join(scratch, name), text);
     return startView([name]);
   };
-  const startView = (given) => viewSite(job.binary, scratch, given);
-  const server = await view('mine.toml');
-  const facts = await factsOf(server);
+  const startView = (options) => viewSite(job.binary, scratch, options);
+  const served = await view('mine.toml');
+  const facts = await factsOf(served);
   const shared = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, scratch, anotherView: view, startView };
-  const sites = [server, ...(job.site ? [await moduleSite(job.site)] : [])];
-  // Pages wait for their visitors most of the time: both engines are tried at once.
-  const findings = await Promise.all(sites.map((site) => drive(site, shared)));
+  const sites = [served, ...(job.site ? [await moduleSite(job.site)] : [])];
+  // In parallel: most of the time a scenario waits for its page.
+  const findings = await Promise.all(sites.map((site) => runScenarios(site, shared)));
   await Promise.all(sites.map((site) => site.end()));
   rmSync(scratch, { recursive: true, force: true });
-  const failed = findings.flatMap((found) => found.failed);
-  const held = findings.reduce((sum, found) => sum + found.held, 0);
+  const failed = findings.flatMap((one) => one.failed);
+  const passed = findings.reduce((sum, one) => sum + one.passed, 0);
   for (const failure of failed) console.log(`FAILED ${failure}`);
-  console.log(`${held} held, ${failed.length} failed`);
-  return failed.length === 0 && held > 0 ? 0 : 1;
+  console.log(`${passed} passed, ${failed.length} failed`);
+  return failed.length === 0 && passed > 0 ? 0 : 1;
 }
 
 process.exitCode = await main();

@@ -1,4 +1,4 @@
-//! The preview answers its own page, within bounds, and shows whole files only.
+//! `pinswitch view`: who gets an answer, bounds, saving, and complete files only.
 
 use std::io::Write;
 use std::time::Duration;
@@ -7,13 +7,13 @@ use crate::harness::preview::Preview;
 use crate::harness::{binary, done};
 
 #[test]
-fn the_preview_answers_its_own_page_only() {
+fn other_hosts_and_origins_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");
     let host = preview.host();
     let page = preview.ask("GET /", &host);
     assert!(page.starts_with("HTTP/1.1 200"), "{page:.200}");
-    // The policy of the answer is the one of a saved page.
+    // The same policy as in a saved page.
     let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap().to_owned();
     assert!(policy.contains("script-src 'sha256-") && !policy.contains("script-src 'unsafe"), "{policy}");
     assert!(page.contains(&format!("content=\"{policy}\"")));
@@ -37,24 +37,24 @@ fn the_preview_answers_its_own_page_only() {
     assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"), "{head:.200}");
 }
 
-/// A question of the configurator with the headers that its page sends.
-fn with_headers(preview: &Preview, question: &str) -> String {
+/// Returns a request of the configurator with the headers of its page.
+fn with_headers(preview: &Preview, request: &str) -> String {
     format!(
-        "{}Origin: http://{}\r\nContent-Length: {}\r\n\r\n{question}",
+        "{}Origin: http://{}\r\nContent-Length: {}\r\n\r\n{request}",
         preview.host(),
         preview.address,
-        question.len()
+        request.len()
     )
 }
 
-/// The answer to a question of the configurator.
-fn asked(preview: &Preview, path: &str, question: &str) -> String {
-    let answer = preview.ask(&format!("POST {path}"), &with_headers(preview, question));
+/// Returns the answer to a request of the configurator.
+fn post(preview: &Preview, path: &str, request: &str) -> String {
+    let answer = preview.ask(&format!("POST {path}"), &with_headers(preview, request));
     answer.split_once("\r\n\r\n").map_or(answer.clone(), |(_, body)| body.to_owned())
 }
 
 #[test]
-fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
+fn the_configurator_saves_the_followed_file() {
     let folder = tempfile::tempdir().unwrap();
     let text = "# mine\n[layout]\npins = [5, 8, 11] # three\n\n[shell]\nwidth_mm = 14\n";
     std::fs::write(folder.path().join("mine.toml"), text).unwrap();
@@ -64,16 +64,16 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     assert!(policy.contains("worker-src blob:") && page.contains(&format!("content=\"{policy}\"")));
     let start = preview.ask("GET /start", &preview.host());
     let start: serde_json::Value = serde_json::from_str(start.split_once("\r\n\r\n").unwrap().1).unwrap();
-    assert_eq!(start["begun"]["file"], "mine.toml");
+    assert_eq!(start["source"]["file"], "mine.toml");
     assert_eq!(start["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
 
-    let shown = asked(&preview, "/answer", r#"{"ask": "design", "values": {"segment.grooves": 40}}"#);
+    let shown = post(&preview, "/answer", r#"{"ask": "design", "values": {"segment.grooves": 40}}"#);
     let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
     assert_eq!(shown["trouble"]["field"], "segment.grooves");
     let change = &shown["trouble"]["changes"][0];
-    let mended =
+    let fixed =
         serde_json::json!({"ask": "design", "values": {change["path"].as_str().unwrap(): change["value"]}});
-    let shown = asked(&preview, "/answer", &mended.to_string());
+    let shown = post(&preview, "/answer", &fixed.to_string());
     assert!(shown.contains(r#""trouble":null"#), "{shown:.300}");
 
     let mut values = start["values"].clone();
@@ -81,84 +81,85 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     values["layout.pins"] = serde_json::json!([5, 11]);
     let stamp = start["stamp"].clone();
     let save = |values: &serde_json::Value, stamp: &serde_json::Value| -> serde_json::Value {
-        let question = serde_json::json!({ "values": values, "stamp": stamp });
-        serde_json::from_str(&asked(&preview, "/save", &question.to_string())).unwrap()
+        let request = serde_json::json!({ "values": values, "stamp": stamp });
+        serde_json::from_str(&post(&preview, "/save", &request.to_string())).unwrap()
     };
     let saved = save(&values, &stamp);
     assert_eq!(saved["saved"], "mine.toml");
     let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
     let wanted = text.replace("[5, 8, 11]", "[5, 11]").replace("width_mm = 14", "width_mm = 12.5");
-    assert_eq!(now, wanted, "the name that the file lent stays with the file");
-    // By the stamp of before, the file is another one by now: it is left as it is, and its values are told.
+    assert_eq!(now, wanted, "the name of the file is not written into it");
+    // With the old stamp the file counts as changed: it is not written, and its values are
+    // returned.
     values["switch.name"] = "other".into();
     let refused = save(&values, &stamp);
-    assert_eq!(refused["differs"]["stamp"], saved["stamp"]);
-    assert_eq!(refused["differs"]["values"]["layout.pins"], serde_json::json!([5, 11]));
-    assert_eq!(refused["differs"]["values"]["switch.name"], "mine");
+    assert_eq!(refused["changed"]["stamp"], saved["stamp"]);
+    assert_eq!(refused["changed"]["values"]["layout.pins"], serde_json::json!([5, 11]));
+    assert_eq!(refused["changed"]["values"]["switch.name"], "mine");
     assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), now);
     save(&values, &saved["stamp"]);
     let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
     assert_eq!(now, format!("{wanted}\n[switch]\nname = \"other\"\n"));
     for bad in ["", "{}", r#"{"values": {"shell.width_mm": 1e9}}"#, r#"{"values": {"x": 1}}"#] {
-        assert!(asked(&preview, "/save", bad).contains("error"), "{bad}");
-        assert!(asked(&preview, "/answer", bad).contains("error"), "{bad}");
+        assert!(post(&preview, "/save", bad).contains("error"), "{bad}");
+        assert!(post(&preview, "/answer", bad).contains("error"), "{bad}");
     }
     assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), now);
-    // Another page cannot ask.
+    // Other origins cannot save.
     let foreign = format!("{}Origin: http://evil.example\r\nContent-Length: 2\r\n\r\n{{}}", preview.host());
     assert!(preview.ask("POST /save", &foreign).starts_with("HTTP/1.1 403"));
 }
 
-/// A search that takes many seconds: among 40 grooves.
+/// A search of many seconds, among 40 grooves.
 const LONG_SEARCH: &str =
     r#"{"ask": "search", "values": {"segment.grooves": 40, "shell.outer_radius_mm": 45}, "threshold_n": 24}"#;
 
-/// Whether `holds` comes true.
-fn comes_true(holds: impl Fn() -> bool) -> bool {
+/// Waits until `condition` is true; returns whether it is within 30 s.
+fn becomes_true(condition: impl Fn() -> bool) -> bool {
     (0..600).any(|_| {
         std::thread::sleep(Duration::from_millis(50));
-        holds()
+        condition()
     })
 }
 
 #[test]
-fn what_takes_long_holds_up_no_design_and_ends_with_whoever_waits_for_it() {
+fn a_search_delays_no_design() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");
     if preview.children().is_none() {
-        eprintln!("SKIPPED: this system does not tell the children of a process");
+        eprintln!("SKIPPED: the system does not list the children of a process");
         return;
     }
-    let are = |number: usize| comes_true(|| preview.children() == Some(number));
+    let has_children = |number: usize| becomes_true(|| preview.children() == Some(number));
     let mut stream = preview.connect();
     write!(stream, "POST /answer HTTP/1.1\r\n{}", with_headers(&preview, LONG_SEARCH)).unwrap();
-    assert!(are(1), "a search has a process of its own");
-    let design = asked(&preview, "/answer", r#"{"ask": "design", "values": {}}"#);
+    assert!(has_children(1), "a search is a process");
+    let design = post(&preview, "/answer", r#"{"ask": "design", "values": {}}"#);
     assert!(design.contains(r#""trouble":null"#), "{design:.300}");
-    assert_eq!(preview.children(), Some(1), "a design is answered while it goes on");
+    assert_eq!(preview.children(), Some(1), "a design is answered during the search");
     drop(stream);
-    assert!(are(0), "nobody waits for the search, and it ends");
+    assert!(has_children(0), "the search ends when no one waits for it");
 }
 
 #[test]
-fn an_answer_apart_is_given_while_its_input_is_open() {
-    let answer = |question: &str, waits: bool| {
+fn a_worker_ends_with_its_input() {
+    let answer = |request: &str, keeps_input_open: bool| {
         let piped = std::process::Stdio::piped;
         let mut child = binary().args(["-q", "answer"]).stdin(piped()).stdout(piped()).spawn().unwrap();
-        let mut asks = child.stdin.take().unwrap();
-        write!(asks, "{}\n{question}", question.len()).unwrap();
-        let held = waits.then_some(asks);
+        let mut stdin = child.stdin.take().unwrap();
+        write!(stdin, "{}\n{request}", request.len()).unwrap();
+        let open = keeps_input_open.then_some(stdin);
         let output = child.wait_with_output().unwrap();
-        drop(held);
+        drop(open);
         (output.status.code(), String::from_utf8(output.stdout).unwrap())
     };
     let (code, text) = answer(r#"{"ask": "search", "values": {}, "threshold_n": 24}"#, true);
     assert!(code == Some(0) && text.contains("layout.pins"), "{code:?} {text:.300}");
-    assert_eq!(answer(LONG_SEARCH, false), (Some(1), String::new()), "whoever asked has gone");
+    assert_eq!(answer(LONG_SEARCH, false), (Some(1), String::new()), "its input is closed");
 }
 
 #[test]
-fn the_preview_bounds_headers_connections_and_waiting_pages() {
+fn headers_and_connections_are_bounded() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");
     let host = preview.host();
@@ -176,7 +177,7 @@ fn the_preview_bounds_headers_connections_and_waiting_pages() {
             stream
         })
         .collect();
-    // The page is served beside them, and they cost no threads.
+    // The page is served meanwhile, and waiting requests need no threads.
     assert!(preview.ask("GET /", &host).starts_with("HTTP/1.1 200"));
     assert!(preview.threads() <= before + 2, "{before} threads became {}", preview.threads());
     assert!(preview.ask("GET /state?after=1", &host).starts_with("HTTP/1.1 503"));
@@ -184,14 +185,14 @@ fn the_preview_bounds_headers_connections_and_waiting_pages() {
 }
 
 #[test]
-fn half_a_save_is_not_shown() {
+fn a_partial_save_is_not_shown() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["init", "three-double", "--out", "mine.toml"]);
     let file = folder.path().join("mine.toml");
     let good = std::fs::read_to_string(&file).unwrap();
     let preview = Preview::start(folder.path(), "mine.toml");
     let changed = good.replace("[5, 8, 11]", "[6, 8, 10]");
-    // An editor that truncates, and writes in pieces.
+    // An editor that truncates the file and writes it in pieces.
     let mut writer = std::fs::File::create(&file).unwrap();
     for piece in changed.as_bytes().chunks(changed.len() / 4 + 1) {
         std::thread::sleep(Duration::from_millis(60));
@@ -201,7 +202,7 @@ fn half_a_save_is_not_shown() {
     let state = preview.state(1);
     assert_eq!(state["version"], 2);
     assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"), "{}", state["trouble"]);
-    // A save that never comes to its end.
+    // A save that is never completed.
     std::fs::write(&file, "").unwrap();
     let state = preview.state(2);
     assert!(state["trouble"].as_str().unwrap().contains("empty"), "{}", state["trouble"]);

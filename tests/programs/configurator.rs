@@ -1,8 +1,9 @@
-//! The configurator in a real browser, driven as a person would drive it (`tests/browser`), with `pinswitch view` and with
-//! the module; what both give is what the command line writes, byte for byte.
+//! The configurator in Chromium (`tests/browser`), with `pinswitch view` and with the module; the
+//! files of both equal those of the command line, byte for byte.
 //!
-//! Needs chromium, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`, where `.ci/run` puts them. The module
-//! is that of the site in `PINSWITCH_SITE`, a folder that `cad/app/build` made, which takes many minutes.
+//! The test needs chromium, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`,
+//! where `.ci/run` installs them. The module is that of the site in `PINSWITCH_SITE`, a folder that
+//! `cad/app/build` writes in many minutes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,21 +11,21 @@ use std::process::Command;
 use crate::harness::{browser, pinswitch, repository, say_skipped};
 
 const TOOLS: &str = "/tmp/pinswitch-browser";
-/// Lines of a table that a calibration takes a moment for.
+/// Lines of the table, few enough for a calibration within seconds.
 const LINES: usize = 300;
 
-/// The folder of a site with its module.
+/// Returns the folder of a site with the module, if there is one.
 fn site() -> Option<PathBuf> {
     let site = std::env::var_os("PINSWITCH_SITE");
     if site.is_none() {
         say_skipped(
-            "the module is not tried, the server is: run cad/app/build site, and give PINSWITCH_SITE=site as an absolute path",
+            "only the server is tested; to test the module, run cad/app/build site and set PINSWITCH_SITE to its absolute path",
         );
     }
     site.map(PathBuf::from)
 }
 
-/// A table of plateaus of a rig with one effect.
+/// Simulates a table of plateaus of a rig with one effect.
 fn table(folder: &Path) -> PathBuf {
     let made = pinswitch(
         folder,
@@ -38,7 +39,7 @@ fn table(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn the_configurator_does_in_a_browser_what_a_person_asks() {
+fn the_configurator_works_in_a_browser() {
     let Some(browser) = browser() else {
         return say_skipped("no chromium here; Debian's package is called chromium");
     };
@@ -65,12 +66,12 @@ fn the_configurator_does_in_a_browser_what_a_person_asks() {
     let file = folder.path().join("job.json");
     std::fs::write(&file, job.to_string()).unwrap();
     let run = Command::new("node").arg(repository("tests/browser/run.mjs")).arg(&file).output().unwrap();
-    let said = String::from_utf8_lossy(&run.stdout);
-    println!("{said}{}", String::from_utf8_lossy(&run.stderr));
-    assert!(run.status.success(), "the configurator does not do what it should: {said}");
+    let output = String::from_utf8_lossy(&run.stdout);
+    println!("{output}{}", String::from_utf8_lossy(&run.stderr));
+    assert!(run.status.success(), "checks of the configurator failed: {output}");
 }
 
-/// Where the browser is, since node looks nothing up.
+/// Returns the path of the browser, since puppeteer does not search PATH.
 fn browser_path(name: &str) -> PathBuf {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file()).unwrap()

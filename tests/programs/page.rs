@@ -1,4 +1,4 @@
-//! The page in a real browser, where one is installed: it renders, its controls work, and nothing is logged as an error.
+//! The page of a set in Chromium: it renders, its controls work, and it logs no error.
 
 use crate::harness::browser;
 use crate::harness::preview::Preview;
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// Moves every control and leaves what it found in the title.
+/// Moves every control and writes the failures into the title.
 const EXERCISE: &str = r#"<script>
 addEventListener('load', () => setTimeout(() => {
   const set = (id, value) => { const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event('input')); };
@@ -22,7 +22,7 @@ addEventListener('load', () => setTimeout(() => {
   const home = shell();
   set('explode', 1);
   seen.apart = shell() !== home;
-  // Pulled apart, every corner of every mesh is in the picture, which is drawn before the next frame: the camera stands by now.
+  // Exploded, every corner of every mesh is in the picture; the camera moves before the next frame.
   assembly.camera.updateMatrixWorld();
   seen.framed = assembly.group.children.every(({ children: [mesh] }) => {
     const { array } = mesh.geometry.getAttribute('position');
@@ -53,6 +53,7 @@ addEventListener('load', () => setTimeout(() => {
 }, 300));
 </script>"#;
 
+/// Opens a file in a headless browser and returns its standard output.
 fn browse(name: &str, file: &Path, extra: &[&str]) -> String {
     let profile = tempfile::tempdir().unwrap();
     let output = Command::new(name)
@@ -78,7 +79,7 @@ fn pinswitch(folder: &Path, arguments: &[&str]) {
 }
 
 #[test]
-fn the_page_works_in_a_browser() {
+fn the_controls_of_a_page_work() {
     let Some(name) = browser() else {
         crate::harness::say_skipped("no chromium here; Debian's package is called chromium");
         return;
@@ -87,13 +88,13 @@ fn the_page_works_in_a_browser() {
     pinswitch(folder.path(), &["generate", "three-double", "--out", "set"]);
     let page = std::fs::read_to_string(folder.path().join("set/report.html")).unwrap();
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
-    // As it is saved, under its own policy: its scripts fill the table, and one that is put in does not run.
-    let put_in = folder.path().join("put-in.html");
-    std::fs::write(&put_in, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
-    let dom = browse(name, &put_in, &["--dump-dom"]);
+    // Under its own policy: its scripts fill the table, and an inserted script does not run.
+    let inserted = folder.path().join("inserted.html");
+    std::fs::write(&inserted, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
+    let dom = browse(name, &inserted, &["--dump-dom"]);
     assert!(dom.matches("<tr").count() > 101, "the page's own scripts did not run");
-    assert!(!dom.contains("<title>exercised"), "a script that is not the page's ran");
-    // Without the policy, for the script that moves every control.
+    assert!(!dom.contains("<title>exercised"), "an inserted script ran");
+    // Without the policy the inserted script runs.
     let exercised = folder.path().join("exercised.html");
     let policy = page.find("<meta http-equiv=\"Content-Security-Policy\"").unwrap();
     let end = policy + page[policy..].find('>').unwrap() + 1;
@@ -102,14 +103,14 @@ fn the_page_works_in_a_browser() {
     let dom = browse(name, &exercised, &["--dump-dom"]);
     let title = dom.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).unwrap_or("no title");
     assert_eq!(title.split_whitespace().collect::<Vec<_>>(), ["exercised", "end"], "these controls failed");
-    // Kept for a person to look at, light and dark.
-    let kept = crate::harness::repository("out/page");
-    std::fs::create_dir_all(&kept).unwrap();
+    // Screenshots in both colour schemes, for a person to look at.
+    let pictures = crate::harness::repository("out/page");
+    std::fs::create_dir_all(&pictures).unwrap();
     for (mode, flag) in [
         ("light", "--blink-settings=preferredColorScheme=1"),
         ("dark", "--blink-settings=preferredColorScheme=0"),
     ] {
-        let picture = kept.join(format!("{mode}.png"));
+        let picture = pictures.join(format!("{mode}.png"));
         browse(
             name,
             &folder.path().join("set/report.html"),
@@ -120,7 +121,7 @@ fn the_page_works_in_a_browser() {
 }
 
 #[test]
-fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
+fn the_page_follows_its_file() {
     let folder = tempfile::tempdir().unwrap();
     pinswitch(folder.path(), &["init", "three-double", "--out", "mine.toml"]);
     let preview = Preview::start(folder.path(), "mine.toml");
@@ -129,9 +130,9 @@ fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
     let good = std::fs::read_to_string(&file).unwrap();
 
     std::fs::write(&file, good.replace("[5, 8, 11]", "[6, 8, 10]")).unwrap();
-    let begun = Instant::now();
+    let start = Instant::now();
     let state = preview.state(1);
-    println!("a changed parameter is shown after {:?}", begun.elapsed());
+    println!("a changed parameter is shown after {:?}", start.elapsed());
     assert_eq!(state["version"], 2);
     assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"));
 
@@ -139,7 +140,7 @@ fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
     let state = preview.state(2);
     assert!(state["trouble"].as_str().unwrap().contains("layout.pins"), "{}", state["trouble"]);
     assert!(state["data"].is_null());
-    // The page itself still shows the last good state.
+    // The page still shows the last valid version.
     assert!(preview.get("/").contains("[6, 8, 10]"));
 
     std::fs::write(&file, &good).unwrap();
@@ -148,7 +149,7 @@ fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
 }
 
 #[test]
-fn a_port_in_use_is_one_clear_error() {
+fn a_port_in_use_is_refused() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
     let output = crate::harness::binary().args(["view", "three-double", "--port", &port]).output().unwrap();

@@ -1,57 +1,59 @@
-// Checks and warnings: what needs a look first, what is fine on demand.
+// Checks and warnings; if several need a review, those that passed are folded.
 
 function showChecks(data) {
-  const fine = data.checks.filter((c) => c.fine);
-  const look = data.checks.filter((c) => !c.fine);
-  const line = (mark, name, words, remedy) => {
+  const passed = data.checks.filter((c) => c.fine);
+  const review = data.checks.filter((c) => !c.fine);
+  const prefix = { passed: TEXT.checkPassed, review: TEXT.checkReview, warning: TEXT.checkWarning };
+  const line = (mark, name, text, remedy) => {
     const li = make('li', undefined, { class: name });
     li.append(make('span', mark, { class: 'mark', 'aria-hidden': 'true' }));
-    const text = make('span');
-    text.append(make('span', `${name === 'fine' ? WORDS.checkFine : name === 'look' ? WORDS.checkLook : WORDS.checkWarning}: `, { class: 'unseen' }), words);
-    if (remedy) text.append(make('span', remedy, { class: 'remedy' }));
-    li.append(text);
+    const content = make('span');
+    content.append(make('span', `${prefix[name]}: `, { class: 'visually-hidden' }), text);
+    if (remedy) content.append(make('span', remedy, { class: 'remedy' }));
+    li.append(content);
     return li;
   };
-  const problems = [...look.map((c) => line('!', 'look', c.words, c.remedy)), ...data.manifest.warnings.map((w) => line('!', 'warning', w))];
-  byId('checks-sum').textContent = WORDS.checksSum(fine.length, data.checks.length);
-  byId('checks').replaceChildren(...problems, ...(problems.length > 2 ? [] : fine.map((c) => line('✓', 'fine', c.words))));
-  byId('fine-checks').hidden = problems.length <= 2;
-  byId('fine-head').textContent = WORDS.showFine(fine.length);
-  byId('fine-list').replaceChildren(...(problems.length > 2 ? fine.map((c) => line('✓', 'fine', c.words)) : []));
+  const problems = [...review.map((c) => line('!', 'review', c.words, c.remedy)), ...data.manifest.warnings.map((w) => line('!', 'warning', w))];
+  byId('checks-summary').textContent = TEXT.checksSummary(passed.length, data.checks.length);
+  byId('checks').replaceChildren(...problems, ...(problems.length > 2 ? [] : passed.map((c) => line('✓', 'passed', c.words))));
+  byId('passed-checks').hidden = problems.length <= 2;
+  byId('passed-head').textContent = TEXT.showPassed(passed.length);
+  byId('passed-list').replaceChildren(...(problems.length > 2 ? passed.map((c) => line('✓', 'passed', c.words)) : []));
 }
 
-// Trouble with the layout stands at the drawing of its pins, too, which may be far below the picture.
-function showAtPins(trouble, mend) {
+// Shows a refused layout at the drawing of the pins, too, which may be far below the picture.
+function showAtPins(trouble, fix) {
   const line = byId('pins-error');
   line.hidden = !trouble;
-  line.replaceChildren(...(trouble ? [`${troubleWords(trouble, WORDS.groups.layout)}. `, mend() ?? ''] : []));
+  line.replaceChildren(...(trouble ? [`${troubleText(trouble, TEXT.groups.layout)}. `, fix() ?? ''] : []));
 }
 
-// Trouble with a design: over the picture, and at the control of its field, with a button that mends it. `instead` is what is
-// shown where no design of this visit could be.
+// Shows why a design is refused, over the picture and at the control of its field, with a button
+// that fixes it. `instead` is the name of the design that is shown if none of this visit could be
+// built.
 function showTrouble(trouble, controls, state, instead) {
   const host = byId('trouble');
   host.hidden = !trouble;
   document.body.classList.toggle('stale', Boolean(trouble));
-  const mend = () => {
-    const fits = (trouble?.changes ?? []).filter((c) => state.fields.has(c.path));
-    if (!fits.length) return undefined;
-    const words = fits.map((c) => WORDS.setTo(fieldName(state.fields.get(c.path)), shownValue(c.value)));
-    return button(WORDS.mends(words), () => {
-      state.change({ values: { ...state.now.values, ...Object.fromEntries(fits.map((c) => [c.path, c.value])) } });
-    }, { class: 'btn mend', 'data-heir': controls.idOf(fits[0].path) });
+  const fix = () => {
+    const changes = (trouble?.changes ?? []).filter((c) => state.fields.has(c.path));
+    if (!changes.length) return undefined;
+    const texts = changes.map((c) => TEXT.setTo(fieldName(state.fields.get(c.path)), formatValue(c.value)));
+    return button(TEXT.fix(texts), () => {
+      state.change({ values: { ...state.now.values, ...Object.fromEntries(changes.map((c) => [c.path, c.value])) } });
+    }, { class: 'btn fix', 'data-focus-next': controls.idOf(changes[0].path) });
   };
-  controls.trouble(trouble, mend());
-  showAtPins(trouble?.field.startsWith('layout.') ? trouble : null, mend);
+  controls.showTrouble(trouble, fix());
+  showAtPins(trouble?.field.startsWith('layout.') ? trouble : null, fix);
   host.replaceChildren();
   if (!trouble) return;
   const field = state.fields.get(trouble.field);
-  const name = field ? `${WORDS.groups[field.section] ?? field.section}, ${fieldName(field)}` : trouble.field;
+  const name = field ? `${TEXT.groups[field.section] ?? field.section}, ${fieldName(field)}` : trouble.field;
   const text = make('p');
-  text.append(make('b', `${instead ? WORDS.refusedAtFirst(instead) : WORDS.refused} `), `${troubleWords(trouble, name)}.`);
+  text.append(make('b', `${instead ? TEXT.refusedShowing(instead) : TEXT.refused} `), `${troubleText(trouble, name)}.`);
   host.append(text);
-  const mending = mend();
-  if (mending) host.append(mending);
-  if (!field && state.now.model) host.append(button(WORDS.dropModel, () => state.change({ model: null }), { class: 'btn mend' }));
-  if (state.past.length) host.append(button(WORDS.undo, () => state.undo(), { class: 'btn', 'data-heir': 'undo redo' }));
+  const fixButton = fix();
+  if (fixButton) host.append(fixButton);
+  if (!field && state.now.model) host.append(button(TEXT.removeModel, () => state.change({ model: null }), { class: 'btn fix' }));
+  if (state.past.length) host.append(button(TEXT.undo, () => state.undo(), { class: 'btn', 'data-focus-next': 'undo redo' }));
 }

@@ -1,33 +1,34 @@
-// Friction over load: the curve with its band, rival laws, what was measured, a kept curve; the load that is shown.
+// The plot of friction over load: curve, band, other laws, measured points, a curve for comparison,
+// the present load.
 
-const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, RIVAL = 4, KEPT = RIVAL + OTHERS, PREVIEW = KEPT + 1, CALIBRATED = KEPT + 2, MEASURED = KEPT + 3;
+const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, OTHER = 4, COMPARISON = OTHER + MAX_OTHER_LAWS, PREVIEW = COMPARISON + 1, CALIBRATED = COMPARISON + 2, MEASURED = COMPARISON + 3;
 
-// Lines differ in dashes as well as in colour.
+// Lines differ in dashes and in colour.
 const LINES = {
-  [MAIN]: { colour: '--blue', width: 3 }, [RIVAL]: { colour: '--green', width: 1.3, dash: [7, 4] }, [RIVAL + 1]: { colour: '--violet', width: 1.3, dash: [2, 3] },
-  [RIVAL + 2]: { colour: '--red', width: 1.3, dash: [9, 3, 2, 3] }, [KEPT]: { colour: '--dim', width: 2, dash: [5, 4] }, [PREVIEW]: { colour: '--amber-ink', width: 2.5, dash: [10, 4] },
+  [MAIN]: { colour: '--blue', width: 3 }, [OTHER]: { colour: '--green', width: 1.3, dash: [7, 4] }, [OTHER + 1]: { colour: '--violet', width: 1.3, dash: [2, 3] },
+  [OTHER + 2]: { colour: '--red', width: 1.3, dash: [9, 3, 2, 3] }, [COMPARISON]: { colour: '--dim', width: 2, dash: [5, 4] }, [PREVIEW]: { colour: '--amber-ink', width: 2.5, dash: [10, 4] },
   [CALIBRATED]: { colour: '--green', width: 2.5, dash: [12, 3, 3, 3] },
 };
 
-// Fields that the name of a kept curve tells at the most.
-const MOST_TOLD = 3;
+// Most differing fields in the name of the comparison.
+const MAX_NAMED_FIELDS = 3;
 
 class Curve {
   constructor(state) {
     this.state = state;
     this.host = byId('chart');
     this.load_n = null;
-    this.rivals = byId('rivals').checked;
-    byId('rivals').addEventListener('change', () => { this.rivals = byId('rivals').checked; this.draw(); });
+    this.showsOtherLaws = byId('other-laws').checked;
+    byId('other-laws').addEventListener('change', () => { this.showsOtherLaws = byId('other-laws').checked; this.draw(); });
     byId('load').addEventListener('input', () => this.moveTo(Number(byId('load').value)));
-    byId('keep').addEventListener('click', () => this.keep());
-    byId('trust').addEventListener('click', () => this.reasons(byId('reasons').hidden));
+    byId('keep-curve').addEventListener('click', () => this.toggleComparison());
+    byId('trust').addEventListener('click', () => this.showReasons(byId('reasons').hidden));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.chart?.destroy(); this.chart = undefined; this.draw(); });
     new ResizeObserver(() => this.resize()).observe(this.host);
-    this.kept = remembered().kept ?? null;
+    this.comparison = remembered().kept ?? null;
   }
 
-  // A design, with the values that it was asked for and the name of its calibrated model, if it has one.
+  // Shows the curve of a design with these values and the name of its calibrated model, or null.
   show(data, values, model) {
     Object.assign(this, { data, values, model });
     const loads = data.curve.load_n;
@@ -35,42 +36,42 @@ class Curve {
     [slider.min, slider.max] = [loads[0], loads.at(-1)];
     this.load_n = clamp(this.load_n ?? loads[0] + 0.62 * (loads.at(-1) - loads[0]), loads[0], loads.at(-1));
     this.draw();
-    this.words();
+    this.describe();
     this.moveTo(this.load_n);
   }
 
-  // Shows a further curve: `kept`, `preview` or `calibrated`; null takes it away.
-  further(which, curve) {
+  // Shows another curve, `preview` or `calibrated`; null removes it.
+  setExtra(which, curve) {
     this[which] = curve;
     if (this.data) this.draw();
   }
 
-  keep() {
-    if (this.kept) this.kept = null;
-    else if (this.data) this.kept = { name: this.data.manifest.name, values: this.values, model: this.model, curve: this.data.curve };
-    remember({ ...remembered(), kept: this.kept });
+  toggleComparison() {
+    if (this.comparison) this.comparison = null;
+    else if (this.data) this.comparison = { name: this.data.manifest.name, values: this.values, model: this.model, curve: this.data.curve };
+    remember({ ...remembered(), kept: this.comparison });
     this.draw();
   }
 
-  // What the kept is called: its pins, and what else differs from what is shown.
-  keptName() {
-    const { name, values, model } = this.kept;
-    // Kept by an earlier version of the page.
+  // The name of the comparison: its pins, and other differences from the present design.
+  comparisonName() {
+    const { name, values, model } = this.comparison;
+    // From an earlier version of the page.
     if (!values) return name;
     const { fields } = this.state;
     const of = (all, path) => all[path] ?? fields.get(path)?.default;
-    const differ = [...new Set([...Object.keys(values), ...Object.keys(this.values)])].filter((path) => fields.has(path) && !['layout.pins', 'switch.name'].includes(path) && !sameValue(of(values, path), of(this.values, path)));
-    const told = differ.slice(0, MOST_TOLD).map((path) => `${fieldName(fields.get(path))} ${shownValue(of(values, path))} ${unitName(fields.get(path))}`.trim());
-    if (differ.length > MOST_TOLD) told.push(WORDS.more(differ.length - MOST_TOLD));
-    if (model !== this.model) told.push(model ? WORDS.modelName(model) : WORDS.publishedConstants);
-    return [`${name} ${shownValue(of(values, 'layout.pins'))}`, ...told].join(', ');
+    const differing = [...new Set([...Object.keys(values), ...Object.keys(this.values)])].filter((path) => fields.has(path) && !['layout.pins', 'switch.name'].includes(path) && !sameValue(of(values, path), of(this.values, path)));
+    const names = differing.slice(0, MAX_NAMED_FIELDS).map((path) => `${fieldName(fields.get(path))} ${formatValue(of(values, path))} ${unitName(fields.get(path))}`.trim());
+    if (differing.length > MAX_NAMED_FIELDS) names.push(TEXT.more(differing.length - MAX_NAMED_FIELDS));
+    if (model !== this.model) names.push(model ? TEXT.modelName(model) : TEXT.publishedConstants);
+    return [`${name} ${formatValue(of(values, 'layout.pins'))}`, ...names].join(', ');
   }
 
   draw() {
-    byId('keep').textContent = this.kept ? WORDS.letGo : WORDS.keep;
+    byId('keep-curve').textContent = this.comparison ? TEXT.clearComparison : TEXT.keepCurve;
     if (!this.data) return;
     const columns = columnsOf(this);
-    this.ends = endsOf(columns, this.state.now.ask);
+    this.ends = endsOf(columns, this.state.now.targets);
     if (!this.chart) this.build(columns); else this.chart.setData(columns);
     this.legend();
   }
@@ -88,26 +89,26 @@ class Curve {
       font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, space: side === 3 ? 46 : 60, gap: 4,
     });
     this.chart = new uPlot({
-      ...this.room(), series, legend: { show: false }, cursor: { show: false }, padding: [26, 14, 0, 0],
+      ...this.size(), series, legend: { show: false }, cursor: { show: false }, padding: [26, 14, 0, 0],
       scales: { x: { time: false, range: () => [0, this.ends.load] }, y: { range: () => [0, this.ends.friction] } },
-      bands: [{ series: [HIGH, LOW], fill: colourOf('--band') }], axes: [axis(2), axis(3)], hooks: { draw: [(u) => this.mark(u), () => this.handles?.place()] },
+      bands: [{ series: [HIGH, LOW], fill: colourOf('--band') }], axes: [axis(2), axis(3)], hooks: { draw: [(u) => this.drawLoad(u), () => this.handles?.place()] },
     }, columns, this.host);
-    draggable(this.chart.over, { start: (e) => { if (e.target !== this.chart.over) return false; this.point(e); return true; }, move: (e) => this.point(e) });
-    this.chart.over.append(make('span', WORDS.axisLoad, { class: 'axis x', 'aria-hidden': 'true' }), make('span', WORDS.axisFriction, { class: 'axis y', 'aria-hidden': 'true' }));
+    draggable(this.chart.over, { start: (e) => { if (e.target !== this.chart.over) return false; this.moveToPointer(e); return true; }, move: (e) => this.moveToPointer(e) });
+    this.chart.over.append(make('span', TEXT.axisLoad, { class: 'axis x', 'aria-hidden': 'true' }), make('span', TEXT.axisFriction, { class: 'axis y', 'aria-hidden': 'true' }));
     this.handles?.attach(this.chart.over);
   }
 
-  room() { return { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 120) }; }
-  resize() { this.chart?.setSize(this.room()); }
+  size() { return { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 120) }; }
+  resize() { this.chart?.setSize(this.size()); }
 
-  // A pull on the plot moves the load.
-  point(event) {
+  // A drag on the plot moves the load.
+  moveToPointer(event) {
     const left = event.clientX - this.chart.over.getBoundingClientRect().left;
     this.moveTo(this.chart.posToVal(left, 'x'));
   }
 
-  // The point at the load that is shown, with a line down to its load.
-  mark(u) {
+  // Draws the point at the present load, with a line down to the axis.
+  drawLoad(u) {
     const { curve } = this.data;
     const [x, y, foot] = [u.valToPos(this.load_n, 'x', true), u.valToPos(at(curve.load_n, curve.friction_n, this.load_n), 'y', true), u.valToPos(0, 'y', true)];
     const { ctx } = u;
@@ -131,33 +132,32 @@ class Curve {
     const value = (column) => at(curve.load_n, curve[column], this.load_n);
     const [friction, low, high] = ['friction_n', 'band_low_n', 'band_high_n'].map(value);
     byId('load').value = this.load_n;
-    byId('load').setAttribute('aria-valuetext', WORDS.loadText(this.load_n.toFixed(1), friction.toFixed(2)));
-    byId('load-value').textContent = WORDS.newtons(this.load_n);
-    byId('friction-now').textContent = WORDS.newtons(friction, friction < 9.95 ? 2 : 1);
-    byId('friction-words').textContent = `${WORDS.frictionAt(WORDS.newtons(this.load_n))}, ${WORDS.range(low.toFixed(2), high.toFixed(2))}`;
+    byId('load').setAttribute('aria-valuetext', TEXT.loadText(this.load_n.toFixed(1), friction.toFixed(2)));
+    byId('load-value').textContent = TEXT.newtons(this.load_n);
+    byId('friction-now').textContent = TEXT.newtons(friction, friction < 9.95 ? 2 : 1);
+    byId('friction-text').textContent = `${TEXT.frictionAt(TEXT.newtons(this.load_n))}, ${TEXT.range(low.toFixed(2), high.toFixed(2))}`;
     this.chart?.redraw(false);
     this.moved?.(this.load_n);
   }
 
-  words() {
+  describe() {
     const { curve, manifest } = this.data;
-    const isOurs = this.model !== null;
-    const trust = WORDS.trust[curve.trust] ?? curve.trust;
-    const words = isOurs ? WORDS.calibratedTrust(trust) : trust;
-    byId('trust').textContent = `${WORDS.trustMark[curve.trust] ?? ''} ${words}`;
+    const trust = TEXT.trust[curve.trust] ?? curve.trust;
+    const status = this.model === null ? trust : TEXT.calibratedTrust(trust);
+    byId('trust').textContent = `${TEXT.trustMark[curve.trust] ?? ''} ${status}`;
     byId('trust').className = `badge ${curve.trust}`;
-    byId('trust').setAttribute('aria-label', WORDS.trustOf(words));
+    byId('trust').setAttribute('aria-label', TEXT.trustName(status));
     byId('reason-list').replaceChildren(...curve.reasons.map((r) => make('li', r)));
-    byId('law').textContent = WORDS.law(curve.law, manifest.friction.source);
+    byId('law').textContent = TEXT.law(curve.law, manifest.friction.source);
     const end = (column) => curve[column].at(-1).toFixed(2);
-    this.host.setAttribute('aria-label', WORDS.curveName(curve.law, curve.load_n.at(-1).toFixed(1), end('friction_n'), end('band_low_n'), end('band_high_n')));
-    const c = WORDS.columns;
+    this.host.setAttribute('aria-label', TEXT.curveName(curve.law, curve.load_n.at(-1).toFixed(1), end('friction_n'), end('band_low_n'), end('band_high_n')));
+    const c = TEXT.columns;
     const columns = [curve.load_n, curve.eccentric_n, curve.concentric_n, curve.friction_n, curve.band_low_n, curve.band_high_n];
     if (byId('curve-table').open) byId('curve-rows').replaceChildren(table(Object.values(c), curve.load_n.map((_, i) => columns.map((column) => column[i].toFixed(3)))));
   }
 
-  reasons(open) {
-    // Who read them with the keyboard goes back to what opened them.
+  showReasons(open) {
+    // The focus goes back to the button that opened them.
     if (!open && byId('reasons').contains(document.activeElement)) byId('trust').focus();
     byId('reasons').hidden = !open;
     byId('trust').setAttribute('aria-expanded', String(open));
@@ -171,12 +171,12 @@ class Curve {
       return drawing;
     };
     const item = (mark, text) => { const li = make('li'); li.append(mark, text); return li; };
-    const items = [item(sample(MAIN), this.data.curve.law), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), WORDS.band)];
-    if (this.rivals) this.data.other_laws.slice(0, OTHERS).forEach((o, i) => items.push(item(sample(RIVAL + i), o.law)));
-    if (this.kept) items.push(item(sample(KEPT), WORDS.kept(this.keptName())));
+    const items = [item(sample(MAIN), this.data.curve.law), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), TEXT.band)];
+    if (this.showsOtherLaws) this.data.other_laws.slice(0, MAX_OTHER_LAWS).forEach((o, i) => items.push(item(sample(OTHER + i), o.law)));
+    if (this.comparison) items.push(item(sample(COMPARISON), TEXT.comparison(this.comparisonName())));
     if (this.preview) items.push(item(sample(PREVIEW), this.preview.name));
-    if (this.calibrated) items.push(item(sample(CALIBRATED), WORDS.calibratedCurve));
-    if (this.data.published.length) items.push(item(make('i', undefined, { class: 'dotmark', 'aria-hidden': 'true' }), WORDS.measuredPoint));
+    if (this.calibrated) items.push(item(sample(CALIBRATED), TEXT.calibratedCurve));
+    if (this.data.published.length) items.push(item(make('i', undefined, { class: 'dotmark', 'aria-hidden': 'true' }), TEXT.measuredPoint));
     byId('legend').replaceChildren(...items);
   }
 }

@@ -1,4 +1,4 @@
-// Small pieces that every part of the page uses.
+// Helpers for elements, numbers, tables, drags and the toast.
 
 const byId = (id) => document.getElementById(id);
 
@@ -24,8 +24,8 @@ const button = (text, act, attributes = {}) => {
 
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// Calls once, when nothing has called for `pause_ms`.
-function later(act, pause_ms) {
+// Returns a function that calls `act` once, when `pause_ms` have passed since its last call.
+function debounce(act, pause_ms) {
   let timer;
   return (...given) => {
     clearTimeout(timer);
@@ -33,12 +33,12 @@ function later(act, pause_ms) {
   };
 }
 
-// A number as one would write it: no digits that say nothing.
-const plain = (value, digits = 4) => (typeof value === 'number' ? String(Number(Math.abs(value) < 1 ? value.toPrecision(digits) : value.toFixed(digits))) : String(value));
+// A number without insignificant digits.
+const formatNumber = (value, digits = 4) => (typeof value === 'number' ? String(Number(Math.abs(value) < 1 ? value.toPrecision(digits) : value.toFixed(digits))) : String(value));
 
-function shownValue(value) {
+function formatValue(value) {
   if (Array.isArray(value)) return `[${value.join(', ')}]`;
-  return value === '' ? '""' : plain(value);
+  return value === '' ? '""' : formatNumber(value);
 }
 
 function table(head, rows) {
@@ -61,26 +61,29 @@ function save(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-// Tells how many seconds something has taken, at once and then seldom, since each time is read aloud. Returns what ends it.
-const TOLD_EVERY_MS = 5000;
-function tellTime(tell) {
-  const began = performance.now();
-  const tick = () => tell(Math.round((performance.now() - began) / 1000));
+// Reports elapsed seconds at once and then at long intervals, since a screen reader reads each
+// report. Returns a function that ends the reports.
+const REPORT_INTERVAL_MS = 5000;
+function reportElapsed(report) {
+  const start = performance.now();
+  const tick = () => report(Math.round((performance.now() - start) / 1000));
   tick();
-  const clock = setInterval(tick, TOLD_EVERY_MS);
-  return () => clearInterval(clock);
+  const timer = setInterval(tick, REPORT_INTERVAL_MS);
+  return () => clearInterval(timer);
 }
 
-// A line at the lower edge that says what was done, and goes by itself.
-let sayingEnds;
-function say(text) {
-  byId('said').textContent = text;
-  byId('said').classList.add('on');
-  clearTimeout(sayingEnds);
-  sayingEnds = setTimeout(() => byId('said').classList.remove('on'), 5000);
+// Shows a message at the lower edge for some seconds.
+const TOAST_MS = 5000;
+let toastTimer;
+function showToast(text) {
+  byId('toast').textContent = text;
+  byId('toast').classList.add('on');
+  clearTimeout(toastTimer);
+  toastTimer = setTimeout(() => byId('toast').classList.remove('on'), TOAST_MS);
 }
 
-// Pulls on `element`: `move` gets each place of the pointer until it is let go, `end` the last one.
+// Handles drags of `element`: `move` gets each pointer event, `end` the last one and whether the
+// drag was cancelled.
 function draggable(element, { start, move, end }) {
   element.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || start?.(event) === false) return;

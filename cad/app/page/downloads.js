@@ -1,4 +1,4 @@
-// Files of the design: a list with sizes, one by one, or all in an archive.
+// Files of the design: a list with sizes, for download one by one or in an archive.
 
 class Downloads {
   constructor(state, engine) {
@@ -6,11 +6,11 @@ class Downloads {
     this.dialog = byId('files');
     byId('download').addEventListener('click', () => this.open());
     byId('files-close').addEventListener('click', () => this.dialog.close());
-    byId('zip').addEventListener('click', () => this.fetch({ ask: 'zip' }, `${this.name()}.zip`, 'application/zip'));
+    byId('zip').addEventListener('click', () => this.download({ ask: 'zip' }, `${this.name()}.zip`, 'application/zip'));
     byId('toml').addEventListener('click', () => this.configuration());
   }
 
-  // What the last design that can be built was called. Under the open dialog the list follows the design.
+  // Takes the name of the last valid design. While the dialog is open, its list follows the design.
   show(data) {
     this.title = data.manifest.name;
     this.refresh();
@@ -19,73 +19,73 @@ class Downloads {
   refresh() {
     const { values, model } = this.state.now;
     const isListed = this.listed && this.listed.values === values && this.listed.model === model && !this.isStale();
-    if (this.dialog.open && !isListed) this.ask();
+    if (this.dialog.open && !isListed) this.list();
   }
 
-  // What is being made, and what it waits for.
-  making(words) {
-    const busy = this.engine.busyWith();
-    return busy ? `${WORDS.waitsFor[busy]} ${words}` : words;
+  // Adds the request for which files wait, if any.
+  withWait(text) {
+    const request = this.engine.longRequest();
+    return request ? `${TEXT.waitsFor[request]} ${text}` : text;
   }
 
   isStale() { return document.body.classList.contains('stale') || !this.title; }
   name() { return this.title ?? 'switch'; }
-  asked() { return { values: this.state.now.values, model: this.state.now.model?.toml ?? null }; }
+  design() { return { values: this.state.now.values, model: this.state.now.model?.toml ?? null }; }
 
   async open() {
     this.dialog.showModal();
-    await this.ask();
+    await this.list();
   }
 
-  async ask() {
-    const cannot = this.isStale();
+  async list() {
+    const isStale = this.isStale();
     const { values, model } = this.state.now;
-    this.listed = cannot ? null : { values, model };
+    this.listed = isStale ? null : { values, model };
     byId('file-list').replaceChildren();
-    byId('zip').disabled = byId('toml').disabled = cannot;
-    byId('files-say').textContent = cannot ? (document.body.classList.contains('gone') ? WORDS.serverGone : WORDS.noFiles) : this.making(WORDS.makingFiles);
-    const turn = this.turn = (this.turn ?? 0) + 1;
-    if (cannot) return;
+    byId('zip').disabled = byId('toml').disabled = isStale;
+    byId('files-status').textContent = isStale ? (document.body.classList.contains('disconnected') ? TEXT.serverGone : TEXT.noFiles) : this.withWait(TEXT.generatingFiles);
+    const number = this.listNumber = (this.listNumber ?? 0) + 1;
+    if (isStale) return;
     try {
-      const { files } = await this.engine.ask({ ask: 'files', ...this.asked() });
-      if (turn !== this.turn) return;
-      this.list(files);
-      byId('files-say').textContent = '';
+      const { files } = await this.engine.request({ ask: 'files', ...this.design() });
+      if (number !== this.listNumber) return;
+      this.showFiles(files);
+      byId('files-status').textContent = '';
     } catch (problem) {
-      if (!(problem instanceof Stale) && turn === this.turn) byId('files-say').textContent = WORDS.filesFail + problem.message;
+      if (!(problem instanceof Superseded) && number === this.listNumber) byId('files-status').textContent = TEXT.filesFailed + problem.message;
     }
   }
 
-  // The configuration of the design as it is now, though the page may still be showing the one before.
+  // Saves the configuration of the present values; the page may still show the design before.
   async configuration() {
     try {
-      const { toml, data, trouble } = await this.engine.ask({ ask: 'design', values: this.state.now.values, quality: 'coarse', aside: true });
-      if (trouble) throw new EngineError(troubleWords(trouble), 'refused');
+      const { toml, data, trouble } = await this.engine.request({ ask: 'design', values: this.state.now.values, quality: 'coarse', extra: true });
+      if (trouble) throw new EngineError(troubleText(trouble), 'refused');
       save(`${data.manifest.name}.toml`, toml, 'application/toml');
-      byId('files-say').textContent = WORDS.saved(`${data.manifest.name}.toml`);
+      byId('files-status').textContent = TEXT.saved(`${data.manifest.name}.toml`);
     } catch (problem) {
       if (!(problem instanceof EngineError)) throw problem;
-      byId('files-say').textContent = WORDS.filesFail + problem.message;
+      byId('files-status').textContent = TEXT.filesFailed + problem.message;
     }
   }
 
-  list(files) {
+  showFiles(files) {
     const groups = new Map();
     for (const file of files) {
       const end = file.name.split('.').pop().toLowerCase();
-      const kind = WORDS.kinds[end] ?? WORDS.kinds.other;
+      const kind = TEXT.kinds[end] ?? TEXT.kinds.other;
       if (!groups.has(kind)) groups.set(kind, []);
       groups.get(kind).push(file);
     }
-    const order = [...new Set(Object.values(WORDS.kinds))];
+    const order = [...new Set(Object.values(TEXT.kinds))];
     const sorted = [...groups].sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
     byId('file-list').replaceChildren(...sorted.map(([kind, members]) => {
       const group = make('section');
       const list = make('ul');
       for (const { name, bytes } of members) {
         const item = make('li');
-        const act = button(name, () => this.fetch({ ask: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
-        act.append(make('span', WORDS.megabytes(bytes), { class: 'dim' }));
+        const act = button(name, () => this.download({ ask: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
+        act.append(make('span', TEXT.megabytes(bytes), { class: 'dim' }));
         item.append(act);
         list.append(item);
       }
@@ -94,13 +94,13 @@ class Downloads {
     }));
   }
 
-  async fetch(request, name, type) {
-    byId('files-say').textContent = this.making(WORDS.saving(name));
+  async download(request, name, type) {
+    byId('files-status').textContent = this.withWait(TEXT.generating(name));
     try {
-      save(name, await this.engine.ask({ ...request, ...this.asked() }), type);
-      byId('files-say').textContent = WORDS.saved(name);
+      save(name, await this.engine.request({ ...request, ...this.design() }), type);
+      byId('files-status').textContent = TEXT.saved(name);
     } catch (problem) {
-      if (!(problem instanceof Stale)) byId('files-say').textContent = WORDS.filesFail + problem.message;
+      if (!(problem instanceof Superseded)) byId('files-status').textContent = TEXT.filesFailed + problem.message;
     }
   }
 }

@@ -1,135 +1,139 @@
-// Asks the engine: a worker with the module that the page holds, or the server that served the page.
+// Requests to the engine: a worker with the module in the page, or the server of the page.
 
-// Answers of the engine that are no answers: told in words.
+// A request was not answered; the message is for the user. `kind` is `failed`, `trap`, `gone` or
+// `refused`.
 class EngineError extends Error {
   constructor(message, kind) { super(message); this.kind = kind; }
 }
-// A question that a newer one has made pointless.
-class Stale extends Error {}
+// A request was replaced by a newer one, or stopped.
+class Superseded extends Error {}
 
-// One worker: answers one question at a time, in their order. Of questions with the same `newest` only the last waits.
-class WorkerLane {
+// A worker that answers one request at a time, in order. Of waiting requests with the same `group`
+// only the last is kept.
+class WorkerClient {
   constructor(source, module) {
     this.source = source;
     this.module = module;
     this.waiting = [];
-    this.asked = null;
+    this.current = null;
   }
 
   start() {
     const address = URL.createObjectURL(new Blob([this.source], { type: 'text/javascript' }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
-    this.worker.onmessage = (event) => this.answered(event.data);
-    this.worker.onerror = (event) => { event.preventDefault(); this.answered({ fatal: event.message ?? '' }); };
+    this.worker.onmessage = (event) => this.receive(event.data);
+    this.worker.onerror = (event) => { event.preventDefault(); this.receive({ failed: event.message ?? '' }); };
     this.worker.postMessage(this.module());
   }
 
-  ask(request, newest) {
+  request(request, group) {
     return new Promise((resolve, reject) => {
-      if (newest) {
-        this.waiting.filter((q) => q.newest === newest).forEach((q) => q.reject(new Stale()));
-        this.waiting = this.waiting.filter((q) => q.newest !== newest);
+      if (group) {
+        this.waiting.filter((r) => r.group === group).forEach((r) => r.reject(new Superseded()));
+        this.waiting = this.waiting.filter((r) => r.group !== group);
       }
-      this.waiting.push({ request, newest, resolve, reject });
+      this.waiting.push({ request, group, resolve, reject });
       this.next();
     });
   }
 
   next() {
-    if (this.asked || !this.waiting.length) return;
+    if (this.current || !this.waiting.length) return;
     if (!this.worker) this.start();
-    this.asked = this.waiting.shift();
-    this.worker.postMessage({ question: JSON.stringify(this.asked.request) });
+    this.current = this.waiting.shift();
+    this.worker.postMessage({ request: JSON.stringify(this.current.request) });
   }
 
-  answered(message) {
-    if (message.fatal !== undefined || message.trap !== undefined) {
+  receive(message) {
+    if (message.failed !== undefined || message.trap !== undefined) {
       this.end();
-      const broken = message.fatal !== undefined;
-      this.asked?.reject(new EngineError(broken ? WORDS.engineBroken(message.fatal) : WORDS.engineStopped, broken ? 'broken' : 'trap'));
+      const hasFailed = message.failed !== undefined;
+      this.current?.reject(new EngineError(hasFailed ? TEXT.engineFailed(message.failed) : TEXT.engineStopped, hasFailed ? 'failed' : 'trap'));
     } else if (message.bytes) {
-      this.asked?.resolve(message.bytes);
+      this.current?.resolve(message.bytes);
     } else {
-      this.asked?.resolve(JSON.parse(message.json));
+      this.current?.resolve(JSON.parse(message.json));
     }
-    this.asked = null;
+    this.current = null;
     this.next();
   }
 
-  // Ends the worker with what it does; the next question starts another.
+  // Ends the worker and its computation; the next request starts another worker.
   end() { this.worker?.terminate(); this.worker = null; }
 
-  // Ends questions of this kind, waiting or under way, and no others.
+  // Stops requests of this kind, waiting or in progress, and no others.
   stop(kind) {
-    this.waiting.filter((q) => q.request.ask === kind).forEach((q) => q.reject(new Stale()));
-    this.waiting = this.waiting.filter((q) => q.request.ask !== kind);
-    if (this.asked?.request.ask !== kind) return;
+    this.waiting.filter((r) => r.request.ask === kind).forEach((r) => r.reject(new Superseded()));
+    this.waiting = this.waiting.filter((r) => r.request.ask !== kind);
+    if (this.current?.request.ask !== kind) return;
     this.end();
-    this.asked.reject(new Stale());
-    this.asked = null;
+    this.current.reject(new Superseded());
+    this.current = null;
     this.next();
   }
 }
 
-// The server answers many at once; here too only the newest design counts.
-class ServerLane {
-  constructor() { this.turn = {}; this.stopping = {}; }
+// The server answers requests in parallel, but of one `group` one at a time and only the last that
+// waits.
+class ServerClient {
+  constructor() { this.latest = {}; this.aborts = {}; }
 
-  async ask(request, newest) {
-    const turn = newest && (this.turn[newest] = (this.turn[newest] ?? 0) + 1);
-    if (newest) {
+  async request(request, group) {
+    const number = group && (this.latest[group] = (this.latest[group] ?? 0) + 1);
+    if (group) {
       await this.running?.catch(() => {});
-      if (turn !== this.turn[newest]) throw new Stale();
+      if (number !== this.latest[group]) throw new Superseded();
     }
     const answer = this.post(request);
-    if (newest) this.running = answer;
+    if (group) this.running = answer;
     return answer;
   }
 
   async post(request) {
-    const { signal } = (this.stopping[request.ask] ??= new AbortController());
+    const { signal } = (this.aborts[request.ask] ??= new AbortController());
     let response;
     try {
       response = await fetch('answer', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(request), signal });
     } catch {
-      if (signal.aborted) throw new Stale();
-      throw new EngineError(location.protocol === 'file:' ? WORDS.engineMissing : WORDS.serverGone, 'gone');
+      if (signal.aborted) throw new Superseded();
+      throw new EngineError(location.protocol === 'file:' ? TEXT.engineMissing : TEXT.serverGone, 'gone');
     }
     const isJson = (response.headers.get('content-type') ?? '').includes('json');
-    if (!response.ok && !isJson) throw new EngineError(response.status === 404 ? WORDS.engineMissing : WORDS.enginePart(`${response.status}`), 'gone');
+    if (!response.ok && !isJson) throw new EngineError(response.status === 404 ? TEXT.engineMissing : TEXT.engineStatus(response.status), 'gone');
     return isJson ? response.json() : response.arrayBuffer();
   }
 
-  stop(kind) { this.stopping[kind]?.abort(); delete this.stopping[kind]; }
+  stop(kind) { this.aborts[kind]?.abort(); delete this.aborts[kind]; }
 }
 
 class Engine {
   constructor() {
     const element = byId('module');
     const module = element.textContent.trim();
-    // Libraries of this page that the module holds, too: left out of it, and put back where `three:PLACE` says.
-    const holes = element.dataset.holes.split(' ').filter(Boolean).map((hole) => hole.split(':')).map(([id, place]) => [Number(place), byId(id).textContent]);
-    const lane = () => (module ? new WorkerLane(byId('worker').textContent, () => ({ module: bytesOf(module).buffer, holes })) : new ServerLane());
-    // What takes seconds has a lane of its own, so that pins still move.
-    this.quick = lane();
-    this.slow = lane();
-    this.underWay = new Set();
+    // Libraries of this page that the module needs, too, with their offsets in it, as
+    // `three:OFFSET`.
+    const libraries = element.dataset.libraryOffsets.split(' ').filter(Boolean).map((entry) => entry.split(':')).map(([id, offset]) => [Number(offset), byId(id).textContent]);
+    const client = () => (module ? new WorkerClient(byId('worker').textContent, () => ({ module: bytesOf(module).buffer, libraries })) : new ServerClient());
+    // Designs do not wait for requests that take seconds.
+    this.designs = client();
+    this.slow = client();
+    this.inProgress = new Set();
   }
 
-  // What of that which takes long is under way: `search`, `calibrate`, or nothing. Files are made behind it.
-  busyWith() { return [...this.underWay].map((request) => request.ask).find((kind) => kind === 'search' || kind === 'calibrate'); }
+  // The long request in progress, for which files wait: `search`, `calibrate`, or undefined.
+  longRequest() { return [...this.inProgress].map((request) => request.ask).find((kind) => kind === 'search' || kind === 'calibrate'); }
 
-  // The answer; an EngineError in words if there is none, Stale if a newer design was asked for meanwhile.
-  async ask(request) {
+  // Returns the answer; throws EngineError if there is none, and Superseded if a newer design
+  // replaces this one. A design with `extra` is neither replaced nor replaces others.
+  async request({ extra, ...request }) {
     const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.ask);
-    const newest = request.ask === 'design' && !request.aside ? 'design' : undefined;
-    const { aside: _, ...question } = request;
-    this.underWay.add(request);
-    const answer = await (isSlow ? this.slow : this.quick).ask(question, newest).finally(() => this.underWay.delete(request));
+    const group = request.ask === 'design' && !extra ? 'design' : undefined;
+    this.inProgress.add(request);
+    const answer = await (isSlow ? this.slow : this.designs).request(request, group).finally(() => this.inProgress.delete(request));
     if (answer?.error !== undefined) throw new EngineError(answer.error, 'refused');
-    // Designs and files that were opened tell trouble at its field; what follows from a design says it in a line.
-    if (isSlow && answer?.trouble) throw new EngineError(troubleWords(answer.trouble), 'refused');
+    // Designs and opened files show a refusal at its field, slow requests in one line.
+    if (isSlow && answer?.trouble) throw new EngineError(troubleText(answer.trouble), 'refused');
     return answer;
   }
 

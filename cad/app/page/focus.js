@@ -1,10 +1,10 @@
-// Where the focus goes when what has it is removed, hidden or disabled. Left to the browser it falls to the page's beginning,
-// and who walks with the keyboard walks all of it again.
+// Moves the focus when its element is removed, hidden or disabled. The browser would move it to the
+// start of the page, and keyboard users would have to go through all of it again.
 
 const FOCUSABLE = 'a[href], button, input, select, summary, [tabindex]';
 
 const canTakeFocus = (element) => element.isConnected && !element.disabled && (element.checkVisibility?.({ visibilityProperty: true }) ?? element.getClientRects().length > 0);
-const stopsIn = (host) => [...host.querySelectorAll(FOCUSABLE)].filter((e) => e.tabIndex >= 0);
+const tabStopsIn = (host) => [...host.querySelectorAll(FOCUSABLE)].filter((e) => e.tabIndex >= 0);
 const nameOf = (element) => element.getAttribute('aria-label') ?? element.textContent;
 
 class Focus {
@@ -15,40 +15,40 @@ class Focus {
     new MutationObserver(() => this.check()).observe(document.body, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden', 'disabled', 'open', 'class'] });
   }
 
-  // What stands around it, for when it is gone.
+  // Records the surroundings of the focused element.
   remember(element) {
-    const around = [];
-    for (let host = element.parentElement; host; host = host.parentElement) around.push(host);
-    this.last = { element, around, stops: stopsIn(document), name: nameOf(element), isSeen: element.matches(':focus-visible') };
+    const ancestors = [];
+    for (let host = element.parentElement; host; host = host.parentElement) ancestors.push(host);
+    this.last = { element, ancestors, tabStops: tabStopsIn(document), name: nameOf(element), isVisible: element.matches(':focus-visible') };
   }
 
-  // Who clicks beside what has the focus has left it, if it is still there a moment later.
+  // Forgets the element after a click outside of it, if it still exists a moment later.
   left() { if (this.last && document.activeElement === document.body && canTakeFocus(this.last.element)) this.last = null; }
 
   check() {
     const at = document.activeElement;
     if (!this.last || (at && at !== document.body && canTakeFocus(at)) || canTakeFocus(this.last.element)) return;
-    const { isSeen } = this.last;
-    const heir = this.heir(this.last);
+    const { isVisible } = this.last;
+    const next = this.successor(this.last);
     this.last = null;
-    // A hand at the mouse did not ask to be scrolled away.
-    heir?.focus({ preventScroll: !isSeen });
+    // For users of a pointer the page does not scroll.
+    next?.focus({ preventScroll: !isVisible });
   }
 
-  // The same drawn anew; else whom it names in `data-heir`; else what stands next, in what is closest around it: there its
-  // one box of `data-home`, if it has one.
-  heir({ element, around, stops, name }) {
-    const hosts = around.filter((host) => host.isConnected);
-    const twin = stopsIn(hosts[0]).find((e) => e.tagName === element.tagName && nameOf(e) === name && canTakeFocus(e));
-    const named = (element.dataset.heir ?? '').split(' ').map((id) => byId(id));
-    const own = twin ?? named.find((e) => e && canTakeFocus(e));
-    if (own) return own;
-    const place = stops.indexOf(element);
-    const order = [...stops.slice(place + 1), ...stops.slice(0, place).reverse()];
+  // Returns the redrawn element; else the first of its `data-focus-next`; else, in its nearest
+  // ancestor, the only element with `data-focus-target` or the next one in the order.
+  successor({ element, ancestors, tabStops, name }) {
+    const hosts = ancestors.filter((host) => host.isConnected);
+    const twin = tabStopsIn(hosts[0]).find((e) => e.tagName === element.tagName && nameOf(e) === name && canTakeFocus(e));
+    const named = (element.dataset.focusNext ?? '').split(' ').map((id) => byId(id));
+    const preferred = twin ?? named.find((e) => e && canTakeFocus(e));
+    if (preferred) return preferred;
+    const index = tabStops.indexOf(element);
+    const order = [...tabStops.slice(index + 1), ...tabStops.slice(0, index).reverse()];
     for (const host of hosts) {
-      const near = stopsIn(host).filter(canTakeFocus);
-      const homes = near.filter((e) => 'home' in e.dataset);
-      const next = (homes.length === 1 ? homes[0] : undefined) ?? order.find((e) => near.includes(e)) ?? near[0];
+      const candidates = tabStopsIn(host).filter(canTakeFocus);
+      const targets = candidates.filter((e) => 'focusTarget' in e.dataset);
+      const next = (targets.length === 1 ? targets[0] : undefined) ?? order.find((e) => candidates.includes(e)) ?? candidates[0];
       if (next) return next;
     }
     return null;

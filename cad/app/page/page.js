@@ -1,138 +1,139 @@
-// The whole: starts the engine, shows each design that the state asks for, and keeps the address.
+// The page: starts the engine, shows the design of each state, and writes the address.
 
-// So long nothing may change before the exact design is asked for, in place of the coarse one.
-const CALM_MS = 450;
-// The address is written no more often: browsers refuse a hundred in ten seconds.
+// Time without a change after which the exact design replaces the coarse one.
+const EXACT_DELAY_MS = 450;
+// Interval of writes to the address; browsers refuse a hundred in ten seconds.
 const ADDRESS_MS = 250;
-const FIRST = 'three-double';
+const FIRST_TEMPLATE = 'three-double';
 
-let faults = 0;
-function fault(message) {
-  faults += 1;
-  document.body.dataset.errors = faults;
-  showNotice(WORDS.fault(message));
+let errors = 0;
+function reportError(message) {
+  errors += 1;
+  document.body.dataset.errors = errors;
+  showNotice(TEXT.fault(message));
 }
 document.body.dataset.errors = 0;
-document.body.dataset.generation = document.body.dataset.asked = document.body.dataset.answered = 0;
-addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) fault(event.message); });
-addEventListener('unhandledrejection', (event) => fault(String(event.reason?.message ?? event.reason)));
+document.body.dataset.generation = document.body.dataset.requested = document.body.dataset.answered = 0;
+addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) reportError(event.message); });
+addEventListener('unhandledrejection', (event) => reportError(String(event.reason?.message ?? event.reason)));
 
-// A line over the picture: about an address, a file, the engine. `acts` are what could be done.
-function showNotice(words, ...acts) {
+// Shows a notice over the picture: about an address, a file, or the engine. `actions` are buttons.
+function showNotice(text, ...actions) {
   const host = byId('notice');
-  host.hidden = !words;
+  host.hidden = !text;
   host.dataset.about = '';
   host.replaceChildren();
-  if (!words) return;
-  host.append(make('p', words));
-  host.append(...acts);
-  host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': WORDS.close }));
+  if (!text) return;
+  host.append(make('p', text));
+  host.append(...actions);
+  host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': TEXT.close }));
 }
 
-// Where the picture is out of sight, what is said of something else that a person did follows them there.
-function followPicture() {
-  const away = ([{ isIntersecting }]) => byId('notice').classList.toggle('away', !isIntersecting);
-  new IntersectionObserver(away, { rootMargin: '-60px 0px 0px 0px' }).observe(document.querySelector('.picture'));
+// While the picture is out of view, the notice floats over the page.
+function floatNotice() {
+  const update = ([{ isIntersecting }]) => byId('notice').classList.toggle('floating-banner', !isIntersecting);
+  new IntersectionObserver(update, { rootMargin: '-60px 0px 0px 0px' }).observe(document.querySelector('.picture'));
 }
 
-// The same about something that may pass: `forgetNotice` takes it away, and leaves any other.
-function showNoticeAbout(about, words, ...acts) {
-  showNotice(words, ...acts);
+// Shows a notice about a topic; `clearNoticeAbout` removes it, and no other.
+function showNoticeAbout(about, text, ...actions) {
+  showNotice(text, ...actions);
   byId('notice').dataset.about = about;
 }
-function forgetNotice(about) { if (byId('notice').dataset.about === about) showNotice(''); }
+function clearNoticeAbout(about) { if (byId('notice').dataset.about === about) showNotice(''); }
 
-function fillWords() {
-  document.title = WORDS.title;
-  for (const element of document.querySelectorAll('[data-word]')) element.prepend(WORDS[element.dataset.word]);
-  for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', WORDS[element.dataset.name]);
-  for (const element of document.querySelectorAll('[data-hint]')) element.placeholder = WORDS[element.dataset.hint];
-  for (const element of document.querySelectorAll('[data-tip]')) element.title = WORDS[element.dataset.tip];
+function fillTexts() {
+  document.title = TEXT.title;
+  for (const element of document.querySelectorAll('[data-text]')) element.prepend(TEXT[element.dataset.text]);
+  for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', TEXT[element.dataset.name]);
+  for (const element of document.querySelectorAll('[data-placeholder]')) element.placeholder = TEXT[element.dataset.placeholder];
+  for (const element of document.querySelectorAll('[data-title]')) element.title = TEXT[element.dataset.title];
 }
 
 class Page {
   async start() {
-    fillWords();
-    followPicture();
+    fillTexts();
+    floatNotice();
     new Focus();
     this.engine = new Engine();
-    byId('busy').textContent = WORDS.starting;
+    byId('busy').textContent = TEXT.starting;
     let facts;
     try {
-      facts = await this.engine.ask({ ask: 'facts' });
+      facts = await this.engine.request({ ask: 'facts' });
     } catch (problem) {
       byId('busy').textContent = '';
-      document.body.dataset.broken = 'true';
-      showNotice(problem.message, button(WORDS.retry, () => location.reload()));
+      document.body.dataset.engineFailed = 'true';
+      showNotice(problem.message, button(TEXT.retry, () => location.reload()));
       return;
     }
     this.facts = facts;
     const state = this.state = new State(facts);
-    const started = await Served.start();
-    await this.first(started);
+    const started = await ServerFile.start();
+    await this.begin(started);
     this.view = new View();
-    // The design is asked for once more, which brings a picture in its place.
+    // The exact design brings a picture in place of the view.
     this.view.lost = () => this.design('exact');
     this.curve = new Curve(state);
     this.curve.moved = (load_n) => this.view.load(load_n);
     this.handles = new Handles(this.curve, state);
     this.controls = new Controls(byId('fields'), facts, state);
     this.pins = new Pins(byId('pins'), state);
-    this.ask = new Ask(state, this.engine, this.curve, this.handles);
-    this.measured = new Measured(state, this.engine, this.curve);
+    this.targets = new Targets(state, this.engine, this.curve, this.handles);
+    this.measurements = new Measurements(state, this.engine, this.curve);
     this.downloads = new Downloads(state, this.engine);
-    this.embed = new Embed((hash) => this.take(hash), state);
+    this.embed = new Embed((hash) => this.applyHash(hash), state);
     const drop = new Drop({
-      table: (text, file) => this.measured.calibrate(text, file),
-      configuration: (text, file) => this.open(text, file),
-      model: (text, file) => this.measured.takeModel(text, file),
-      largestTable_mb: facts.largest_table_mb,
+      openTable: (text, file) => this.measurements.calibrate(text, file),
+      openConfiguration: (text, file) => this.open(text, file),
+      openModel: (text, file) => this.measurements.openModel(text, file),
+      maxTable_mb: facts.largest_table_mb,
     });
-    this.measured.chosen = (files) => drop.files(files);
-    this.templates();
-    this.buttons();
-    this.exactly = later(() => this.design('exact'), CALM_MS);
-    this.address = later(() => this.writeAddress(), ADDRESS_MS);
-    state.addEventListener('change', () => { this.changed(); this.address(); });
-    state.addEventListener('step', () => forgetNotice('address'));
+    this.measurements.onFiles = (files) => drop.open(files);
+    this.addTemplates();
+    this.listen();
+    this.requestExact = debounce(() => this.design('exact'), EXACT_DELAY_MS);
+    this.updateAddress = debounce(() => this.writeAddress(), ADDRESS_MS);
+    state.addEventListener('change', () => { this.changed(); this.updateAddress(); });
+    state.addEventListener('step', () => clearNoticeAbout('address'));
     addEventListener('hashchange', () => this.addressChanged());
-    byId('maker').textContent = facts.generator;
+    byId('generator').textContent = facts.generator;
     this.changed();
     this.writeAddress();
-    new Served(state).begin(started);
+    new ServerFile(state).begin(started);
   }
 
-  // The first state: of the address, of what the server was started with, of the last visit, or a published layout.
-  async first(started) {
-    const given = await decodeHash(location.hash, this.state.fields);
-    if (given?.said.length) showNoticeAbout('address', given.said.join(' '));
-    if (given?.parts) { this.state.begin(given.parts); return; }
-    if (started?.begun.said && !started.trouble) { this.state.begin({ values: started.values }); return; }
-    const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
-    if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
+  // Sets the first state: that of the address, of the server, of the last visit, or a published
+  // layout.
+  async begin(started) {
+    const decoded = await decodeHash(location.hash, this.state.fields);
+    if (decoded?.messages.length) showNoticeAbout('address', decoded.messages.join(' '));
+    if (decoded?.parts) { this.state.begin(decoded.parts); return; }
+    if (started?.source.is_explicit && !started.trouble) { this.state.begin({ values: started.values }); return; }
+    const last = decoded ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
+    if (last?.parts) { this.state.begin(last.parts); showToast(TEXT.restored); return; }
     this.state.begin({ values: { ...this.published()?.values } });
   }
 
-  // One address after the other: one that holds a model takes longer to be read than the next one to come.
-  take(hash) {
-    const turn = (this.taking ?? Promise.resolve()).then(() => this.takeNow(hash));
-    this.taking = turn.catch(() => {});
-    return turn;
+  // Applies addresses in order: one with a model takes longer to decode than the next one.
+  applyHash(hash) {
+    const result = (this.hashQueue ?? Promise.resolve()).then(() => this.applyNow(hash));
+    this.hashQueue = result.catch(() => {});
+    return result;
   }
 
-  async takeNow(hash) {
-    const given = await decodeHash(hash, this.state.fields);
-    const said = [...(given?.said ?? []), ...(given?.broken ? [WORDS.hash.stays] : [])].join(' ');
-    showNoticeAbout('address', said);
+  async applyNow(hash) {
+    const decoded = await decodeHash(hash, this.state.fields);
+    const messages = [...(decoded?.messages ?? []), ...(decoded?.isInvalid ? [TEXT.hash.unchanged] : [])].join(' ');
+    showNoticeAbout('address', messages);
     const before = this.state.now;
-    // Before the change, which may tell it.
-    this.embed.said = said || null;
-    if (given?.parts) this.state.change(given.parts);
-    this.embed.took(said, this.state.now === before);
-    this.address();
+    // Before the change, which may send it.
+    this.embed.ignored = messages || null;
+    if (decoded?.parts) this.state.change(decoded.parts);
+    this.embed.applied(messages, this.state.now === before);
+    this.updateAddress();
   }
 
-  addressChanged() { if (location.hash !== this.written) this.take(location.hash); }
+  addressChanged() { if (location.hash !== this.written) this.applyHash(location.hash); }
 
   writeAddress() {
     this.written = encodeHash(this.state.now);
@@ -144,58 +145,58 @@ class Page {
     byId('undo').disabled = !this.state.past.length;
     byId('redo').disabled = !this.state.future.length;
     this.markTemplate();
-    const asked = JSON.stringify([this.state.now.values, this.state.now.model?.packed]);
-    // A mark of the ask changes no part.
-    if (asked === this.asked) { this.embed.asked(this.state.now); return; }
-    this.asked = asked;
-    document.body.dataset.asked = Number(document.body.dataset.asked) + 1;
+    const requested = JSON.stringify([this.state.now.values, this.state.now.model?.packed]);
+    // Targets change neither parts nor curve.
+    if (requested === this.requested) { this.embed.sendTargets(this.state.now); return; }
+    this.requested = requested;
+    document.body.dataset.requested = Number(document.body.dataset.requested) + 1;
     this.design('coarse');
-    this.exactly();
+    this.requestExact();
   }
 
   async design(quality) {
     const { now } = this.state;
     const { values, model } = now;
-    const asked = this.asked;
-    const question = document.body.dataset.asked;
+    const { requested } = this;
+    const number = document.body.dataset.requested;
     document.body.dataset.pending = 'true';
-    const slow = setTimeout(() => { byId('busy').textContent = WORDS.working; }, 300);
+    const slow = setTimeout(() => { byId('busy').textContent = TEXT.working; }, 300);
     try {
-      const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
+      const answer = await this.engine.request({ ask: 'design', values, quality, model: model?.toml ?? null });
       if (answer.data) { this.instead = null; this.show(answer, quality, now); }
       else if (!this.data) await this.showPublished();
-      document.body.classList.remove('gone');
+      document.body.classList.remove('disconnected');
       showTrouble(answer.trouble, this.controls, this.state, this.instead);
       this.downloads.refresh();
-      document.body.dataset.answered = question;
-      this.embed.tell(now, this.state.now, answer.data, answer.trouble);
-      if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
-      if (this.isGone) { this.isGone = false; showNotice(''); }
+      document.body.dataset.answered = number;
+      this.embed.sendDesign(now, this.state.now, answer.data, answer.trouble);
+      if (quality === 'exact' && requested === this.requested) document.body.dataset.pending = 'false';
+      if (this.isDisconnected) { this.isDisconnected = false; showNotice(''); }
     } catch (problem) {
-      if (problem instanceof Stale) return;
+      if (problem instanceof Superseded) return;
       if (!(problem instanceof EngineError)) throw problem;
-      this.isGone = problem.kind === 'gone';
+      this.isDisconnected = problem.kind === 'gone';
       document.body.classList.add('stale');
-      document.body.classList.toggle('gone', this.isGone);
+      document.body.classList.toggle('disconnected', this.isDisconnected);
       this.downloads.refresh();
-      showNotice(problem.message, button(WORDS.retry, () => this.design('exact')));
-      if (asked === this.asked) document.body.dataset.pending = 'false';
+      showNotice(problem.message, button(TEXT.retry, () => this.design('exact')));
+      if (requested === this.requested) document.body.dataset.pending = 'false';
     } finally {
       clearTimeout(slow);
       byId('busy').textContent = '';
     }
   }
 
-  // An address that cannot be built has no last good design: a published one stands there in grey.
+  // If the first design cannot be built, a published one is shown in grey.
   async showPublished() {
     const values = this.published()?.values ?? {};
-    const answer = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: null, aside: true });
+    const answer = await this.engine.request({ ask: 'design', values, quality: 'coarse', model: null, extra: true });
     if (!answer.data || this.data) return;
     this.instead = answer.data.manifest.name;
     this.show(answer, 'coarse', { values, model: null });
   }
 
-  published() { return this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0]; }
+  published() { return this.facts.templates.find((t) => t.name === FIRST_TEMPLATE) ?? this.facts.templates[0]; }
 
   show({ data }, quality, { values, model }) {
     this.data = data;
@@ -203,39 +204,39 @@ class Page {
     this.view.show(data);
     this.curve.show(data, values, model?.name ?? null);
     showChecks(data);
-    showBill(data);
+    showMaterials(data);
     this.downloads.show(data);
     const { dataset } = document.body;
     dataset.generation = Number(dataset.generation) + 1;
     dataset.quality = quality;
     dataset.ready = 'true';
     if (quality !== 'exact') return;
-    byId('heard').textContent = this.inWords(data);
-    this.view.picture(this.engine, { values, model: model?.toml ?? null });
+    byId('announcement').textContent = this.announcement(data);
+    this.view.showPicture(this.engine, { values, model: model?.toml ?? null });
   }
 
-  // What changed, for those who do not see it.
-  inWords({ manifest: { friction: f } }) {
-    const switches = f.threshold_n === null ? [] : [WORDS.thresholdNow(WORDS.newtons(f.threshold_n))];
-    return [WORDS.loadText(f.load_n.toFixed(1), f.friction_n.toFixed(2)), ...switches, WORDS.trust[f.trust] ?? f.trust].join('; ');
+  // The change, for screen readers.
+  announcement({ manifest: { friction: f } }) {
+    const switches = f.threshold_n === null ? [] : [TEXT.switchesAtLoad(TEXT.newtons(f.threshold_n))];
+    return [TEXT.loadText(f.load_n.toFixed(1), f.friction_n.toFixed(2)), ...switches, TEXT.trust[f.trust] ?? f.trust].join('; ');
   }
 
   async open(text, file) {
     try {
-      const { values, trouble } = await this.engine.ask({ ask: 'open', toml: text, file });
-      if (values) { this.state.change({ values }); say(WORDS.opened(file)); }
-      else showNotice(WORDS.notOpened(file) + (trouble ? troubleWords(trouble) : ''));
+      const { values, trouble } = await this.engine.request({ ask: 'open', toml: text, file });
+      if (values) { this.state.change({ values }); showToast(TEXT.opened(file)); }
+      else showNotice(TEXT.notOpened(file) + (trouble ? troubleText(trouble) : ''));
     } catch (problem) {
-      if (!(problem instanceof Stale)) showNotice(WORDS.notOpened(file) + problem.message);
+      if (!(problem instanceof Superseded)) showNotice(TEXT.notOpened(file) + problem.message);
     }
   }
 
-  templates() {
+  addTemplates() {
     this.chips = [];
     const published = this.facts.templates.filter((t) => t.kind === 'published');
-    const quick = published.filter((t) => !t.name.startsWith('proxy-'));
-    quick.forEach((t) => {
-      const chip = button(t.name, () => this.takeTemplate(t), { class: 'chip', 'aria-pressed': 'false', title: t.about });
+    const shortcuts = published.filter((t) => !t.name.startsWith('proxy-'));
+    shortcuts.forEach((t) => {
+      const chip = button(t.name, () => this.applyTemplate(t), { class: 'chip', 'aria-pressed': 'false', title: t.about });
       this.chips.push([chip, t]);
       byId('chips').append(chip);
     });
@@ -244,31 +245,31 @@ class Page {
       if (!templates.length) return;
       list.append(make('h2', title));
       for (const t of templates) {
-        const item = button(t.name, () => { this.takeTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
+        const item = button(t.name, () => { this.applyTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
         item.append(make('span', t.about, { class: 'dim' }));
         list.append(item);
       }
     };
-    list.append(button(WORDS.open, () => byId('open-file').click(), { class: 'link narrow' }));
-    group(WORDS.published, published);
-    group(WORDS.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
+    list.append(button(TEXT.open, () => byId('open-file').click(), { class: 'link narrow' }));
+    group(TEXT.published, published);
+    group(TEXT.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
   }
 
-  takeTemplate(template) {
+  applyTemplate(template) {
     const { values } = this.state.now;
     if (template.kind === 'printer') {
-      // Under the design, as a preset of the command line: what a person has set stays. What another printer has set goes.
+      // As --preset: the user's values override it. Values of another printer are removed.
       const printers = this.facts.templates.filter((t) => t.kind === 'printer');
       const own = Object.fromEntries(Object.entries(values).filter(([path, value]) => !printers.some((t) => path in t.values && sameValue(t.values[path], value))));
       const kept = Object.keys(template.values).filter((path) => path in own);
       this.state.change({ values: { ...template.values, ...own } });
-      say(WORDS.printerTaken(template.name, kept.map((path) => fieldName(this.state.fields.get(path)))));
+      showToast(TEXT.printerApplied(template.name, kept.map((path) => fieldName(this.state.fields.get(path)))));
       return;
     }
     const isOfTemplates = (path) => this.facts.templates.some((t) => t.kind === 'published' && path in t.values);
     const lost = Object.keys(values).filter((path) => !(path in template.values) && !isOfTemplates(path)).length;
     this.state.change({ values: { ...template.values } });
-    say(WORDS.templateTaken(template.name, lost));
+    showToast(TEXT.templateApplied(template.name, lost));
   }
 
   markTemplate() {
@@ -277,24 +278,24 @@ class Page {
     for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(isThis(t)));
     const name = this.data?.manifest.name ?? '';
     const template = this.facts.templates.find((t) => t.name === name);
-    byId('name').textContent = template && !isThis(template) ? WORDS.changedFrom(name) : name;
+    byId('name').textContent = template && !isThis(template) ? TEXT.changedFrom(name) : name;
   }
 
-  buttons() {
+  listen() {
     const { state } = this;
-    // The address is that of the design, and none of a place on the page.
+    // Without changing the fragment of the address, which is the design.
     document.querySelector('.skip').addEventListener('click', (event) => { event.preventDefault(); byId('main').focus(); });
     byId('undo').addEventListener('click', () => state.undo());
     byId('redo').addEventListener('click', () => state.redo());
     byId('share').addEventListener('click', () => this.share());
     byId('parameters').addEventListener('click', () => this.sheet(true));
     byId('sheet-close').addEventListener('click', () => this.sheet(false));
-    byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.words());
+    byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.describe());
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') { this.sheet(false); this.closeMenus(); }
       if (!(event.ctrlKey || event.metaKey) || event.altKey || byId('files').open) return;
       const key = event.key.toLowerCase();
-      // In a text that is being written, the browser's own undo.
+      // In a text input the browser has its own undo.
       if (event.target.matches?.('input[type=text], input[type=search]')) return;
       if (key === 'z' && !event.shiftKey) state.undo();
       else if (key === 'y' || (key === 'z' && event.shiftKey)) state.redo();
@@ -304,11 +305,11 @@ class Page {
     addEventListener('pointerdown', (event) => this.closeMenus(event.target));
   }
 
-  // Closes what lies open over the page, but for that which holds `within`.
+  // Closes menus and reasons, except the one that contains `within`.
   closeMenus(within) {
-    for (const menu of [byId('more'), byId('look')]) if (!menu.contains(within ?? null)) menu.open = false;
+    for (const menu of [byId('more'), byId('view-menu')]) if (!menu.contains(within ?? null)) menu.open = false;
     const isWithin = [byId('reasons'), byId('trust')].some((e) => e.contains(within ?? null));
-    if (!isWithin) this.curve.reasons(false);
+    if (!isWithin) this.curve.showReasons(false);
   }
 
   sheet(open) {
@@ -323,9 +324,9 @@ class Page {
     this.writeAddress();
     try {
       await navigator.clipboard.writeText(location.href);
-      say(WORDS.shared);
+      showToast(TEXT.shared);
     } catch {
-      say(WORDS.shareByHand);
+      showToast(TEXT.shareByHand);
     }
   }
 }

@@ -1,9 +1,9 @@
-// The segment with its grooves, seen along the axis: pins are set, carried and lifted here.
+// The segment with its grooves, seen along the axis: pins are added, moved and removed here.
 
-// More grooves than this, and not each has its number.
-const NUMBERED = 24;
+// Most grooves with a number each; of more, every fifth has one.
+const MAX_NUMBERED = 24;
 
-// A place in the drawing, whose angles go from the top to the right.
+// A point of the drawing; angles are measured from the top, clockwise.
 const point = (radius, angle) => [radius * Math.sin(angle), -radius * Math.cos(angle)];
 
 class Pins {
@@ -19,22 +19,22 @@ class Pins {
 
   grooves() { return clamp(Math.round(this.state.value('segment.grooves')) || 1, 1, 60); }
   pins() { return this.state.value('layout.pins').filter((i) => i >= 1); }
-  // Each is a step of its own, however quickly they follow each other, but for what `what` joins.
-  set(pins, what) { this.state.change({ values: { ...this.state.now.values, 'layout.pins': [...new Set(pins)].sort((a, b) => a - b) } }, what); }
+  // Each call is one step of the history, unless `step` joins several.
+  set(pins, step) { this.state.change({ values: { ...this.state.now.values, 'layout.pins': [...new Set(pins)].sort((a, b) => a - b) } }, step); }
 
   toggle(i) {
     const pins = this.pins();
     this.set(pins.includes(i) ? pins.filter((p) => p !== i) : [...pins, i]);
   }
 
-  carry(from, to, what) {
+  move(from, to, step) {
     const pins = this.pins();
     if (from === to || !pins.includes(from) || pins.includes(to) || to < 1 || to > this.grooves()) return false;
-    this.set(pins.map((p) => (p === from ? to : p)), what);
+    this.set(pins.map((p) => (p === from ? to : p)), step);
     return true;
   }
 
-  // Dimensions of the drawing, in millimetres, from the same values that the part has.
+  // Dimensions of the drawing in millimetres, from the values of the part.
   sizes() {
     const v = (path, low, high) => clamp(Number(this.state.value(path)) || 0, low, high);
     const shell = v('shell.outer_radius_mm', 5, 150);
@@ -44,9 +44,9 @@ class Pins {
     const pitch = 2 * contact * Math.sin(span / n / 2);
     const pin = v('pins.diameter_mm', 0.1, 5) / 2;
     const rope = v('tendon.rope_diameter_mm', 0.1, 6) / 2 + v('tendon.coating_mm', 0, 2);
-    // What can be clicked must be seen, however fine the grooves are, and however large the drawing's scale.
-    const shown = Math.max(pin, 0.42 * Math.min(pitch, Math.max(1.5, 0.045 * contact)));
-    return { shell, contact, n, span, pin: shown, rope, inner: shell - clamp(v('shell.wall_mm', 1, 60), 2, Math.max(4.5, 0.2 * shell)),
+    // Large enough to see and click, whatever the pitch and the scale.
+    const visiblePin = Math.max(pin, 0.42 * Math.min(pitch, Math.max(1.5, 0.045 * contact)));
+    return { shell, contact, n, span, pin: visiblePin, rope, inner: shell - clamp(v('shell.wall_mm', 1, 60), 2, Math.max(4.5, 0.2 * shell)),
       wrap: v('layout.wrap_angle_deg', 1, 340) * Math.PI / 180 };
   }
 
@@ -58,20 +58,20 @@ class Pins {
     const drawing = this.segment(s);
     this.marks = [];
     for (let i = 1; i <= s.n; i += 1) drawing.append(this.groove(i, s, pins.includes(i)));
-    this.carried = svg('circle', { r: s.pin, class: 'carried', visibility: 'hidden' });
-    drawing.append(this.carried);
+    this.draggedPin = svg('circle', { r: s.pin, class: 'dragged-pin', visibility: 'hidden' });
+    drawing.append(this.draggedPin);
     this.listen(drawing);
     const hadFocus = this.host.contains(document.activeElement);
     this.host.replaceChildren(drawing);
     if (hadFocus) this.marks[this.focused - 1]?.focus();
-    byId('pins-say').textContent = WORDS.pinsIn(pins);
-    byId('pins-of').textContent = pins.length ? WORDS.pinsOf(pins.length, s.n) : WORDS.bare;
+    byId('pins-title').textContent = TEXT.pinsIn(pins);
+    byId('pins-count').textContent = pins.length ? TEXT.pinsCount(pins.length, s.n) : TEXT.noPinsNote;
     byId('clear-pins').disabled = !pins.length;
-    // A pin beyond the last groove, which is refused, has no other side.
+    // A pin beyond the last groove, which is refused, cannot be mirrored.
     byId('mirror-pins').disabled = !pins.length || pins.some((i) => i > this.grooves());
   }
 
-  // Shell, layer and tendon, in a drawing that holds all of them.
+  // Draws shell, layer and tendon.
   segment(s) {
     const sector = (low, high) => {
       const [a, b, c, d] = [point(high, -s.span / 2), point(high, s.span / 2), point(low, s.span / 2), point(low, -s.span / 2)];
@@ -80,14 +80,14 @@ class Pins {
     };
     const axis = s.contact + s.pin * 1.1 + s.rope;
     const [l, r] = [point(axis, -s.wrap / 2), point(axis, s.wrap / 2)];
-    // What leaves the bed runs on straight.
+    // The tendon leaves the bed straight.
     const [along, down] = [0.28 * s.contact * Math.cos(s.wrap / 2), 0.28 * s.contact * Math.sin(s.wrap / 2)];
     const ends = [[l[0] - along, l[1] + down], [r[0] + along, r[1] + down]];
     const reach = s.span > Math.PI ? s.contact : s.contact * Math.sin(s.span / 2);
     const width = Math.max(reach, ends[1][0]) + 1.2;
     const lowest = Math.max(...[s.inner, s.contact].map((radius) => -radius * Math.cos(s.span / 2)), ends[0][1]) + 1;
     const top = -(axis + s.rope) - 0.6;
-    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: s.span > Math.PI ? 'strip tall' : 'strip' });
+    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': TEXT.pinsName, class: s.span > Math.PI ? 'strip tall' : 'strip' });
     const bed = this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer';
     const rope = `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`;
     drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: bed }),
@@ -101,10 +101,10 @@ class Pins {
     const [x, y] = point(s.contact, angle);
     const mark = svg('g', {
       class: hasPin ? 'groove on' : 'groove', 'data-groove': i, tabindex: i === this.focused ? 0 : -1,
-      role: 'checkbox', 'aria-checked': hasPin, 'aria-label': WORDS.groove(i, hasPin),
+      role: 'checkbox', 'aria-checked': hasPin, 'aria-label': TEXT.groove(i, hasPin),
     });
     mark.append(svg('circle', { cx: x, cy: y, r: s.pin * 1.75, class: 'halo' }), svg('circle', { cx: x, cy: y, r: s.pin, class: 'dot' }));
-    if (s.n <= NUMBERED || i % 5 === 0 || i === 1) {
+    if (s.n <= MAX_NUMBERED || i % 5 === 0 || i === 1) {
       const [tx, ty] = point((s.inner + s.shell) / 2, angle);
       mark.append(svg('text', { x: tx, y: ty, 'font-size': clamp(0.055 * s.contact, 0.5, Math.max(1.25, 0.45 * (s.shell - s.inner))), 'text-anchor': 'middle', 'dominant-baseline': 'central' }, i));
     }
@@ -112,12 +112,13 @@ class Pins {
     return mark;
   }
 
-  // The groove nearest to a place of the pointer, and how far along the radius it lies, in millimetres.
+  // The groove nearest to the pointer, and the pointer's radial distance from the contact radius in
+  // millimetres.
   nearest(drawing, event) {
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
     const s = this.s;
     const groove = clamp(Math.round(Math.atan2(x, -y) / (s.span / s.n) + (s.n + 1) / 2), 1, s.n);
-    return { groove, off: Math.hypot(x, y) - s.contact };
+    return { groove, offset: Math.hypot(x, y) - s.contact };
   }
 
   listen(drawing) {
@@ -125,9 +126,9 @@ class Pins {
     let moved = false;
     draggable(drawing, {
       start: (event) => {
-        const { groove, off } = this.nearest(drawing, event);
-        // Beside the grooves and their numbers, a finger scrolls the page.
-        if (off > 4 * this.s.pin + 2 * this.s.rope || off < this.s.inner - this.s.contact) return false;
+        const { groove, offset } = this.nearest(drawing, event);
+        // Away from grooves and numbers a finger scrolls the page.
+        if (offset > 4 * this.s.pin + 2 * this.s.rope || offset < this.s.inner - this.s.contact) return false;
         from = groove;
         moved = false;
         return true;
@@ -137,16 +138,16 @@ class Pins {
         moved ||= groove !== from;
         if (!moved || !this.pins().includes(from)) return;
         const [x, y] = point(this.s.contact, this.angle(groove, this.s));
-        for (const [name, value] of Object.entries({ cx: x, cy: y, visibility: 'visible' })) this.carried.setAttribute(name, value);
-        this.marks[from - 1].classList.add('leaving');
+        for (const [name, value] of Object.entries({ cx: x, cy: y, visibility: 'visible' })) this.draggedPin.setAttribute(name, value);
+        this.marks[from - 1].classList.add('dragging');
       },
       end: (event, cancelled) => {
-        this.carried.setAttribute('visibility', 'hidden');
-        this.marks[from - 1]?.classList.remove('leaving');
+        this.draggedPin.setAttribute('visibility', 'hidden');
+        this.marks[from - 1]?.classList.remove('dragging');
         if (cancelled) return;
         const { groove } = this.nearest(drawing, event);
         this.focused = groove;
-        if (!moved) this.toggle(groove); else this.carry(from, groove);
+        if (!moved) this.toggle(groove); else this.move(from, groove);
       },
     });
     drawing.addEventListener('keydown', (event) => this.key(event));
@@ -161,11 +162,11 @@ class Pins {
     else if ((event.key === 'Delete' || event.key === 'Backspace') && this.pins().includes(i)) this.toggle(i);
     else if (step && event.shiftKey) {
       if (!this.pins().includes(i)) return;
-      // Over pins in the way, to the next empty groove.
+      // To the next empty groove.
       let free = i + step;
       while (this.pins().includes(free)) free += step;
       this.focused = free >= 1 && free <= this.grooves() ? free : i;
-      this.carry(i, free, 'pins.carried');
+      this.move(i, free, 'pins.moved');
     } else if (step || event.key === 'Home' || event.key === 'End') {
       this.focused = to;
       this.marks.forEach((mark, k) => mark.setAttribute('tabindex', k + 1 === to ? 0 : -1));

@@ -1,12 +1,12 @@
-// Beside the server of `pinswitch view`: the file that it was started with, followed while others edit it, and saved.
+// The file of `pinswitch view`: followed while other programs edit it, and saved.
 
-class Served {
+class ServerFile {
   constructor(state) {
     this.state = state;
     byId('save').addEventListener('click', () => this.save());
   }
 
-  // What the server was started with; null in a page that holds its own engine.
+  // What the server shows; null in a page with its own engine.
   static async start() {
     if (byId('module').textContent.trim() || location.protocol === 'file:') return null;
     try {
@@ -19,37 +19,37 @@ class Served {
 
   begin(started) {
     byId('set-page').hidden = !started;
-    if (!started?.begun.file) return;
-    this.file = started.begun.file;
-    byId('save').textContent = WORDS.saveTo(this.file);
-    byId('save').hidden = !started.begun.saves;
+    if (!started?.source.file) return;
+    this.file = started.source.file;
+    byId('save').textContent = TEXT.saveTo(this.file);
+    byId('save').hidden = !started.source.is_writable;
     const values = this.state.withoutDefaults(started.values);
-    // What the page knows of the file: its stamp, of this visit or of the last one.
+    // The stamp of the file as the page last showed or wrote it, in this visit or the last one.
     const { seen } = remembered();
     const isSame = sameValue(values, this.state.now.values);
     this.stamp = isSame || (seen?.file === this.file && seen.stamp === started.stamp) ? started.stamp : '';
-    this.know(this.stamp);
+    this.setStamp(this.stamp);
     if (started.trouble) showNoticeAbout('file', started.trouble);
-    // An address that somebody was given says nothing of the file: saving asks then.
-    else if (!this.stamp && seen?.file === this.file) showNoticeAbout('file', WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
+    // The design of another address does not come from the file: saving needs a confirmation.
+    else if (!this.stamp && seen?.file === this.file) showNoticeAbout('file', TEXT.fileDiffers(this.file), this.showButton(values, started.stamp));
     this.follow(started.version);
   }
 
-  // The file as the page has last shown or written it. Where it is another one by then, saving asks first.
-  know(stamp) {
+  // Records the file as shown or written. Saving a file with another stamp needs a confirmation.
+  setStamp(stamp) {
     this.stamp = stamp;
     if (stamp) remember({ ...remembered(), seen: { file: this.file, stamp } });
   }
 
   showButton(values, stamp) {
-    return button(WORDS.showFile(this.file), () => {
+    return button(TEXT.showFile(this.file), () => {
       this.state.change({ values });
-      this.know(stamp);
+      this.setStamp(stamp);
       showNotice('');
     });
   }
 
-  // Takes the file's values whenever it was changed beside the page; Undo goes back to before.
+  // Applies the values of the file when another program changes it; Undo reverts them.
   async follow(version) {
     for (let pause_ms = 1000; ; pause_ms = Math.min(2 * pause_ms, 30000)) {
       try {
@@ -58,43 +58,43 @@ class Served {
           pause_ms = 1000;
           if (next.version === version) continue;
           version = next.version;
-          if (next.trouble) showNoticeAbout('file', next.trouble); else forgetNotice('file');
+          if (next.trouble) showNoticeAbout('file', next.trouble); else clearNoticeAbout('file');
           if (next.trouble || !next.values || next.stamp === this.stamp) continue;
-          this.know(next.stamp);
+          this.setStamp(next.stamp);
           if (!sameValue(this.state.withoutDefaults(next.values), this.state.now.values)) {
             this.state.change({ values: next.values });
-            say(WORDS.fileChanged(this.file));
+            showToast(TEXT.fileChanged(this.file));
           }
         }
       } catch {
-        // A server that is gone is told when a design is asked for.
+        // The next request for a design reports the missing server.
         await new Promise((done) => setTimeout(done, pause_ms));
       }
     }
   }
 
-  // Saves over the file with this stamp, and over no other; `anew` where it is gone.
-  async save(stamp = this.stamp, anew = false) {
+  // Writes the file if it has this stamp; `create` writes a missing one.
+  async save(stamp = this.stamp, create = false) {
     const { values, model } = this.state.now;
     try {
-      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values, stamp, anew }) });
-      const { saved, stamp: written, hidden, differs, gone, error } = await response.json();
+      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values, stamp, create }) });
+      const { saved, stamp: written, overridden, changed, missing, error } = await response.json();
       if (saved) {
-        this.know(written);
-        showNotice(hidden.length ? WORDS.savedUnder(saved, hidden.map(([option, path]) => [option, fieldName(this.state.fields.get(path))])) : '');
-        say(model ? WORDS.savedWithoutModel(saved) : WORDS.savedTo(saved));
-      } else if (differs) {
-        const names = [...this.state.fields.keys()].filter((path) => !sameValue(differs.values[path] ?? null, values[path] ?? null));
-        if (!names.length) { await this.save(differs.stamp); return; }
-        const over = button(WORDS.saveOver, () => this.save(differs.stamp));
-        showNoticeAbout('file', WORDS.fileNewer(this.file, names.slice(0, 6).map((path) => fieldName(this.state.fields.get(path)))), this.showButton(differs.values, differs.stamp), over);
-      } else if (gone) {
-        showNoticeAbout('file', WORDS.fileGone(this.file), button(WORDS.writeAnew, () => this.save(stamp, true)));
+        this.setStamp(written);
+        showNotice(overridden.length ? TEXT.savedOverridden(saved, overridden.map(([option, path]) => [option, fieldName(this.state.fields.get(path))])) : '');
+        showToast(model ? TEXT.savedWithoutModel(saved) : TEXT.savedTo(saved));
+      } else if (changed) {
+        const names = [...this.state.fields.keys()].filter((path) => !sameValue(changed.values[path] ?? null, values[path] ?? null));
+        if (!names.length) { await this.save(changed.stamp); return; }
+        const overwrite = button(TEXT.overwrite, () => this.save(changed.stamp));
+        showNoticeAbout('file', TEXT.fileNewer(this.file, names.slice(0, 6).map((path) => fieldName(this.state.fields.get(path)))), this.showButton(changed.values, changed.stamp), overwrite);
+      } else if (missing) {
+        showNoticeAbout('file', TEXT.fileMissing(this.file), button(TEXT.createFile, () => this.save(stamp, true)));
       } else {
-        showNotice(WORDS.notSaved(this.file) + error);
+        showNotice(TEXT.notSaved(this.file) + error);
       }
     } catch {
-      showNotice(WORDS.notSaved(this.file) + WORDS.serverGone);
+      showNotice(TEXT.notSaved(this.file) + TEXT.serverGone);
     }
   }
 }

@@ -1,56 +1,56 @@
-// The assembly beside its sliders: load, pulling apart, cutting open, turning, which bodies are shown.
+// The 3D view and its sliders: load, exploded view, section, rotation, visible bodies.
 
 class View {
   constructor() {
     this.hidden = new Set();
     try {
-      // Asked first, since three.js complains aloud.
+      // Checked first: three.js would log errors.
       if (!document.createElement('canvas').getContext('webgl2')) throw new Error('no WebGL');
       this.assembly = new Assembly(byId('view'));
       this.assembly.turned = (turn, tilt) => {
         byId('turn').value = turn * 180 / Math.PI;
         byId('tilt').value = tilt * 180 / Math.PI;
       };
-      this.assembly.renderer.domElement.addEventListener('webglcontextlost', () => { this.fail(); this.lost?.(); });
+      this.assembly.renderer.domElement.addEventListener('webglcontextlost', () => { this.showNoWebgl(); this.lost?.(); });
     } catch {
-      this.fail();
+      this.showNoWebgl();
     }
-    for (const id of ['apart', 'turn', 'tilt', 'cut', 'cut-at']) byId(id).addEventListener('input', () => this.shape(id));
+    for (const id of ['explode', 'turn', 'tilt', 'section', 'section-position']) byId(id).addEventListener('input', () => this.apply(id));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.assembly?.edges(); this.load(this.load_n); });
   }
 
-  fail() {
+  showNoWebgl() {
     this.assembly = undefined;
     delete byId('view').dataset.drawn;
-    byId('view').replaceChildren(make('p', WORDS.noWebgl, { class: 'instead' }));
-    byId('view').setAttribute('aria-label', WORDS.stillName);
+    byId('view').replaceChildren(make('p', TEXT.noWebgl, { class: 'no-webgl' }));
+    byId('view').setAttribute('aria-label', TEXT.pictureName);
     byId('view-tools').hidden = true;
-    document.body.dataset.still = 'true';
+    document.body.dataset.noWebgl = 'true';
   }
 
   show(data) {
     if (!this.assembly) return;
     const isFirst = !this.assembly.bodies;
     this.assembly.load(data, this.hidden);
-    this.names(data);
-    this.shape('cut');
+    this.listBodies(data);
+    this.apply('section');
     this.load(this.load_n ?? data.curve.load_n.at(-1));
-    if (isFirst) this.shape('turn');
+    if (isFirst) this.apply('turn');
   }
 
-  // Without WebGL, a picture of the parts, which is one of the design's files; `asked` is that design.
-  async picture(engine, asked) {
+  // Without WebGL, shows a picture of the parts, which is one of the design's files.
+  async showPicture(engine, design) {
     if (this.assembly) return;
-    const turn = this.turn = (this.turn ?? 0) + 1;
+    const number = this.pictureNumber = (this.pictureNumber ?? 0) + 1;
     let png;
     try {
-      png = await engine.ask({ ask: 'file', name: 'assembly.png', ...asked });
+      png = await engine.request({ ask: 'file', name: 'assembly.png', ...design });
     } catch (problem) {
-      // Why there is none is told where the design is.
-      if (problem instanceof EngineError || problem instanceof Stale) return;
+      // The reason is shown with the design.
+      if (problem instanceof EngineError || problem instanceof Superseded) return;
       throw problem;
     }
-    if (turn !== this.turn) return;
+    if (number !== this.pictureNumber) return;
     const image = make('img', undefined, { src: URL.createObjectURL(new Blob([png], { type: 'image/png' })), alt: '' });
     image.addEventListener('load', () => URL.revokeObjectURL(image.src));
     byId('view').querySelector('img')?.remove();
@@ -59,21 +59,21 @@ class View {
 
   load(load_n) {
     this.load_n = load_n;
-    this.assembly?.bodies && this.assembly.pose(load_n, Number(byId('apart').value));
+    this.assembly?.bodies && this.assembly.pose(load_n, Number(byId('explode').value));
   }
 
-  shape(id) {
+  apply(id) {
     if (!this.assembly?.bodies) return;
-    if (id === 'apart') this.load(this.load_n);
+    if (id === 'explode') this.load(this.load_n);
     if (id === 'turn' || id === 'tilt') this.assembly.aim(Number(byId('turn').value), Number(byId('tilt').value));
-    if (id === 'cut-at') byId('cut').checked = true;
-    if (id === 'cut' || id === 'cut-at') this.assembly.cut(byId('cut').checked, Number(byId('cut-at').value));
+    if (id === 'section-position') byId('section').checked = true;
+    if (id === 'section' || id === 'section-position') this.assembly.cut(byId('section').checked, Number(byId('section-position').value));
   }
 
-  names(data) {
+  listBodies(data) {
     const names = [...new Set(data.bodies.map((b) => groupOf(b.name)))].concat(data.contact.angle_rad.length ? ['tendon'] : []);
-    if (sameValue(names, this.named)) return;
-    this.named = names;
+    if (sameValue(names, this.bodyNames)) return;
+    this.bodyNames = names;
     const rows = names.map((name) => {
       const label = make('label', undefined, { class: 'check' });
       const box = make('input', undefined, { type: 'checkbox' });
@@ -85,6 +85,6 @@ class View {
       label.append(box, name.replaceAll('-', ' '));
       return label;
     });
-    byId('bodies').replaceChildren(make('legend', WORDS.show), ...rows);
+    byId('bodies').replaceChildren(make('legend', TEXT.show), ...rows);
   }
 }

@@ -1,19 +1,20 @@
-// The engine in a worker, behind `xz-decompress.min.js`. First `{module, holes}`, then `{question}` after `{question}`; each is answered with `{json}` or
-// `{bytes}`, with `{trap}` if the module stopped on it, or with `{fatal}` if there is no module that could answer.
+// The engine in a worker, after `xz-decompress.min.js`. The first message is `{module, libraries}`,
+// each other one `{request}`. Answers are `{json}`, `{bytes}`, `{trap}` if the module stopped, or
+// `{failed}` if it does not start.
 
 let ready = null;
 
-// The module comes packed with XZ, since the page is downloaded whole.
+// The module is packed with XZ, which keeps the page small.
 async function unpacked(bytes) {
   const { XzReadableStream } = self['xz-decompress'];
   try {
     return await new Response(new XzReadableStream(new Blob([bytes]).stream())).arrayBuffer();
   } catch {
-    throw new Error('the page was not loaded whole: load it again');
+    throw new Error('the page is incomplete: load it again');
   }
 }
 
-// What the module needs of a host is nothing. Libraries in it name functions of browsers that it never calls.
+// The module needs no imports: libraries in it declare functions of browsers that are never called.
 function stubs(module) {
   const all = {};
   for (const { module: from, name, kind } of WebAssembly.Module.imports(module)) {
@@ -23,32 +24,33 @@ function stubs(module) {
   return all;
 }
 
-async function started(packed, holes) {
-  if (typeof WebAssembly === 'undefined') throw new Error('it runs no WebAssembly');
+async function instance(packed, libraries) {
+  if (typeof WebAssembly === 'undefined') throw new Error('no WebAssembly');
   const bytes = new Uint8Array(await unpacked(packed));
-  // What the page holds, too, was left out of the module.
-  for (const [place, text] of holes) bytes.set(new TextEncoder().encode(text), place);
+  // Libraries of the page are left out of the packed module.
+  for (const [offset, text] of libraries) bytes.set(new TextEncoder().encode(text), offset);
   const module = await WebAssembly.compile(bytes);
   return (await WebAssembly.instantiate(module, stubs(module))).exports;
 }
 
-// [kind u32][length u32][place u32], little-endian, at what `answer` returns; kind 0 is JSON, 1 bytes.
-function ask({ memory, room, answer, free }, question) {
-  const text = new TextEncoder().encode(question);
-  const place = room(text.length) >>> 0;
-  new Uint8Array(memory.buffer, place, text.length).set(text);
-  const head = answer(place, text.length) >>> 0;
-  const view = new DataView(memory.buffer, head, 12);
+// `answer` returns the address of [kind u32][length u32][address u32], little-endian; kind 0 is
+// JSON, 1 bytes.
+function answerTo(request, { memory, room, answer, free }) {
+  const text = new TextEncoder().encode(request);
+  const address = room(text.length) >>> 0;
+  new Uint8Array(memory.buffer, address, text.length).set(text);
+  const header = answer(address, text.length) >>> 0;
+  const view = new DataView(memory.buffer, header, 12);
   const [kind, length, start] = [0, 4, 8].map((offset) => view.getUint32(offset, true));
   const content = new Uint8Array(memory.buffer, start, length).slice();
-  free(head);
+  free(header);
   return kind === 1 ? { bytes: content.buffer } : { json: new TextDecoder().decode(content) };
 }
 
 onmessage = async ({ data }) => {
   if (data.module) {
-    ready = started(data.module, data.holes);
-    // Told with the first question.
+    ready = instance(data.module, data.libraries);
+    // A failure is the answer to the first request.
     ready.catch(() => {});
     return;
   }
@@ -56,11 +58,11 @@ onmessage = async ({ data }) => {
   try {
     engine = await ready;
   } catch (problem) {
-    postMessage({ fatal: String(problem?.message ?? problem) });
+    postMessage({ failed: String(problem?.message ?? problem) });
     return;
   }
   try {
-    const answer = ask(engine, data.question);
+    const answer = answerTo(data.request, engine);
     postMessage(answer, answer.bytes ? [answer.bytes] : []);
   } catch (problem) {
     postMessage({ trap: String(problem?.message ?? problem) });

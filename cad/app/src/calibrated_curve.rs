@@ -1,55 +1,62 @@
-//! The curve of a design by a calibrated model, carried to the design's own dimensions by the physics.
+//! The curve of a design by a calibrated model, transferred to the design's dimensions by the
+//! physics.
 
 use pinswitch_calibration::ModelFile;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::physics::Bed;
 use pinswitch_friction::{Carry, Contact, ContactError, FrictionCurve, PinPattern, published};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::loads_n;
 
-/// The curve of `design` by a calibrated model, called `name` in errors: effects of the switch in, effects of the rig out,
-/// and what the design's dimensions change as the physics says.
+/// Returns the curve of `design` by a calibrated model; `name` is the model's name in errors.
+///
+/// Effects of the switch are included, effects of the rig are not. Where the dimensions of the
+/// design differ from the rig's, the physics gives the change.
 ///
 /// # Errors
-/// The fault of the model, or what of the design the rig does not have.
-pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Result<FrictionCurve, String> {
+/// A [`Diagnostic`] if the model is invalid, if a pin lacks a counterpart on the rig, or if nothing
+/// touches.
+pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Result<FrictionCurve, Diagnostic> {
     let configuration = design.configuration();
-    let pins = rig_grooves(&configuration.layout.pins, configuration.segment.grooves).ok_or_else(|| {
-        format!(
-            "layout.pins = {:?} of {} grooves: the calibrated rig has {} grooves, and some of these have no counterpart \
-             there by their place from the middle; their curve is known by the published constants, without a model",
-            configuration.layout.pins,
-            configuration.segment.grooves,
+    let (layout, grooves) = (&configuration.layout.pins, configuration.segment.grooves);
+    let pins = rig_grooves(layout, grooves).ok_or_else(|| {
+        Diagnostic::new(format!(
+            "the calibrated rig has {} grooves, and some of these {grooves} have no counterpart at the same distance \
+             from the middle",
             published::GROOVES
-        )
+        ))
+        .with_location(Location::field("layout.pins", format!("{layout:?}")))
+        .with_help("use the published constants, without a model")
     })?;
     let loads_n = loads_n(design);
     let substrate = design.contact().substrate();
-    let curve = model.part_curve(substrate, &pins, &loads_n, name).map_err(|e| e.to_string())?;
-    let rig = rig_contact(design.contact(), &pins).map_err(|e| format!("{name}: {e}"))?;
-    let carry = Carry::between(&rig, design.contact(), &loads_n).map_err(|e| e.to_string())?;
+    let curve = model.part_curve(substrate, &pins, &loads_n, name).map_err(Diagnostic::from_error)?;
+    let rig = rig_contact(design.contact(), &pins).map_err(|e| Diagnostic::from_error(e).or_in_file(name))?;
+    let carry = Carry::between(&rig, design.contact(), &loads_n).map_err(Diagnostic::from_error)?;
     Ok(carry.carried(curve))
 }
 
-/// The grooves of the rig, numbered from 1, that lie as far from its middle as these among `grooves`; ascending. `None` if
-/// one has no counterpart.
+/// Returns the rig's grooves, numbered from 1 and ascending, at the same distances from the middle
+/// as `pins` among `grooves`; `None` if one lacks a counterpart.
 fn rig_grooves(pins: &[usize], grooves: usize) -> Option<Vec<usize>> {
-    // Twice the place from the middle, so that an even number of grooves has one, too.
-    let mut found = pins
+    let mut counterparts = pins
         .iter()
         .map(|pin| {
+            // Doubled: with an even number of grooves the middle is between two of them.
             let doubled = (2 * pin + published::GROOVES).checked_sub(grooves)?;
             let groove = doubled / 2;
             (doubled % 2 == 0 && (1..=published::GROOVES).contains(&groove)).then_some(groove)
         })
         .collect::<Option<Vec<usize>>>()?;
-    found.sort_unstable();
-    Some(found)
+    counterparts.sort_unstable();
+    Some(counterparts)
 }
 
-/// Pins in these grooves of the rig that was calibrated, on what `part` lies on.
+/// Returns the contact of the calibrated rig with pins in these grooves, on the substrate of
+/// `part`.
 ///
 /// # Errors
-/// [`ContactError`] if nothing touches there.
+/// [`ContactError`] if nothing touches.
 pub(crate) fn rig_contact(part: &Contact, pins: &[usize]) -> Result<Contact, ContactError> {
     let middle = (published::GROOVES as f64 + 1.0) / 2.0;
     let pitch_rad = published::GROOVE_PITCH_DEG.to_radians();
@@ -63,11 +70,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn grooves_are_matched_by_their_place_from_the_middle() {
+    fn grooves_match_by_distance_from_middle() {
         assert_eq!(rig_grooves(&[11, 5, 8], 15), Some(vec![5, 8, 11]));
         assert_eq!(rig_grooves(&[4, 7, 10], 13), Some(vec![5, 8, 11]));
         assert_eq!(rig_grooves(&[1], 15), Some(vec![1]));
-        assert_eq!(rig_grooves(&[1], 17), None, "beyond the rig's");
-        assert_eq!(rig_grooves(&[5], 14), None, "between the rig's");
+        assert_eq!(rig_grooves(&[1], 17), None, "outside the rig's grooves");
+        assert_eq!(rig_grooves(&[5], 14), None, "between two of the rig's grooves");
     }
 }

@@ -1,5 +1,4 @@
-//! Belief in a calibrated switch: the curve of `model.toml` with its band and covariance, carried to other dimensions by
-//! the physics, as `generate --model` carries it.
+//! A calibrated model as the belief of a design search.
 
 use std::sync::Mutex;
 
@@ -9,38 +8,41 @@ use pinswitch_switch::design_search::{Belief, Curve, Part};
 
 use crate::calibrated_curve::rig_contact;
 
-/// Changes that are kept: one part is asked for many times, with other constants.
-const KEPT: usize = 24;
+/// Transfers in the cache: a search evaluates one part many times, with other constants.
+const MAX_RECENT: usize = 24;
 
-/// A calibrated switch.
+/// The curves of a `model.toml` with band and covariance, transferred to other dimensions by the
+/// physics as in `generate --model`.
 #[derive(Debug)]
 pub struct CalibratedSwitch {
     file: ModelFile,
     name: String,
+    /// Transfers from the rig to a contact at these loads (N), the latest last.
     recent: Mutex<Vec<(Contact, Vec<f64>, Carry)>>,
 }
 
 impl CalibratedSwitch {
-    /// The switch of a model, called `name` in errors.
+    /// Creates the belief of a model; `name` is the model's name in errors.
     pub fn new(file: ModelFile, name: String) -> Self {
         Self { file, name, recent: Mutex::default() }
     }
 
-    /// The change from the same grooves of the rig to `part`, remembered.
+    /// Returns the transfer from the same grooves of the rig to `part`, from the cache if it is
+    /// there.
     fn carry(&self, part: &Part, loads_n: &[f64]) -> Option<Carry> {
-        let known = |recent: &Vec<(Contact, Vec<f64>, Carry)>| {
+        let cached = |recent: &Vec<(Contact, Vec<f64>, Carry)>| {
             recent
                 .iter()
                 .find(|(c, l, _)| *c == part.contact && l == loads_n)
                 .map(|(_, _, carry)| carry.clone())
         };
-        if let Some(carry) = self.recent.lock().ok().and_then(|recent| known(&recent)) {
+        if let Some(carry) = self.recent.lock().ok().and_then(|recent| cached(&recent)) {
             return Some(carry);
         }
         let rig = rig_contact(&part.contact, &part.pins).ok()?;
         let carry = Carry::between(&rig, &part.contact, loads_n).ok()?;
         if let Ok(mut recent) = self.recent.lock() {
-            if recent.len() >= KEPT {
+            if recent.len() >= MAX_RECENT {
                 recent.remove(0);
             }
             recent.push((part.contact.clone(), loads_n.to_vec(), carry.clone()));

@@ -1,69 +1,73 @@
-//! A table of measured plateaus that was dropped on the page: its verdict and its model.
+//! Calibration with a table of measured plateaus that was dropped on the page.
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{ModelFile, SessionReport, calibrate_among};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
 use crate::Answer;
-use crate::trouble::Trouble;
+use crate::refusal::Refusal;
 
-/// Largest table that is read, in megabytes: some hundred thousand rows, for which a browser computes minutes.
-pub(crate) const LARGEST_MB: usize = 20;
-const LARGEST: usize = LARGEST_MB * 1_000_000;
+/// Largest table that is read, in megabytes: some hundred thousand rows, minutes of computation in
+/// a browser.
+pub(crate) const MAX_TABLE_MB: usize = 20;
+const MAX_TABLE_BYTES: usize = MAX_TABLE_MB * 1_000_000;
 
-/// What the table says.
+/// What the page shows of a calibration.
 #[derive(Serialize)]
-struct Said {
+struct Summary {
     verdict: &'static str,
+    /// Held-out error of the baseline and of the augmented model, N.
     before_n: f64,
     after_n: f64,
+    /// Expected error of a new session, N.
     promise_n: Option<f64>,
     noise_n: f64,
     adequate: bool,
-    /// What was found, each with what this table cannot tell it from. The page has words for them.
+    /// Ids of detected effects, each with its rivals. The page has words for them.
     effects: Vec<Vec<String>>,
-    /// Effects of consequence that are not excluded.
+    /// Ids of effects that are not excluded at their size of consequence.
     not_excluded: Vec<String>,
     /// The text of `model.toml`.
     model: String,
 }
 
-/// Whether a text is a calibrated model, or what is wrong with it.
+/// Whether a text is a calibrated model, or why it is refused.
 #[derive(Debug, Serialize)]
 pub(crate) struct CheckedModel {
     is_model: bool,
-    trouble: Option<Trouble>,
+    trouble: Option<Refusal>,
 }
 
-/// Checks a model before a design uses it; `file` names it in errors.
-pub(crate) fn checked_model(text: &str, file: &str) -> CheckedModel {
-    let trouble = ModelFile::parse(text, file).err().map(Trouble::general);
+/// Checks the text of a model before a design uses it; `file` is its name in errors.
+pub(crate) fn check_model(text: &str, file: &str) -> CheckedModel {
+    let trouble = ModelFile::parse(text, file).err().map(|e| Diagnostic::from_error(e).into());
     CheckedModel { is_model: trouble.is_none(), trouble }
 }
 
-/// Calibrates the table; `file` names it in errors.
+/// Calibrates with a table; `file` is its name in errors.
 pub(crate) fn answer(csv: &str, file: &str) -> Answer {
-    said(csv, file).map_or_else(Answer::error, |said| Answer::json(&said))
+    summary(csv, file).map_or_else(Answer::error, |summary| Answer::json(&summary))
 }
 
-fn said(csv: &str, file: &str) -> Result<Said, String> {
-    if csv.len() > LARGEST {
-        return Err(format!(
-            "{file}: {} MB are more than the {} MB that a page can work on; use `pinswitch calibrate {file}`",
-            csv.len() / 1_000_000,
-            LARGEST_MB
-        ));
+fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
+    if csv.len() > MAX_TABLE_BYTES {
+        let mb = csv.len() / 1_000_000;
+        let problem = format!("the table has {mb} MB, and a page reads at most {MAX_TABLE_MB} MB");
+        return Err(Diagnostic::new(problem)
+            .with_location(Location::file(file))
+            .with_help(format!("run `pinswitch calibrate {file}`")));
     }
-    let table = PlateauTable::read(csv.as_bytes(), file).map_err(|e| e.to_string())?;
-    table.require_baseline(file).map_err(|e| e.to_string())?;
+    let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from_error)?;
+    table.require_baseline(file).map_err(Diagnostic::from_error)?;
     let calibration = calibrate_among(&table.rows, &Vocabulary::built_in(), Levels::default())
-        .map_err(|e| format!("{file}: {e}"))?;
+        .map_err(|e| Diagnostic::from_error(e).or_in_file(file))?;
     let (report, selection) = (&calibration.report, &calibration.selection);
     let model = ModelFile::new(&selection.augmented, &calibration.data, selection.noise);
     let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
-    Ok(Said {
+    Ok(Summary {
         verdict: report.verdict.as_str(),
         before_n: report.baseline.heldout_rmse_n,
         after_n: report.augmented.heldout_rmse_n,
@@ -72,7 +76,7 @@ fn said(csv: &str, file: &str) -> Result<Said, String> {
         adequate: report.adequate,
         effects,
         not_excluded,
-        model: model.to_text().map_err(|e| e.to_string())?,
+        model: model.to_text().map_err(Diagnostic::from_error)?,
     })
 }
 
@@ -81,16 +85,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_verdict_and_every_effect_has_its_words_on_the_page() {
-        let words = include_str!("../page/words.js");
+    fn every_verdict_and_effect_has_words() {
+        let words = include_str!("../page/text.js");
         let vocabulary = Vocabulary::built_in();
         let effects = vocabulary.effects().map(|effect| effect.description().id);
         for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {
-            assert!(words.contains(&format!("{word}: ")), "{word} has no words in words.js");
+            assert!(words.contains(&format!("{word}: ")), "{word} is missing in text.js");
         }
     }
 
-    /// Silicone at twelve loads, with readings that `force` makes of a load and a direction (1: concentric).
+    /// Returns a table of silicone at twelve loads; `force` gives the reading for a load (N) and a
+    /// direction (1: concentric).
     fn table(force: impl Fn(f64, f64) -> f64) -> String {
         let mut text =
             "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,\
@@ -100,45 +105,46 @@ mod tests {
             let (series, repetition) = (row / 6, row % 6 / 2 + 1);
             let load_n = 5.0 + 4.0 * f64::from(series);
             let (direction, sign) = [("eccentric", -1.0), ("concentric", 1.0)][row as usize % 2];
-            let wobble = 0.01 * f64::from(row * 37 % 11 - 5);
+            let noise_n = 0.01 * f64::from(row * 37 % 11 - 5);
             text.push_str(&format!(
                 "{series},silicone,,up,{:.1},{load_n},52,3,{direction},{repetition},{},{},{:.4}\n",
                 load_n / 9.80665e-3,
                 20 * repetition,
                 10 * row,
-                force(load_n, sign) + wobble,
+                force(load_n, sign) + noise_n,
             ));
         }
         text
     }
 
-    /// What no switch and no rig can give is refused as the command line refuses it, and makes no model.
+    /// Exchanged directions, forces in grams, forces of the wrong sign, no forces, and a force that
+    /// is independent of the load.
     #[test]
-    fn what_is_impossible_is_refused() {
-        let told = |force: &dyn Fn(f64, f64) -> f64| match answer(&table(force), "x.csv") {
+    fn implausible_tables_give_no_model() {
+        let answer_to = |force: &dyn Fn(f64, f64) -> f64| match answer(&table(force), "x.csv") {
             Answer::Json(text) => text,
             Answer::Bytes(_) => panic!("bytes"),
         };
-        let sound = told(&|load, sign| load * (1.0 + 0.25 * sign));
-        assert!(sound.contains("\"model\":\""), "{sound}");
-        for impossible in [
-            told(&|load, sign| load * (1.0 - 0.25 * sign)),
-            told(&|load, sign| 102.0 * load * (1.0 + 0.25 * sign)),
-            told(&|load, sign| -load * (1.0 + 0.25 * sign)),
-            told(&|_, _| 0.0),
-            told(&|_, sign| 20.0 * (1.0 + 0.25 * sign)),
+        let plausible = answer_to(&|load, sign| load * (1.0 + 0.25 * sign));
+        assert!(plausible.contains("\"model\":\""), "{plausible}");
+        for implausible in [
+            answer_to(&|load, sign| load * (1.0 - 0.25 * sign)),
+            answer_to(&|load, sign| 102.0 * load * (1.0 + 0.25 * sign)),
+            answer_to(&|load, sign| -load * (1.0 + 0.25 * sign)),
+            answer_to(&|_, _| 0.0),
+            answer_to(&|_, sign| 20.0 * (1.0 + 0.25 * sign)),
         ] {
-            assert!(impossible.contains("\"error\"") && impossible.contains("x.csv"), "{impossible}");
+            assert!(implausible.contains("\"error\"") && implausible.contains("x.csv"), "{implausible}");
         }
     }
 
     #[test]
-    fn what_is_no_table_is_told_in_words() {
+    fn other_files_are_refused_by_name() {
         for text in ["", "a,b\n1,2\n", "\u{0}PK"] {
             let Answer::Json(answer) = answer(text, "x.csv") else { panic!("bytes") };
             assert!(answer.contains("error") && answer.contains("x.csv"), "{answer}");
         }
-        let large = answer(&" ".repeat(LARGEST + 1), "large.csv");
+        let large = answer(&" ".repeat(MAX_TABLE_BYTES + 1), "large.csv");
         assert!(matches!(large, Answer::Json(text) if text.contains("pinswitch calibrate large.csv")));
     }
 }

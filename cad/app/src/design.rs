@@ -1,5 +1,6 @@
-//! What the page shows of a design.
+//! A design as the page shows it.
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
 use pinswitch_switch::design::Design;
@@ -10,70 +11,75 @@ use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 use serde::Serialize;
 
-use crate::kept::Kept;
-use crate::request::{Asked, Quality};
-use crate::trouble::Trouble;
+use crate::cache::Cache;
+use crate::refusal::{Refusal, diagnostic};
+use crate::request::{DesignRequest, Quality};
 use crate::values::configuration;
 
-/// Chord tolerance of what is only looked at, in millimetres.
+/// Least chord tolerance of a coarse design, in millimetres.
 const COARSE_MM: f64 = 0.1;
-/// Points of a curve that is only looked at.
+/// Most points on the curve of a coarse design.
 const COARSE_POINTS: usize = 26;
 
-/// A design as the page shows it, or what is wrong with it.
+/// The data of a design with its configuration as TOML, or why it is refused.
 #[derive(Debug, Serialize)]
-pub(crate) struct Shown {
+pub(crate) struct ShownDesign {
     data: Option<PageData>,
     toml: Option<String>,
-    trouble: Option<Trouble>,
+    trouble: Option<Refusal>,
 }
 
-/// The data of a design, its configuration as text, or its trouble.
-pub(crate) fn answer(kept: &mut Kept, asked: &Asked, quality: Quality) -> Shown {
-    match shown(kept, asked, quality) {
-        Ok((data, toml)) => Shown { data: Some(data), toml: Some(toml), trouble: None },
-        Err(trouble) => Shown { data: None, toml: None, trouble: Some(trouble) },
+/// Builds what the page shows of a design.
+pub(crate) fn answer(cache: &mut Cache, request: &DesignRequest, quality: Quality) -> ShownDesign {
+    match page_data(cache, request, quality) {
+        Ok((data, toml)) => ShownDesign { data: Some(data), toml: Some(toml), trouble: None },
+        Err(refusal) => ShownDesign { data: None, toml: None, trouble: Some(refusal) },
     }
 }
 
-fn shown(kept: &mut Kept, asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
-    let exact = configuration(&asked.values)?;
+fn page_data(
+    cache: &mut Cache,
+    request: &DesignRequest,
+    quality: Quality,
+) -> Result<(PageData, String), Refusal> {
+    let exact = configuration(&request.values)?;
     let toml = to_toml(&exact);
-    let mut seen = exact;
+    let mut shown = exact;
     if quality == Quality::Coarse {
-        seen.mesh.chord_tolerance_mm = seen.mesh.chord_tolerance_mm.max(COARSE_MM);
-        seen.friction.points = seen.friction.points.min(COARSE_POINTS);
+        shown.mesh.chord_tolerance_mm = shown.mesh.chord_tolerance_mm.max(COARSE_MM);
+        shown.friction.points = shown.friction.points.min(COARSE_POINTS);
     }
-    let (built, prediction) = built(kept, seen, asked.model.as_deref())?;
-    // What is looked at needs no files, which take longer than the parts.
-    let mut set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
-    // As they lie in those that would be made.
+    let (built, prediction) = build(cache, shown, request.model.as_deref())?;
+    // Files take longer than the parts, and the page does not show them.
+    let mut set = Set::new(&built, &prediction, &[]).map_err(set_refusal)?;
+    // The plates of the files, so that the page shows the same arrangement.
     set.manifest.plates = plate_entries(&built);
     let data = PageData::new(&built, &prediction, &set.manifest, Some(1));
     if quality == Quality::Coarse {
-        kept.built = Some(built);
+        cache.built = Some(built);
     }
     Ok((data, toml))
 }
 
-/// The parts of a configuration and the curve, by the published constants or by a calibrated model, with what is `kept` where
-/// it is the same.
-pub(crate) fn built(
-    kept: &mut Kept,
+/// Builds the parts of a configuration and predicts its curve, by the published constants or by the
+/// text of a calibrated model. Results in the cache are reused.
+pub(crate) fn build(
+    cache: &mut Cache,
     configuration: Configuration,
     model: Option<&str>,
-) -> Result<(Built, Prediction), Trouble> {
+) -> Result<(Built, Prediction), Refusal> {
     let design = Design::new(configuration)?;
-    let prediction = kept.predictions.of(&design, model)?;
-    let built = Built::following(design, kept.built.as_ref(), &kept.caps).map_err(|e| trouble(e.into()))?;
+    let prediction = cache.predictions.predict(&design, model)?;
+    let built =
+        Built::following(design, cache.built.as_ref(), &cache.caps).map_err(|e| set_refusal(e.into()))?;
     Ok((built, prediction))
 }
 
-/// What is wrong with a set, at its field where it has one.
-pub(crate) fn trouble(error: SetError) -> Trouble {
+/// Returns why a set is refused, at its field if it has one.
+pub(crate) fn set_refusal(error: SetError) -> Refusal {
     match error {
-        SetError::Build(BuildError::Configuration(error)) => error.into(),
-        other => Trouble::general(other),
+        SetError::Build(BuildError::Configuration(error)) => diagnostic(error).into(),
+        other => Diagnostic::from_error(other).into(),
     }
 }
 
@@ -82,27 +88,28 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    /// Of every number of the configuration, changed a little, a design that follows another is told as one made anew.
+    /// Each number of the configuration is changed a little: a design after another equals the same
+    /// design alone.
     #[test]
-    fn a_design_that_follows_another_is_told_as_one_made_anew() {
+    fn cached_parts_equal_new_parts() {
         let with = |path: &str, value: Value| {
             let base = [("layout.pins", json!([5, 8, 11])), ("friction.points", json!(3)), (path, value)];
             let values = base.into_iter().map(|(path, value)| (path.to_owned(), value)).collect();
-            Asked { values, model: None }
+            DesignRequest { values, model: None }
         };
-        let told = |kept: &mut Kept, asked: &Asked| {
-            let shown = answer(kept, asked, Quality::Coarse);
+        let shown = |cache: &mut Cache, request: &DesignRequest| {
+            let shown = answer(cache, request, Quality::Coarse);
             (shown.trouble.is_none(), serde_json::to_string(&shown).unwrap())
         };
-        let mut kept = Kept::default();
+        let mut cache = Cache::default();
         let mut compared = 0;
         for parameter in Configuration::PARAMETERS {
             let value = (parameter.get)(&Configuration::default()).to_string();
             let Ok(number) = value.parse::<f64>() else { continue };
             let new = [json!(number * 0.98), json!(number as i64 + 1)];
             for changed in new.map(|new| with(&parameter.path(), new)) {
-                let (is_design, after) = told(&mut kept, &changed);
-                assert_eq!(after, told(&mut Kept::default(), &changed).1, "{}", parameter.path());
+                let (is_design, after) = shown(&mut cache, &changed);
+                assert_eq!(after, shown(&mut Cache::default(), &changed).1, "{}", parameter.path());
                 compared += usize::from(is_design);
             }
         }

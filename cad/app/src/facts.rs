@@ -1,4 +1,4 @@
-//! What the page has to know once: every field with its control, templates, formats.
+//! What the page needs once: every field with its control, templates, formats.
 
 use pinswitch_switch::config::{Configuration, Origin, read};
 use pinswitch_switch::documents::toml_to_json;
@@ -7,18 +7,18 @@ use pinswitch_switch::templates::{TEMPLATES, TemplateKind};
 use serde::Serialize;
 use toml_edit::Value;
 
-use crate::calibration::LARGEST_MB;
+use crate::calibration::MAX_TABLE_MB;
 use crate::request::Values;
-use crate::values::values;
+use crate::values::changed_values;
 
-/// All of it.
+/// The answer to `facts`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Facts {
     generator: String,
     fields: Vec<Field>,
     templates: Vec<TemplateFact>,
     formats: Vec<FormatFact>,
-    /// Largest table of plateaus that is read, in megabytes.
+    /// Largest accepted table of plateaus, in megabytes.
     largest_table_mb: usize,
 }
 
@@ -50,11 +50,11 @@ struct TemplateFact {
 struct FormatFact {
     name: &'static str,
     about: &'static str,
-    /// Whether a set has it unless others are named.
+    /// Whether a set contains it by default.
     default: bool,
 }
 
-/// The facts, from the tables of configurations, templates and formats.
+/// Collects the facts from the tables of parameters, templates and formats.
 pub(crate) fn facts() -> Facts {
     Facts {
         generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -70,7 +70,7 @@ pub(crate) fn facts() -> Facts {
                         TemplateKind::Printer => "printer",
                     },
                     about: template.description(),
-                    values: values(&configuration),
+                    values: changed_values(&configuration),
                 })
             })
             .collect(),
@@ -83,7 +83,7 @@ pub(crate) fn facts() -> Facts {
                 default: format.inclusion == Inclusion::Default,
             })
             .collect(),
-        largest_table_mb: LARGEST_MB,
+        largest_table_mb: MAX_TABLE_MB,
     }
 }
 
@@ -118,7 +118,7 @@ fn fields() -> Vec<Field> {
         .collect()
 }
 
-/// The words of a choice: its range is `"one" or "another"`.
+/// Returns the words of a choice, whose range is `"one" or "another"`; `None` for another range.
 fn choices(value: &Value, range: &str) -> Option<Vec<String>> {
     value.as_str()?;
     let words = range.split(" or ").map(|word| word.strip_prefix('"')?.strip_suffix('"'));
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_parameter_has_a_control_and_every_choice_its_words() {
+    fn every_parameter_has_a_control() {
         let facts = facts();
         assert_eq!(facts.fields.len(), Configuration::PARAMETERS.len());
         let field = |path: &str| facts.fields.iter().find(|f| f.path == path).unwrap();

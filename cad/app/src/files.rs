@@ -2,91 +2,100 @@
 
 use std::io::{Cursor, Write};
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::to_toml;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::formats::{ALL, named};
 use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::set::Set;
 use serde::Serialize;
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use crate::design::{built, trouble};
-use crate::kept::Kept;
-use crate::request::Asked;
-use crate::trouble::Trouble;
+use crate::cache::Cache;
+use crate::design::{build, set_refusal};
+use crate::refusal::Refusal;
+use crate::request::DesignRequest;
 use crate::values::configuration;
 use crate::{Answer, Engine};
 
 /// The files of one design.
 #[derive(Debug)]
-pub(crate) struct Made {
-    design: Asked,
+pub(crate) struct FileSet {
+    design: DesignRequest,
     files: Vec<OutputFile>,
 }
 
 #[derive(Serialize)]
-struct Listed<'a> {
+struct FileEntry<'a> {
     name: &'a str,
     bytes: usize,
 }
 
 impl Engine {
-    /// An answer from the files of a design, made anew only where it is another one.
-    pub(crate) fn files(&mut self, design: &Asked, of: impl FnOnce(&Made) -> Answer) -> Answer {
-        if self.made.as_ref().is_none_or(|made| made.design != *design) {
-            match Made::new(&mut self.kept, design) {
-                Ok(made) => self.made = Some(made),
-                Err(trouble) => return Answer::json(&serde_json::json!({ "trouble": trouble })),
+    /// Returns an answer from the files of a design, which are generated again only if the design
+    /// is another one.
+    pub(crate) fn with_files(
+        &mut self,
+        design: &DesignRequest,
+        answer: impl FnOnce(&FileSet) -> Answer,
+    ) -> Answer {
+        if self.files.as_ref().is_none_or(|files| files.design != *design) {
+            match FileSet::generate(&mut self.cache, design) {
+                Ok(files) => self.files = Some(files),
+                Err(refusal) => return Answer::json(&serde_json::json!({ "trouble": refusal })),
             }
         }
-        self.made.as_ref().map_or_else(|| Answer::error("nothing was made"), of)
+        self.files.as_ref().map_or_else(|| Answer::error("no files were generated"), answer)
     }
 }
 
-impl Made {
-    /// Every file that `pinswitch generate NAME.toml --format all --out .` writes beside a `NAME.toml` with this
-    /// configuration, and that file.
-    fn new(kept: &mut Kept, design: &Asked) -> Result<Self, Trouble> {
+impl FileSet {
+    /// Generates the files of `pinswitch generate NAME.toml --format all --out .` in a folder with
+    /// a `NAME.toml` of this configuration, and that file.
+    fn generate(cache: &mut Cache, design: &DesignRequest) -> Result<Self, Refusal> {
         let configuration = configuration(&design.values)?;
-        let own = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
-        let (built, prediction) = built(kept, configuration, design.model.as_deref())?;
-        let formats = named(&[ALL]).map_err(Trouble::general)?;
-        let set = Set::new(&built, &prediction, &formats).map_err(trouble)?;
-        let set = set.made_from(SourceEntry::new(own.name.clone())).map_err(trouble)?;
-        let files = std::iter::once(own).chain(set.files).collect();
+        let source = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
+        let (built, prediction) = build(cache, configuration, design.model.as_deref())?;
+        let formats = named(&[ALL]).map_err(Diagnostic::from)?;
+        let set = Set::new(&built, &prediction, &formats).map_err(set_refusal)?;
+        let set = set.made_from(SourceEntry::new(source.name.clone())).map_err(set_refusal)?;
+        let files = std::iter::once(source).chain(set.files).collect();
         Ok(Self { design: design.clone(), files })
     }
 
-    /// Names and sizes.
+    /// Lists names and sizes.
     pub(crate) fn list(&self) -> Answer {
-        let listed: Vec<Listed<'_>> =
-            self.files.iter().map(|file| Listed { name: &file.name, bytes: file.bytes.len() }).collect();
-        Answer::json(&serde_json::json!({ "files": listed }))
+        let entries: Vec<FileEntry<'_>> =
+            self.files.iter().map(|file| FileEntry { name: &file.name, bytes: file.bytes.len() }).collect();
+        Answer::json(&serde_json::json!({ "files": entries }))
     }
 
-    /// The content of the file called `name`.
-    pub(crate) fn file(&self, name: &str) -> Answer {
+    /// Returns the content of the file with this name.
+    pub(crate) fn content(&self, name: &str) -> Answer {
         match self.files.iter().find(|file| file.name == name) {
             Some(file) => Answer::Bytes(file.bytes.clone()),
-            None => Answer::error(format!("{name}: this design has no such file")),
+            None => Answer::error(format!("{name}: no such file in this design")),
         }
     }
 
-    /// All files in one archive, without a date: the same files are the same archive.
+    /// Packs all files in one archive, without dates: equal files give equal archives.
     pub(crate) fn zip(&self) -> Answer {
+        self.packed()
+            .map_or_else(|e| Answer::error(format!("cannot create the ZIP archive: {e}")), Answer::Bytes)
+    }
+
+    fn packed(&self) -> Result<Vec<u8>, ZipError> {
         let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .last_modified_time(DateTime::default());
         for file in &self.files {
-            let started = writer.start_file(file.name.as_str(), options).map_err(|e| e.to_string());
-            let written = started.and_then(|()| writer.write_all(&file.bytes).map_err(|e| e.to_string()));
-            if let Err(e) = written {
-                return Answer::error(format!("cannot pack {}: {e}", file.name));
-            }
+            writer.start_file(file.name.as_str(), options)?;
+            writer.write_all(&file.bytes)?;
         }
-        writer.finish().map_or_else(Answer::error, |bytes| Answer::Bytes(bytes.into_inner()))
+        Ok(writer.finish()?.into_inner())
     }
 }
 
@@ -95,31 +104,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_set_is_listed_given_and_packed() {
+    fn list_files_and_archive_agree() {
         let mut engine = Engine::default();
-        let question = |ask: &str, more: &str| {
+        let request = |ask: &str, more: &str| {
             format!(r#"{{"ask": "{ask}", "values": {{"layout.pins": [8], "switch.name": "one"}}{more}}}"#)
         };
-        let Answer::Json(text) = engine.answer(&question("files", "")) else { panic!("no list") };
-        let listed: serde_json::Value = serde_json::from_str(&text).unwrap();
-        let sizes: Vec<(&str, u64)> = listed["files"]
+        let Answer::Json(text) = engine.answer(&request("files", "")) else { panic!("no list") };
+        let list: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let sizes: Vec<(&str, u64)> = list["files"]
             .as_array()
             .unwrap()
             .iter()
             .map(|f| (f["name"].as_str().unwrap(), f["bytes"].as_u64().unwrap()))
             .collect();
         assert_eq!(sizes[0].0, "one.toml");
-        let shell = question("file", r#", "name": "shell.stl""#);
+        let shell = request("file", r#", "name": "shell.stl""#);
         let Answer::Bytes(shell) = engine.answer(&shell) else { panic!("no shell") };
         assert!(sizes.contains(&("shell.stl", shell.len() as u64)));
-        let Answer::Bytes(packed) = engine.answer(&question("zip", "")) else { panic!("no zip") };
+        let Answer::Bytes(packed) = engine.answer(&request("zip", "")) else { panic!("no archive") };
         let mut archive = zip::ZipArchive::new(Cursor::new(packed)).unwrap();
         assert_eq!(archive.len(), sizes.len());
         let mut inside = Vec::new();
         std::io::Read::read_to_end(&mut archive.by_name("shell.stl").unwrap(), &mut inside).unwrap();
         assert_eq!(inside, shell);
-        let elsewhere = question("file", r#", "name": "../x""#);
-        let Answer::Json(text) = engine.answer(&elsewhere) else { panic!("a file of elsewhere") };
+        let outside = request("file", r#", "name": "../x""#);
+        let Answer::Json(text) = engine.answer(&outside) else { panic!("a file outside of the set") };
         assert!(text.contains("no such file"));
     }
 }

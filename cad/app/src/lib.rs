@@ -1,48 +1,82 @@
-//! The engine of the configurator: a page asks, in JSON, and is answered with JSON or with the bytes of files. The same
-//! engine runs in a worker of the page, compiled to WebAssembly, and behind the local server of `pinswitch view`; the
-//! files are those of the command line, byte for byte. `cad/doc/configurator.md` lists the questions.
+//! The engine of the configurator: a page sends requests in JSON and gets JSON or the bytes of a
+//! file.
+//!
+//! One engine serves two front ends. Compiled to WebAssembly it runs in a worker of the page; with
+//! the feature `server` it runs behind the local server of `pinswitch view` (`server::Server`).
+//! Both return the files of `pinswitch generate`, byte for byte. `cad/doc/configurator.md` lists
+//! the requests.
+//!
+//! # Vocabulary
+//!
+//! - [`Engine`] answers requests, one at a time, and keeps the parts and curves of the last
+//!   designs.
+//! - [`Answer`] is JSON or the content of a file.
+//! - [`Values`] are the values of a configuration that differ from the defaults, by `table.key`;
+//!   [`configuration`] and [`changed_values`] convert them.
+//! - [`CalibratedSwitch`] and [`calibrated_curve`] apply a calibrated model to a design whose
+//!   dimensions differ from the rig's.
+//! - [`page`] is the HTML file of the configurator, and [`strip`] reduces the module that it
+//!   contains.
+//!
+//! # Examples
+//!
+//! A design, and one of its files:
 //!
 //! ```
 //! use pinswitch_app::{Answer, Engine};
 //!
 //! let mut engine = Engine::default();
 //! let Answer::Json(text) = engine.answer(r#"{"ask": "design", "values": {"layout.pins": [5, 8, 11]}}"#) else {
-//!     return Err("a design is told in JSON");
+//!     return Err("a design is JSON");
 //! };
 //! assert!(text.contains(r#""trouble":null"#));
-//! let bytes = engine.answer(r#"{"ask": "file", "values": {"layout.pins": [5, 8, 11]}, "name": "shell.stl"}"#);
-//! assert!(matches!(bytes, Answer::Bytes(_)));
+//! let shell = engine.answer(r#"{"ask": "file", "values": {"layout.pins": [5, 8, 11]}, "name": "shell.stl"}"#);
+//! assert!(matches!(shell, Answer::Bytes(_)));
 //! # Ok::<(), &str>(())
 //! ```
+//!
+//! Values of the page and a configuration:
+//!
+//! ```
+//! use pinswitch_app::{Values, changed_values, configuration};
+//!
+//! let values: Values = [("shell.width_mm".to_owned(), 12.5.into())].into();
+//! let configuration = configuration(&values)?;
+//! assert_eq!(configuration.shell.width_mm, 12.5);
+//! assert_eq!(changed_values(&configuration), values);
+//! # Ok::<(), pinswitch_switch::config::ConfigError>(())
+//! ```
 
+mod cache;
 mod calibrated_curve;
 mod calibrated_switch;
 mod calibration;
 mod design;
+mod design_search;
 mod facts;
 mod files;
-mod kept;
 #[cfg(target_arch = "wasm32")]
 mod module;
 pub mod page;
-mod predicted;
+mod prediction_cache;
+mod refusal;
 mod request;
-mod search;
-pub mod slim;
-mod trouble;
+#[cfg(feature = "server")]
+pub mod server;
+pub mod strip;
 mod values;
 
-use files::Made;
-use kept::Kept;
+use cache::Cache;
+use files::FileSet;
 use request::Request;
 use serde::Serialize;
 
 pub use calibrated_curve::calibrated_curve;
 pub use calibrated_switch::CalibratedSwitch;
-pub use request::{Pace, Values, pace};
-pub use values::{configuration, values};
+pub use request::Values;
+pub use values::{changed_values, configuration};
 
-/// What a question is answered with.
+/// The answer to a request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// JSON.
@@ -52,7 +86,7 @@ pub enum Answer {
 }
 
 impl Answer {
-    /// The answer to a question that has none, with the reason.
+    /// Returns `{"error": "..."}`, the answer to a request that cannot be answered.
     fn error(reason: impl std::fmt::Display) -> Self {
         Self::Json(serde_json::json!({ "error": reason.to_string() }).to_string())
     }
@@ -62,32 +96,34 @@ impl Answer {
     }
 }
 
-/// Answers questions, one at a time; keeps the files of the last design, since several are asked for in a row, and its curve,
-/// since most changes leave it as it is.
+/// Answers requests, one at a time.
+///
+/// An engine keeps the files of the last design, since a page requests several in a row, and curves
+/// and parts, since most changes of a design leave them unchanged.
 #[derive(Debug, Default)]
 pub struct Engine {
-    made: Option<Made>,
-    kept: Kept,
+    files: Option<FileSet>,
+    cache: Cache,
 }
 
 impl Engine {
-    /// The answer to a question in JSON; what cannot be answered says why, as `{"error": "..."}`.
-    pub fn answer(&mut self, question: &str) -> Answer {
-        let request = match serde_json::from_str(question) {
+    /// Returns the answer to a request in JSON; `{"error": "..."}` if it cannot be answered.
+    pub fn answer(&mut self, request: &str) -> Answer {
+        let request = match serde_json::from_str(request) {
             Ok(request) => request,
-            Err(e) => return Answer::error(format!("the question is none: {e}")),
+            Err(e) => return Answer::error(format!("invalid request: {e}")),
         };
         match request {
             Request::Facts => Answer::json(&facts::facts()),
             Request::Design { design, quality } => {
-                Answer::json(&design::answer(&mut self.kept, &design, quality))
+                Answer::json(&design::answer(&mut self.cache, &design, quality))
             }
-            Request::Open { toml, file } => Answer::json(&values::opened(&toml, &file)),
-            Request::Files { design } => self.files(&design, |made| made.list()),
-            Request::File { design, name } => self.files(&design, |made| made.file(&name)),
-            Request::Zip { design } => self.files(&design, Made::zip),
-            Request::Search(wanted) => search::answer(&wanted),
-            Request::Model { toml, file } => Answer::json(&calibration::checked_model(&toml, &file)),
+            Request::Open { toml, file } => Answer::json(&values::open(&toml, &file)),
+            Request::Files { design } => self.with_files(&design, FileSet::list),
+            Request::File { design, name } => self.with_files(&design, |files| files.content(&name)),
+            Request::Zip { design } => self.with_files(&design, FileSet::zip),
+            Request::Search(request) => design_search::answer(&request),
+            Request::Model { toml, file } => Answer::json(&calibration::check_model(&toml, &file)),
             Request::Calibrate { csv, file } => calibration::answer(&csv, &file),
         }
     }

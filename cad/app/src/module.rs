@@ -1,9 +1,11 @@
-//! What the WebAssembly module exports: room for a question, and its answer. It imports nothing.
+//! Exports of the WebAssembly module: memory for a request, and its answer. The module imports
+//! nothing.
 //!
-//! The page asks for `room(length)`, writes its question there as UTF-8, and calls `answer(place, length)`. That gives the
-//! place of twelve bytes, little-endian: the kind (0 JSON, 1 bytes of a file), the length and the place of the content,
-//! which stay until `free` or the next question.
-// The page calls these, which the compiler does not see.
+//! The page calls `room(length)`, writes its request there as UTF-8, and calls `answer(address,
+//! length)`. The result is the address of twelve bytes, little-endian: the kind (0 JSON, 1 the
+//! bytes of a file), the length and the address of the content. They stay valid until `free` or the
+//! next request.
+// The page calls the exports; the compiler sees no caller.
 #![allow(unsafe_code, unreachable_pub)]
 
 use std::cell::RefCell;
@@ -13,7 +15,7 @@ use crate::{Answer, Engine};
 #[derive(Default)]
 struct Module {
     engine: Engine,
-    question: Vec<u8>,
+    request: Vec<u8>,
     content: Vec<u8>,
     header: [u8; 12],
 }
@@ -22,27 +24,27 @@ thread_local! {
     static MODULE: RefCell<Module> = RefCell::default();
 }
 
-/// Room for a question of `length` bytes.
+/// Allocates memory for a request of `length` bytes and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(length: usize) -> *mut u8 {
     MODULE.with_borrow_mut(|module| {
-        module.question = vec![0; length];
-        module.question.as_mut_ptr()
+        module.request = vec![0; length];
+        module.request.as_mut_ptr()
     })
 }
 
-/// The place of the answer to the question that was written into the room.
+/// Answers the request in the memory that [`room`] allocated; returns the address of the header.
 #[unsafe(no_mangle)]
-pub extern "C" fn answer(_place: *const u8, length: usize) -> *const u8 {
+pub extern "C" fn answer(_address: *const u8, length: usize) -> *const u8 {
     MODULE.with_borrow_mut(|module| {
-        let question = std::mem::take(&mut module.question);
-        let text = question.get(..length).map(String::from_utf8_lossy).unwrap_or_default();
+        let request = std::mem::take(&mut module.request);
+        let text = request.get(..length).map(String::from_utf8_lossy).unwrap_or_default();
         let (kind, content) = match module.engine.answer(&text) {
             Answer::Json(text) => (0u32, text.into_bytes()),
             Answer::Bytes(bytes) => (1u32, bytes),
         };
         module.content = content;
-        // Places and lengths of a module of 32 bits.
+        // Addresses and lengths of wasm32 have 32 bits.
         #[allow(clippy::cast_possible_truncation)]
         let number = |n: usize| (n as u32).to_le_bytes();
         module.header[..4].copy_from_slice(&kind.to_le_bytes());
@@ -52,8 +54,8 @@ pub extern "C" fn answer(_place: *const u8, length: usize) -> *const u8 {
     })
 }
 
-/// Gives the room of the last answer back.
+/// Frees the content of the last answer.
 #[unsafe(no_mangle)]
-pub extern "C" fn free(_place: *const u8) {
+pub extern "C" fn free(_address: *const u8) {
     MODULE.with_borrow_mut(|module| module.content = Vec::new());
 }

@@ -1,4 +1,4 @@
-//! Questions of the page.
+//! Requests of the page.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 /// Values that differ from the defaults, by `table.key`.
 pub type Values = BTreeMap<String, Value>;
 
-/// One question.
+/// One request; `ask` names its kind.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Request {
@@ -17,66 +17,39 @@ pub(crate) enum Request {
     /// What the page shows of a design.
     Design {
         #[serde(flatten)]
-        design: Asked,
+        design: DesignRequest,
         #[serde(default)]
         quality: Quality,
     },
-    /// The values that the text of a configuration sets.
+    /// The values in the text of a configuration.
     Open { toml: String, file: String },
     /// Names and sizes of the files of a design.
     Files {
         #[serde(flatten)]
-        design: Asked,
+        design: DesignRequest,
     },
-    /// The content of one of them.
+    /// The content of one file.
     File {
         #[serde(flatten)]
-        design: Asked,
+        design: DesignRequest,
         name: String,
     },
-    /// All of them in one archive.
+    /// All files in one archive.
     Zip {
         #[serde(flatten)]
-        design: Asked,
+        design: DesignRequest,
     },
-    /// Designs that do what is wanted.
-    Search(Wanted),
-    /// Whether the text of a calibrated model is one.
+    /// Designs that reach targets.
+    Search(SearchRequest),
+    /// Whether a text is a calibrated model.
     Model { toml: String, file: String },
-    /// What a table of measured plateaus says.
+    /// A calibration with a table of measured plateaus.
     Calibrate { csv: String, file: String },
 }
 
-/// How long a question takes, at the most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
-    /// Somebody moves a slider: some hundredths of a second.
-    Quick,
-    /// The files of a design.
-    Files,
-    /// A search or a calibration: seconds, and minutes for a long table.
-    Long,
-}
-
-/// What a question asks, whatever else it holds.
-#[derive(Deserialize)]
-struct Asks<'a> {
-    #[serde(borrow)]
-    ask: std::borrow::Cow<'a, str>,
-}
-
-/// How long a question may take; what is none is answered at once.
-pub fn pace(question: &[u8]) -> Pace {
-    match serde_json::from_slice::<Asks<'_>>(question).as_ref().map(|asks| &*asks.ask) {
-        Ok("search" | "calibrate") => Pace::Long,
-        Ok("files" | "file" | "zip") => Pace::Files,
-        _ => Pace::Quick,
-    }
-}
-
-/// A design that a question is about.
+/// A design.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct DesignRequest {
     #[serde(default)]
     pub(crate) values: Values,
     /// The text of a calibrated model, instead of the published constants.
@@ -84,45 +57,47 @@ pub(crate) struct Asked {
     pub(crate) model: Option<String>,
 }
 
-/// How fine the meshes are.
+/// Resolution of meshes and curve.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Quality {
-    /// Coarse, to be seen while somebody moves a slider.
+    /// Coarse, for display while a slider moves.
     Coarse,
-    /// As the configuration says.
+    /// As configured.
     #[default]
     Exact,
 }
 
-/// What is wanted of a switch.
+/// Targets of a search for designs.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Wanted {
+pub(crate) struct SearchRequest {
     #[serde(default)]
     pub(crate) values: Values,
-    /// Threshold, N.
+    /// Target threshold, N.
     #[serde(default)]
     pub(crate) threshold_n: Option<f64>,
-    /// Friction at loads.
+    /// Target frictions.
     #[serde(default)]
-    pub(crate) friction: Vec<FrictionAt>,
+    pub(crate) friction: Vec<FrictionTarget>,
     /// The text of a calibrated model, instead of the published constants.
     #[serde(default)]
     pub(crate) model: Option<String>,
-    /// How many designs at the most.
-    #[serde(default = "six")]
+    /// Most designs to return.
+    #[serde(default = "default_most")]
     pub(crate) most: usize,
 }
 
-/// Friction at a load, both in newtons.
+/// A target friction at a load.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct FrictionAt {
+pub(crate) struct FrictionTarget {
+    /// Load, N.
     pub(crate) load_n: f64,
+    /// Friction, N.
     pub(crate) friction_n: f64,
 }
 
-const fn six() -> usize {
+const fn default_most() -> usize {
     6
 }

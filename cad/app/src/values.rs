@@ -1,24 +1,25 @@
-//! Between the values of the page and configurations.
+//! Conversion between the values of the page and configurations.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::config::parameter::Parameter;
 use pinswitch_switch::config::{ConfigError, Configuration, Name, assign, read};
 use pinswitch_switch::documents::toml_to_json;
 use serde::Serialize;
 
+use crate::refusal::Refusal;
 use crate::request::Values;
-use crate::trouble::Trouble;
 
-/// Longest text of a configuration that is read.
-const LONGEST: usize = 1 << 20;
+/// Longest configuration file that is read, in bytes.
+const MAX_CONFIGURATION_BYTES: usize = 1 << 20;
 
-/// The configuration with these values.
+/// Returns the default configuration with these values.
 ///
 /// # Errors
-/// [`ConfigError`] for a field that is unknown or a value out of its range.
+/// [`ConfigError`] for an unknown field or a value out of its range.
 pub fn configuration(values: &Values) -> Result<Configuration, ConfigError> {
     let mut configuration = Configuration::default();
     for (path, value) in values {
-        // JSON of a number, a list of them, a truth value or a text of printable characters is TOML.
+        // A number, a list of numbers, a boolean or printable text is the same in JSON and in TOML.
         assign(&mut configuration, &format!("{path}={value}")).map_err(|mut error| {
             error.place = None;
             error
@@ -27,42 +28,45 @@ pub fn configuration(values: &Values) -> Result<Configuration, ConfigError> {
     Ok(configuration)
 }
 
-/// The values in which a configuration differs from the defaults.
-pub fn values(configuration: &Configuration) -> Values {
+/// Returns the values in which a configuration differs from the defaults.
+pub fn changed_values(configuration: &Configuration) -> Values {
     let defaults = Configuration::default();
-    let shown = |p: &Parameter<Configuration>, c: &Configuration| (p.get)(c);
+    let value = |p: &Parameter<Configuration>, c: &Configuration| (p.get)(c);
     Configuration::PARAMETERS
         .iter()
-        .filter(|p| shown(p, configuration).to_string() != shown(p, &defaults).to_string())
-        .map(|p| (p.path(), toml_to_json(&shown(p, configuration))))
+        .filter(|p| value(p, configuration).to_string() != value(p, &defaults).to_string())
+        .map(|p| (p.path(), toml_to_json(&value(p, configuration))))
         .collect()
 }
 
-/// The values of a file, or what is wrong with it.
+/// The values of a configuration file, or why it is refused.
 #[derive(Debug, Serialize)]
-pub(crate) struct Opened {
+pub(crate) struct OpenedFile {
     values: Option<Values>,
-    trouble: Option<Trouble>,
+    trouble: Option<Refusal>,
 }
 
-/// Reads the text of a configuration; `file` names it in errors.
-pub(crate) fn opened(text: &str, file: &str) -> Opened {
-    if text.len() > LONGEST {
-        let trouble = Trouble::general(format!(
-            "{file}: {} bytes are no configuration, which has some hundred; drop a TOML file that pinswitch wrote",
-            text.len()
-        ));
-        return Opened { values: None, trouble: Some(trouble) };
+/// Reads the text of a configuration file; `file` is its name in errors.
+pub(crate) fn open(text: &str, file: &str) -> OpenedFile {
+    match read_values(text, file) {
+        Ok(values) => OpenedFile { values: Some(values), trouble: None },
+        Err(refusal) => OpenedFile { values: None, trouble: Some(refusal) },
     }
-    match read(text, file) {
-        Ok((mut configuration, places)) => {
-            if !places.sets("switch.name") {
-                configuration.switch.name = Name::lent_by(file);
-            }
-            Opened { values: Some(values(&configuration)), trouble: None }
-        }
-        Err(error) => Opened { values: None, trouble: Some(error.into()) },
+}
+
+fn read_values(text: &str, file: &str) -> Result<Values, Refusal> {
+    if text.len() > MAX_CONFIGURATION_BYTES {
+        let problem = format!("{} bytes are too long for a configuration", text.len());
+        let diagnostic = Diagnostic::new(problem)
+            .with_location(Location::file(file))
+            .with_help("drop a TOML file that pinswitch wrote");
+        return Err(diagnostic.into());
     }
+    let (mut configuration, places) = read(text, file)?;
+    if !places.sets("switch.name") {
+        configuration.switch.name = Name::lent_by(file);
+    }
+    Ok(changed_values(&configuration))
 }
 
 #[cfg(test)]
@@ -71,10 +75,10 @@ mod tests {
     use pinswitch_switch::templates;
 
     #[test]
-    fn every_template_goes_through_values_and_back() {
+    fn templates_survive_a_round_trip() {
         for name in templates::names() {
             let (before, _) = read(&templates::text(name).unwrap(), name).unwrap();
-            let values = values(&before);
+            let values = changed_values(&before);
             let text = serde_json::to_string(&values).unwrap();
             let values: Values = serde_json::from_str(&text).unwrap();
             assert_eq!(configuration(&values).unwrap(), before, "{name}");
@@ -82,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_named_without_a_place() {
+    fn invalid_values_are_refused_by_field() {
         let values: Values = serde_json::from_str(r#"{"shell.wall_mm": 1e9}"#).unwrap();
         let error = configuration(&values).unwrap_err();
         assert_eq!((error.field.as_str(), error.place.is_none()), ("shell.wall_mm", true));
@@ -90,7 +94,11 @@ mod tests {
             let values: Values = serde_json::from_str(&format!(r#"{{"{path}": {value}}}"#)).unwrap();
             assert!(configuration(&values).is_err(), "{path}");
         }
-        assert!(opened("[shell]\nwall_mm = []", "x.toml").trouble.is_some());
-        assert!(opened(&"#".repeat(LONGEST + 1), "x.toml").trouble.is_some());
+    }
+
+    #[test]
+    fn invalid_files_are_refused() {
+        assert!(open("[shell]\nwall_mm = []", "x.toml").trouble.is_some());
+        assert!(open(&"#".repeat(MAX_CONFIGURATION_BYTES + 1), "x.toml").trouble.is_some());
     }
 }

@@ -1,47 +1,47 @@
-// What is seen: the assembly and its sliders, three widths, two schemes, and what axe-core finds.
+// The 3D view and its sliders, three widths, two colour schemes, focus and accessibility.
 
 import { START } from './design.mjs';
 
 export async function assembly(visit, site) {
   await visit.open(site.address + START);
   let last = await visit.picture('#view');
-  const moves = async (what, act) => {
+  const changesPicture = async (what, act) => {
     await act();
     const now = await visit.picture('#view');
     visit.findings.check(what, now !== last);
     last = now;
   };
-  const reading = await visit.text('#friction-words');
-  await moves('the load slider sinks the pins', () => visit.slide('#load', 0));
-  visit.findings.check('the load slider reads the curve', await visit.text('#friction-words') !== reading);
-  await moves('the parts come apart', () => visit.slide('#apart', 1));
-  await visit.slide('#apart', 0);
+  const reading = await visit.text('#friction-text');
+  await changesPicture('the load slider moves the pins', () => visit.slide('#load', 0));
+  visit.findings.check('the load slider shows the friction', await visit.text('#friction-text') !== reading);
+  await changesPicture('the view explodes', () => visit.slide('#explode', 1));
+  await visit.slide('#explode', 0);
   last = await visit.picture('#view');
-  await moves('the assembly is cut open', () => visit.click('#cut'));
-  await visit.click('#look > summary');
-  await moves('the cut moves', () => visit.slide('#cut-at', 0.3));
-  await moves('it turns', () => visit.slide('#turn', 120));
-  await moves('it tilts', () => visit.slide('#tilt', -20));
-  await moves('a body can be hidden', () => visit.page.$eval('#bodies input', (e) => e.click()));
+  await changesPicture('the section is shown', () => visit.click('#section'));
+  await visit.click('#view-menu > summary');
+  await changesPicture('the section moves', () => visit.slide('#section-position', 0.3));
+  await changesPicture('the view rotates', () => visit.slide('#turn', 120));
+  await changesPicture('the view tilts', () => visit.slide('#tilt', -20));
+  await changesPicture('a body can be hidden', () => visit.page.$eval('#bodies input', (e) => e.click()));
   await visit.page.keyboard.press('Escape');
   const box = await (await visit.page.$('#view canvas')).boundingBox();
   const { mouse } = visit.page;
-  await moves('it is turned by hand', async () => {
+  await changesPicture('a drag rotates the view', async () => {
     await mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await mouse.down();
     await mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 30, { steps: 4 });
     await mouse.up();
   });
-  const facts = await visit.page.evaluate(() => ['#checks li', '#bill dt', '#parts tbody tr', '#bed svg .outline'].map((s) => document.querySelectorAll(s).length));
-  visit.findings.check('checks, bill, volumes and print bed are filled', facts.every((n) => n > 2), facts);
+  const facts = await visit.page.evaluate(() => ['#checks li', '#materials dt', '#parts tbody tr', '#bed svg .outline'].map((s) => document.querySelectorAll(s).length));
+  visit.findings.check('checks, materials, parts and print bed are filled', facts.every((n) => n > 2), facts);
 }
 
 const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
 
 export async function widths(visit, site, { pictures }) {
   await visit.open(site.address + START);
-  const codes = await visit.page.$$eval('[data-word], [data-name]', (all) => all.map((e) => `${e.textContent} ${e.getAttribute('aria-label')}`).filter((text) => /=>|undefined/.test(text)));
-  visit.findings.check('every place has words', codes.length === 0, codes.join('; '));
+  const invalid = await visit.page.$$eval('[data-text], [data-name]', (all) => all.map((e) => `${e.textContent} ${e.getAttribute('aria-label')}`).filter((text) => /=>|undefined/.test(text)));
+  visit.findings.check('every element has its text', invalid.length === 0, invalid.join('; '));
   for (const [name, [width, height]] of Object.entries(WIDTHS)) {
     for (const dark of [false, true]) {
       await visit.look(width, height, dark);
@@ -56,14 +56,14 @@ export async function widths(visit, site, { pictures }) {
   }
 }
 
-// Who walks with Tab on a phone sees what has the focus: the button that stays at the bottom covers none of it.
+// On a phone, the floating button does not cover the focused element.
 export async function focusOnAPhone(visit, site) {
   await visit.look(375, 812, false);
   await visit.open(site.address + START);
   const covered = new Set();
-  const jumps = [];
-  let walked = 0, before;
-  for (; walked < 120; walked += 1) {
+  const backwardSteps = [];
+  let steps = 0, before;
+  for (; steps < 120; steps += 1) {
     await visit.page.keyboard.press('Tab');
     const what = await visit.page.evaluate(async () => {
       await new Promise((done) => { requestAnimationFrame(done); });
@@ -77,15 +77,15 @@ export async function focusOnAPhone(visit, site) {
     if (what === null) break;
     if (what.isCovered) covered.add(what.name);
     const { place } = what;
-    // What is scrolled sideways moves as one walks.
-    if (place && before && !(place.scrolls && before.scrolls) && (place.bottom <= before.top || (place.left < before.left && place.top < before.bottom - 1 && place.bottom > before.top + 1))) jumps.push(what.name);
+    // Elements in a horizontal scroller move with each step.
+    if (place && before && !(place.scrolls && before.scrolls) && (place.bottom <= before.top || (place.left < before.left && place.top < before.bottom - 1 && place.bottom > before.top + 1))) backwardSteps.push(what.name);
     before = place ?? before;
   }
-  visit.findings.check('the focus goes down the page, and in a row to the right', jumps.length === 0, jumps.join(' '));
-  visit.findings.check('nothing that has the focus is covered', walked > 20 && covered.size === 0, [...covered].join(' '));
+  visit.findings.check('the focus moves down the page, and to the right in a row', backwardSteps.length === 0, backwardSteps.join(' '));
+  visit.findings.check('the focused element is never covered', steps > 20 && covered.size === 0, [...covered].join(' '));
 }
 
-// Who walks back through the parameters sees what has the focus: the bar above them covers none of it.
+// The search bar does not cover a focused parameter.
 export async function focusAmongParameters(visit, site) {
   for (const [width, height] of [[1440, 900], [375, 812]]) {
     await visit.look(width, height, false);
@@ -93,8 +93,8 @@ export async function focusAmongParameters(visit, site) {
     if (width < 1000) await visit.click('#parameters');
     await visit.page.evaluate(() => { document.querySelectorAll('.group').forEach((group) => { group.open = true; }); [...document.querySelectorAll('.group input:not([type=range])')].at(-1).focus(); });
     const covered = new Set();
-    let walked = 0;
-    for (; walked < 90; walked += 1) {
+    let steps = 0;
+    for (; steps < 90; steps += 1) {
       await visit.page.keyboard.down('Shift');
       await visit.page.keyboard.press('Tab');
       await visit.page.keyboard.up('Shift');
@@ -107,51 +107,51 @@ export async function focusAmongParameters(visit, site) {
       if (what === null) break;
       if (what) covered.add(what);
     }
-    visit.findings.check(`${width}: no parameter that has the focus is covered`, walked > 60 && covered.size === 0, `${walked} ${[...covered].join(' ')}`);
+    visit.findings.check(`${width}: the focused parameter is never covered`, steps > 60 && covered.size === 0, `${steps} ${[...covered].join(' ')}`);
   }
 }
 
-// The reasons are opened and closed by hand, by key, and by a click elsewhere, at every width.
+// The reasons open and close with the pointer, by key, and by a click elsewhere, at each width.
 export async function reasonsClose(visit, site) {
   await visit.open(site.address + START);
   const isOpen = () => visit.shown('#reasons');
   for (const width of [320, 375, 820, 1440]) {
     await visit.look(width, 812, false);
-    const place = async () => {
+    const centre = async () => {
       await visit.page.$eval('#trust', (e) => e.scrollIntoView({ block: 'center' }));
       const { x, y, width: wide, height } = await (await visit.page.$('#trust')).boundingBox();
       return [x + wide / 2, y + height / 2];
     };
-    const press = async () => visit.page.mouse.click(...await place());
+    const press = async () => visit.page.mouse.click(...await centre());
     await press();
-    visit.findings.check(`the badge opens its reasons at ${width} px`, await isOpen());
+    visit.findings.check(`the badge opens the reasons at ${width} px`, await isOpen());
     await press();
-    visit.findings.check(`and closes them at ${width} px`, !await isOpen());
+    visit.findings.check(`it closes them at ${width} px`, !await isOpen());
     await press();
     await visit.focus('#reasons');
     await visit.page.keyboard.press('Escape');
-    visit.findings.check(`so does Escape at ${width} px`, !await isOpen() && await visit.page.evaluate(() => document.activeElement.id === 'trust'));
+    visit.findings.check(`Escape closes them at ${width} px`, !await isOpen() && await visit.page.evaluate(() => document.activeElement.id === 'trust'));
     await press();
-    await visit.click('#pins-say');
-    visit.findings.check(`so does a click elsewhere at ${width} px`, !await isOpen());
+    await visit.click('#pins-title');
+    visit.findings.check(`a click elsewhere closes them at ${width} px`, !await isOpen());
   }
 }
 
-// States of the page that a person meets, each with what brings it about and what ends it.
+// States of the page, each with functions that enter and leave it.
 const MANY_REASONS = 'layout.pins=1,2,3,4,5,6,7,8,9,10,11,12,13,14,15&silicone.thickness_mm=6&silicone.hardness_shore_a=20';
-async function turn(visit, hash) {
+async function goTo(visit, hash) {
   await visit.page.evaluate((to) => { document.body.dataset.pending = 'true'; location.hash = to; }, hash);
   await visit.settled();
 }
 const STATES = {
   'at rest': [async () => {}, async () => {}],
   'with reasons': [(v) => v.click('#trust'), (v) => v.click('#trust')],
-  'with many reasons': [async (v) => { await turn(v, `#v=1&${MANY_REASONS}`); await v.click('#trust'); }, async (v) => { await v.page.keyboard.press('Escape'); await turn(v, START); }],
+  'with many reasons': [async (v) => { await goTo(v, `#v=1&${MANY_REASONS}`); await v.click('#trust'); }, async (v) => { await v.page.keyboard.press('Escape'); await goTo(v, START); }],
   'with templates': [(v) => v.click('#more > summary'), (v) => v.page.keyboard.press('Escape')],
-  'with the view menu': [(v) => v.click('#look > summary'), (v) => v.page.keyboard.press('Escape')],
+  'with the view menu': [(v) => v.click('#view-menu > summary'), (v) => v.page.keyboard.press('Escape')],
   'with files': [async (v) => { await v.click('#download'); await v.page.waitForSelector('#file-list button'); }, (v) => v.click('#files-close')],
-  'with trouble': [async (v) => { await v.page.evaluate(() => { location.hash = '#v=1&segment.grooves=40'; }); await v.page.waitForSelector('#trouble:not([hidden])'); },
-    async (v) => { await v.click('#trouble .mend'); await v.page.waitForSelector('#trouble[hidden]'); }],
+  'with a refusal': [async (v) => { await v.page.evaluate(() => { location.hash = '#v=1&segment.grooves=40'; }); await v.page.waitForSelector('#trouble:not([hidden])'); },
+    async (v) => { await v.click('#trouble .fix'); await v.page.waitForSelector('#trouble[hidden]'); }],
 };
 
 async function violations(visit) {
@@ -159,36 +159,36 @@ async function violations(visit) {
   return visit.page.evaluate(async () => (await axe.run(document, { resultTypes: ['violations'] })).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(' ')).slice(0, 3).join(', ')}`));
 }
 
-// Within another page, where there is no header.
+// Embedded, without a header.
 export async function accessibleEmbedded(visit, site) {
   await visit.open(`${site.address}?embed${START}`);
   await visit.page.evaluate(visit.browser.axeText);
   for (const name of ['desk', 'phone']) {
     await visit.look(...WIDTHS[name], false);
-    const found = await violations(visit);
-    visit.findings.check(`axe-core finds nothing on an embedded ${name}`, found.length === 0, found.join('; '));
+    const all = await violations(visit);
+    visit.findings.check(`axe-core reports nothing on an embedded ${name}`, all.length === 0, all.join('; '));
   }
 }
 
 export async function accessible(visit, site) {
   await visit.open(site.address + START);
-  // As the debugger evaluates it: the page's policy lets no script in.
+  // Through the debugger, since the policy of the page allows no other script.
   await visit.page.evaluate(visit.browser.axeText);
   for (const [name, dark] of [['desk', false], ['desk', true], ['phone', false], ['phone', true]]) {
     await visit.look(...WIDTHS[name], dark);
-    const judge = async (state) => {
-      const found = await violations(visit);
-      visit.findings.check(`axe-core finds nothing on a ${dark ? 'dark' : 'light'} ${name} ${state}`, found.length === 0, found.join('; '));
+    const check = async (state) => {
+      const all = await violations(visit);
+      visit.findings.check(`axe-core reports nothing on a ${dark ? 'dark' : 'light'} ${name} ${state}`, all.length === 0, all.join('; '));
     };
-    for (const [state, [begin, end]] of Object.entries(STATES)) {
-      await begin(visit);
-      await judge(state);
-      await end(visit);
+    for (const [state, [enter, leave]] of Object.entries(STATES)) {
+      await enter(visit);
+      await check(state);
+      await leave(visit);
     }
     if (name !== 'phone') continue;
     await visit.click('#parameters');
     await visit.page.waitForSelector('#find', { visible: true });
-    await judge('with parameters');
+    await check('with parameters');
     await visit.click('#sheet-close');
   }
 }

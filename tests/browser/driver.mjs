@@ -1,28 +1,28 @@
-// A browser that is driven, and what must hold of every visit: no error is logged, and nothing is asked of anywhere else.
+// Drives a browser. Every visit must log no error and request nothing from other hosts.
 
 import { createRequire } from 'node:module';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-const PATIENCE_MS = 30_000;
-// Nothing but this machine can be reached, whatever a page asks for.
+const TIMEOUT_MS = 30_000;
+// The browser can reach this machine only.
 const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
   '--hide-scrollbars', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost'];
 
-// puppeteer-core and axe-core, from where `.ci/run` puts them.
+// Loads puppeteer-core and axe-core from their folder.
 export function tools(folder) {
   const require = createRequire(join(folder, 'node_modules', 'x.js'));
   return { puppeteer: require('puppeteer-core'), axe: require.resolve('axe-core/axe.min.js') };
 }
 
-// What held and what did not; `name` is that of the scenario that looked.
+// Counts checks that passed, and records the others with their scenario.
 export class Findings {
-  constructor() { this.held = 0; this.failed = []; this.scenario = ''; }
+  constructor() { this.passed = 0; this.failed = []; this.scenario = ''; }
 
-  check(what, holds, found = '') {
-    if (holds) { this.held += 1; return true; }
-    this.failed.push(`${this.scenario}: ${what}${found === '' ? '' : ` (found ${String(found).slice(0, 400)})`}`);
+  check(what, isTrue, actual = '') {
+    if (isTrue) { this.passed += 1; return true; }
+    this.failed.push(`${this.scenario}: ${what}${actual === '' ? '' : ` (actual: ${String(actual).slice(0, 400)})`}`);
     return false;
   }
 }
@@ -42,7 +42,7 @@ export class Browser {
   }
 }
 
-// One page in a context of its own: no other visit's storage.
+// One page, in its own context without the storage of other visits.
 export class Visit {
   static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before }) {
     const visit = new Visit();
@@ -50,16 +50,17 @@ export class Visit {
     visit.context = context ?? await browser.real.createBrowserContext();
     visit.page = await visit.context.newPage();
     const { page } = visit;
-    page.setDefaultTimeout(PATIENCE_MS);
+    page.setDefaultTimeout(TIMEOUT_MS);
     page.on('console', (message) => { if (message.type() === 'error') visit.problems.push(message.text()); });
     page.on('pageerror', (error) => visit.problems.push(String(error?.stack ?? error)));
-    page.on('request', (request) => visit.asked(request.url()));
+    page.on('request', (request) => visit.record(request.url()));
     await visit.look(width, height, dark);
     if (before) await page.evaluateOnNewDocument(before);
     return visit;
   }
 
-  asked(url) {
+  // Records requests to other hosts.
+  record(url) {
     const isOwn = ['blob:', 'data:', 'about:', 'file:'].some((scheme) => url.startsWith(scheme)) || url.startsWith(this.home ?? 'none');
     if (!isOwn) this.foreign.push(url);
   }
@@ -69,16 +70,16 @@ export class Visit {
     await this.page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }, { name: 'prefers-reduced-motion', value: 'reduce' }]);
   }
 
-  // Opens an address and waits for the design that it holds.
+  // Opens an address and waits for its design.
   async open(address, { settles = true } = {}) {
     this.home = address.startsWith('http') ? new URL(address).origin : 'file://';
-    // An address that differs in its fragment only would not be loaded again.
+    // A browser does not reload for a new fragment.
     if (this.page.url().split('#')[0] === address.split('#')[0]) await this.page.goto('about:blank');
     await this.page.goto(address);
     if (settles) await this.settled();
   }
 
-  // Until the exact answer for the present values is there, shown or refused.
+  // Waits until the exact design for the present values is shown or refused.
   async settled() {
     await this.page.waitForFunction(() => document.body.dataset.ready === 'true' && document.body.dataset.pending === 'false');
   }
@@ -88,11 +89,11 @@ export class Visit {
   }
 
   async check(what, condition, ...given) {
-    const holds = await this.until(condition, ...given);
-    return this.findings.check(what, holds, holds ? '' : await this.page.evaluate(() => `${decodeURIComponent(location.hash)} ${document.querySelector('#notice').innerText} ${document.querySelector('#trouble').innerText}`));
+    const isTrue = await this.until(condition, ...given);
+    return this.findings.check(what, isTrue, isTrue ? '' : await this.page.evaluate(() => `${decodeURIComponent(location.hash)} ${document.querySelector('#notice').innerText} ${document.querySelector('#trouble').innerText}`));
   }
 
-  // The address says this, as a person would read it.
+  // Whether the decoded address contains this text.
   async addressHas(part) {
     return this.check(`the address has ${part}`, (text) => decodeURIComponent(location.hash).includes(text), part);
   }
@@ -102,23 +103,23 @@ export class Visit {
 
   async text(selector) { return this.page.$eval(selector, (e) => e.textContent); }
   async shown(selector) { return this.page.$eval(selector, (e) => e.checkVisibility()); }
-  // An answer of the engine may draw what is clicked anew between finding and clicking it: then the new one is clicked.
+  // If an answer of the engine replaces the element before the click, the new one is clicked.
   async click(selector) {
-    for (let tries = 1; ; tries += 1) {
+    for (let attempt = 1; ; attempt += 1) {
       const element = await this.page.waitForSelector(selector, { visible: true });
       try {
         await element.click();
         return;
       } catch (problem) {
-        if (tries === 3 || !/detached|not clickable/.test(problem.message)) throw problem;
+        if (attempt === 3 || !/detached|not clickable/.test(problem.message)) throw problem;
       }
     }
   }
 
-  // Drawings take the focus, too.
+  // Focuses an element; also works for elements of a drawing.
   async focus(selector) { await this.page.$eval(selector, (e) => e.focus()); }
 
-  // Moves a slider or a box as a hand would: the value, and the event of it.
+  // Sets the value of a slider with its event.
   async slide(selector, value) {
     await this.page.$eval(selector, (e, to) => { e.value = to; e.dispatchEvent(new Event('input', { bubbles: true })); }, value);
   }
@@ -130,7 +131,7 @@ export class Visit {
     await element.evaluate((e) => e.dispatchEvent(new Event('change', { bubbles: true })));
   }
 
-  // Lets a file fall on the page; `content` is text, or a number of bytes.
+  // Drops a file on the page; `content` is text, or a number of bytes.
   async drop(name, content) {
     await this.page.evaluate((file, inside) => {
       const parts = typeof inside === 'number' ? [new Uint8Array(inside).fill(48)] : [inside];
@@ -140,21 +141,22 @@ export class Visit {
     }, name, content);
   }
 
-  // What a person sees there, to be compared.
+  // Returns a screenshot of an element, for comparison.
   async picture(selector) {
-    // Two frames: what was asked for is drawn in the next. The assembly may be drawn roughly first.
+    // A change is drawn in the next frame, and the assembly may be drawn at low resolution first.
     await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     await this.page.waitForFunction(() => (document.getElementById('view').dataset.drawn ?? 'finely') === 'finely');
     return (await this.page.$(selector)).screenshot({ encoding: 'base64' });
   }
 
-  // Ends the visit; what was logged or asked for elsewhere is a failure, but for what the scenario provoked.
+  // Ends the visit; logged errors and requests to other hosts are failures, except those that the
+  // scenario allows.
   async end({ keepsContext = false } = {}) {
     const errors = this.page.url().startsWith('about:') ? '0' : await this.page.evaluate(() => document.body.dataset.errors).catch(() => '0');
     const problems = this.problems.filter((text) => !this.allowed.some((pattern) => pattern.test(text)));
     this.findings.check('no error is logged', problems.length === 0, problems.join('; '));
     this.findings.check('no error is uncaught', errors === '0' || errors === undefined, errors);
-    this.findings.check('nothing is asked of elsewhere', this.foreign.length === 0, this.foreign.join(' '));
+    this.findings.check('no other host is requested', this.foreign.length === 0, this.foreign.join(' '));
     await this.page.close();
     if (!keepsContext) await this.context.close();
   }

@@ -1,46 +1,50 @@
-//! The server of the preview: it answers its own page on this machine, and nobody else. hyper reads and writes HTTP.
+//! HTTP: answers requests of the server's own pages on this machine, within bounds, and refuses all
+//! others.
 
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use http_body_util::Full;
+use http_body_util::{BodyExt, Collected, Full, Limited};
 use hyper::body::{Bytes, Incoming};
 use hyper::header::{HOST, HeaderValue, ORIGIN};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{HeaderMap, Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
+use pinswitch_switch::formats::page::page_policy;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
 
-use super::configure::{Configurator, question};
-use super::state::{State, after, values_after};
-use pinswitch_app::Answer;
-use pinswitch_app::page::{configurator_html, configurator_policy};
-use pinswitch_switch::formats::page::page_policy;
+use super::configurator::Configurator;
+use super::state::{State, data_after, values_after};
+use crate::Answer;
+use crate::page::{configurator_html, configurator_policy};
 
-/// How long a request for the next state is held before the browser repeats it.
+/// Time after which a long poll is answered with the present state; the page then repeats it.
 const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
-/// Requests that may wait for the next state at once: a page has one.
+/// Most long polls at once; a page has one.
 const MAX_LONG_POLLS: usize = 32;
-/// Connections that are open at once; others wait in the queue of the system.
+/// Most open connections; others wait in the queue of the system.
 const MAX_CONNECTIONS: usize = 64;
-/// Bytes of a request's line and headers: browsers send less than 2 kB.
+/// Longest request line with headers, in bytes; browsers send less than 2 kB.
 const MAX_HEADER_BYTES: usize = 16 * 1024;
-/// Headers of a request.
+/// Most headers of a request.
 const MAX_HEADERS: usize = 64;
-/// How long a request may take to arrive.
+/// Time in which the headers of a request must arrive.
 const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
-/// How long a connection may live: one answer, waited for and sent. A search or a calibration takes its time.
+/// Longest life of a connection, which carries one answer; a search or a calibration takes minutes.
 const CONNECTION_TIMEOUT: Duration = Duration::from_secs(600);
-/// How long a question may take to arrive.
-const QUESTION_TIMEOUT: Duration = Duration::from_secs(60);
-/// What the configurator asks.
-const QUESTIONS: [&str; 2] = ["/answer", "/save"];
+/// Time in which the body of a request must arrive.
+const BODY_TIMEOUT: Duration = Duration::from_secs(60);
+/// Longest body of a request, in bytes. The engine refuses a table of this size and recommends the
+/// command line.
+const MAX_BODY_BYTES: usize = 64 << 20;
+/// Paths to which the configurator posts requests.
+const POST_PATHS: [&str; 2] = ["/answer", "/save"];
 
-/// What every request is answered from.
+/// Everything from which requests are answered.
 #[derive(Debug)]
 struct Site {
     states: watch::Receiver<State>,
@@ -51,7 +55,7 @@ struct Site {
     configurator_policy: String,
 }
 
-/// Answers requests until the program ends.
+/// Answers requests until the process ends.
 pub(super) async fn serve(
     listener: TcpListener,
     address: SocketAddr,
@@ -67,15 +71,15 @@ pub(super) async fn serve(
         configurator_policy: configurator_policy(),
     });
     let connections = Arc::new(Semaphore::new(MAX_CONNECTIONS));
-    while let Ok(place) = Arc::clone(&connections).acquire_owned().await {
+    while let Ok(permit) = Arc::clone(&connections).acquire_owned().await {
         let Ok((stream, _)) = listener.accept().await else {
-            // Out of file descriptors, as a rule: some come back when connections end.
+            // Usually no file descriptor is free; some will be when connections end.
             tokio::time::sleep(Duration::from_millis(50)).await;
             continue;
         };
         let site = Arc::clone(&site);
         tokio::spawn(async move {
-            let answer = service_fn(move |request| {
+            let service = service_fn(move |request| {
                 let site = Arc::clone(&site);
                 async move { Ok::<_, Infallible>(site.answer(request).await) }
             });
@@ -85,10 +89,10 @@ pub(super) async fn serve(
                 .max_buf_size(MAX_HEADER_BYTES)
                 .max_headers(MAX_HEADERS)
                 .keep_alive(false)
-                .serve_connection(TokioIo::new(stream), answer);
-            // A closed or slow connection is no failure.
+                .serve_connection(TokioIo::new(stream), service);
+            // A connection that is closed or too slow ends here.
             let _ = tokio::time::timeout(CONNECTION_TIMEOUT, connection).await;
-            drop(place);
+            drop(permit);
         });
     }
 }
@@ -96,8 +100,8 @@ pub(super) async fn serve(
 impl Site {
     async fn answer(&self, request: Request<Incoming>) -> Response<Full<Bytes>> {
         let path = request.uri().path().to_owned();
-        if let Some(refusal) = refused(request.method(), &path, request.headers(), self.address) {
-            return self.response(refusal.0, "text/plain; charset=utf-8", refusal.1);
+        if let Some((status, reason)) = refusal(request.method(), &path, request.headers(), self.address) {
+            return self.response(status, "text/plain; charset=utf-8", reason);
         }
         let query = request.uri().query().unwrap_or_default();
         let known = query.strip_prefix("after=").unwrap_or_default();
@@ -115,36 +119,45 @@ impl Site {
                 response
             }
             "/state" | "/start" => {
-                let Ok(_place) = self.long_polls.try_acquire() else {
+                let Ok(_permit) = self.long_polls.try_acquire() else {
                     return self.response(
                         StatusCode::SERVICE_UNAVAILABLE,
                         "text/plain",
-                        "too many pages wait",
+                        "too many pages are open",
                     );
                 };
                 let states = self.states.clone();
                 let state = match path.as_str() {
-                    "/state" => after(states, known.parse().unwrap_or(0), LONG_POLL_TIMEOUT).await,
-                    _ => values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.beginning()).await,
+                    "/state" => data_after(states, known.parse().unwrap_or(0), LONG_POLL_TIMEOUT).await,
+                    _ => {
+                        values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.source_json()).await
+                    }
                 };
                 self.response(StatusCode::OK, "application/json", state)
             }
-            question if QUESTIONS.contains(&question) => self.questioned(request.into_body(), question).await,
-            _ => self.response(StatusCode::NOT_FOUND, "text/plain", "no such page"),
+            path if POST_PATHS.contains(&path) => self.answer_post(request.into_body(), path).await,
+            _ => self.response(StatusCode::NOT_FOUND, "text/plain", "page not found"),
         }
     }
 
-    /// The answer to what the configurator asks.
-    async fn questioned(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
-        let asked = tokio::time::timeout(QUESTION_TIMEOUT, question(body)).await;
-        let question = match asked.unwrap_or_else(|_| Err("the question did not arrive in time".to_owned())) {
-            Ok(question) => question,
-            Err(reason) => return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason),
+    /// Answers a request of the configurator.
+    async fn answer_post(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
+        let body = tokio::time::timeout(BODY_TIMEOUT, Limited::new(body, MAX_BODY_BYTES).collect()).await;
+        let request = match body.map(|body| body.map(Collected::to_bytes)) {
+            Ok(Ok(request)) => request,
+            Ok(Err(_)) => {
+                let reason = format!("the request is larger than {} MB", MAX_BODY_BYTES >> 20);
+                return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason);
+            }
+            Err(_) => {
+                let reason = format!("the request did not arrive within {} s", BODY_TIMEOUT.as_secs());
+                return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason);
+            }
         };
         if path == "/save" {
-            return self.response(StatusCode::OK, "application/json", self.configurator.save(&question));
+            return self.response(StatusCode::OK, "application/json", self.configurator.save(&request));
         }
-        match Arc::clone(&self.configurator).answer(question).await {
+        match Arc::clone(&self.configurator).answer(request).await {
             Answer::Json(text) => self.response(StatusCode::OK, "application/json", text),
             Answer::Bytes(bytes) => self.response(StatusCode::OK, "application/octet-stream", bytes),
         }
@@ -174,29 +187,29 @@ impl Site {
     }
 }
 
-/// Why a request is not answered: it would change something, or comes from a page of elsewhere. A name that was bound to
-/// this address (DNS rebinding) stands in `Host`, a foreign page in `Origin`.
-fn refused(
+/// Returns why a request is refused: it would change something, or comes from another site's page.
+/// `Host` shows a name that was bound to this address (DNS rebinding), `Origin` another page.
+fn refusal(
     method: &Method,
     path: &str,
     headers: &HeaderMap,
     address: SocketAddr,
 ) -> Option<(StatusCode, &'static str)> {
-    let asks = *method == Method::POST && QUESTIONS.contains(&path);
-    // What may change something says where it comes from: browsers always do.
-    if asks && !headers.contains_key(ORIGIN) {
-        return Some((StatusCode::FORBIDDEN, "a question without Origin comes from no page of this server"));
+    let is_post = *method == Method::POST && POST_PATHS.contains(&path);
+    // Browsers send Origin with every POST.
+    if is_post && !headers.contains_key(ORIGIN) {
+        return Some((
+            StatusCode::FORBIDDEN,
+            "missing Origin: the request is not from a page of this server",
+        ));
     }
-    if !asks && (!matches!(*method, Method::GET | Method::HEAD) || QUESTIONS.contains(&path)) {
-        return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are answered"));
+    if !is_post && (!matches!(*method, Method::GET | Method::HEAD) || POST_PATHS.contains(&path)) {
+        return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are allowed"));
     }
     let mut hosts = headers.get_all(HOST).iter();
     let is_host = |host: &HeaderValue| host.to_str().is_ok_and(|host| is_own(host, address));
     if !matches!((hosts.next(), hosts.next()), (Some(host), None) if is_host(host)) {
-        return Some((
-            StatusCode::FORBIDDEN,
-            "Host is not this machine: open the address that view has printed",
-        ));
+        return Some((StatusCode::FORBIDDEN, "Host is not this machine: open the address that view printed"));
     }
     let is_origin = |origin: &HeaderValue| {
         origin.to_str().is_ok_and(|o| o.strip_prefix("http://").is_some_and(|host| is_own(host, address)))
@@ -204,15 +217,13 @@ fn refused(
     let is_foreign = headers.get("sec-fetch-site").is_some_and(|site| site == "cross-site");
     let navigates = headers.get("sec-fetch-mode").is_some_and(|mode| mode == "navigate");
     if !headers.get_all(ORIGIN).iter().all(is_origin) || (is_foreign && !navigates) {
-        return Some((
-            StatusCode::FORBIDDEN,
-            "Origin is another page: open the address that view has printed",
-        ));
+        return Some((StatusCode::FORBIDDEN, "Origin is another page: open the address that view printed"));
     }
     None
 }
 
-/// Whether `host` names this server: a name of the loopback with the port, or the bound address.
+/// Whether `host` names this server: a loopback name with the port, or the address on which it
+/// listens.
 fn is_own(host: &str, address: SocketAddr) -> bool {
     let port = address.port();
     let is_loopback = ["localhost", "127.0.0.1", "[::1]"].iter().any(|name| {
@@ -235,12 +246,12 @@ mod tests {
     }
 
     fn status_at(path: &str, method: Method, headers: &HeaderMap) -> Option<u16> {
-        refused(&method, path, headers, SocketAddr::from(([127, 0, 0, 1], 8737)))
+        refusal(&method, path, headers, SocketAddr::from(([127, 0, 0, 1], 8737)))
             .map(|(status, _)| status.as_u16())
     }
 
     #[test]
-    fn only_this_machine_is_answered() {
+    fn other_hosts_are_refused() {
         for own in ["127.0.0.1:8737", "localhost:8737", "LocalHost:8737", "[::1]:8737"] {
             assert_eq!(status(Method::GET, &[("host", own)]), None, "{own}");
             assert_eq!(status(Method::HEAD, &[("host", own)]), None, "{own}");
@@ -253,20 +264,20 @@ mod tests {
     }
 
     #[test]
-    fn no_other_page_is_answered() {
+    fn other_origins_are_refused() {
         let host = ("host", "127.0.0.1:8737");
         assert_eq!(status(Method::GET, &[host, ("origin", "http://127.0.0.1:8737")]), None);
         for foreign in ["http://evil.example", "null", "https://127.0.0.1:8737", "http://127.0.0.1:1"] {
             assert_eq!(status(Method::GET, &[host, ("origin", foreign)]), Some(403), "{foreign}");
         }
         assert_eq!(status(Method::GET, &[host, ("sec-fetch-site", "cross-site")]), Some(403));
-        // A link that somebody follows.
+        // A link on another page.
         let link = [host, ("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "navigate")];
         assert_eq!(status(Method::GET, &link), None);
     }
 
     #[test]
-    fn questions_come_from_the_own_page_only() {
+    fn posts_need_their_own_origin() {
         let headers = |origin: Option<&'static str>| {
             let mut headers = HeaderMap::new();
             headers.insert("host", HeaderValue::from_static("127.0.0.1:8737"));
@@ -274,7 +285,7 @@ mod tests {
             headers
         };
         let own = headers(Some("http://127.0.0.1:8737"));
-        for path in QUESTIONS {
+        for path in POST_PATHS {
             assert_eq!(status_at(path, Method::POST, &own), None);
             assert_eq!(status_at(path, Method::GET, &own), Some(405));
             assert_eq!(status_at(path, Method::POST, &headers(None)), Some(403));
@@ -286,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_can_be_changed() {
+    fn other_methods_are_refused() {
         for method in
             [Method::POST, Method::PUT, Method::DELETE, Method::TRACE, Method::OPTIONS, Method::CONNECT]
         {

@@ -1,0 +1,172 @@
+// Targets of the design, the search, and the proposed designs as cards.
+
+class Targets {
+  constructor(state, engine, curve, handles) {
+    Object.assign(this, { state, engine, curve, handles });
+    const threshold = byId('target-threshold');
+    this.listen(threshold, (value) => this.handles.set({ threshold_n: value }, 'target.threshold'), () => this.state.now.targets.threshold_n);
+    byId('remove-threshold').addEventListener('click', () => { this.handles.set({ threshold_n: null }); threshold.focus(); });
+    byId('add-friction').addEventListener('click', () => this.add());
+    for (const id of ['search', 'search-here']) byId(id).addEventListener('click', () => this.search());
+    byId('results-close').addEventListener('click', () => this.close());
+    byId('stop').addEventListener('click', () => this.engine.stop('search'));
+    state.addEventListener('change', () => this.show());
+    this.show();
+  }
+
+  add() {
+    const { friction } = this.state.now.targets;
+    const load_n = friction.length ? friction.at(-1).load_n / 2 : this.handles.frictions()[0]?.load_n ?? 40;
+    const curve = this.curve.data?.curve;
+    const friction_n = curve ? at(curve.load_n, curve.friction_n, load_n) : 5;
+    // Few digits, but never zero.
+    const rounded = (value, digits) => Number(value.toFixed(digits)) || Math.max(Number(value.toPrecision(2)), MIN_TARGET_N);
+    this.handles.set({ friction: [...friction, { load_n: rounded(load_n, 1), friction_n: rounded(friction_n, 2) }] });
+  }
+
+  // An input in newtons. An invalid text is reported while it is typed, and replaced when the input
+  // loses the focus.
+  listen(input, apply, current) {
+    const report = (text) => {
+      byId('targets-status').hidden = !text;
+      byId('targets-status').textContent = text;
+      if (text) input.setAttribute('aria-invalid', 'true'); else input.removeAttribute('aria-invalid');
+    };
+    input.addEventListener('input', () => {
+      const [text, value] = [input.value.trim(), Number(input.value)];
+      if (text !== '' && isTarget(value)) { report(''); apply(value); return; }
+      // An empty threshold removes the target; an empty friction is incomplete.
+      if (text === '' && !input.validity.badInput && input.id === 'target-threshold') { report(''); apply(null); return; }
+      report(TEXT.invalidTarget(MAX_TARGET_N));
+    });
+    input.addEventListener('blur', () => {
+      if (!input.hasAttribute('aria-invalid')) return;
+      report('');
+      input.value = current() ?? '';
+    });
+  }
+
+  // Shows a target, unless the focused input has the same number in another form.
+  fill(input, value) {
+    const typed = input.value === '' ? null : Number(input.value);
+    if (document.activeElement === input && typed === value && !input.validity.badInput) return;
+    input.value = value ?? '';
+    if (!input.hasAttribute('aria-invalid')) return;
+    input.removeAttribute('aria-invalid');
+    byId('targets-status').hidden = true;
+  }
+
+  show() {
+    this.markOutdated();
+    const { threshold_n, friction } = this.state.now.targets;
+    this.fill(byId('target-threshold'), threshold_n);
+    byId('remove-threshold').hidden = threshold_n === null;
+    byId('add-friction').hidden = friction.length >= MAX_FRICTIONS;
+    byId('search-here').hidden = threshold_n === null && !friction.length;
+    const rows = byId('target-frictions');
+    while (rows.children.length > friction.length) rows.lastChild.remove();
+    while (rows.children.length < friction.length) rows.append(this.row(rows.children.length));
+    friction.forEach((f, i) => [...rows.children[i].querySelectorAll('input')].forEach((input, k) => this.fill(input, k ? f.load_n : f.friction_n)));
+  }
+
+  row(i) {
+    const row = make('div', undefined, { class: 'target-row' });
+    const labelled = (text, key) => {
+      const label = make('label', text);
+      const input = make('input', undefined, { type: 'number', min: 0, step: key === 'load_n' ? 0.5 : 0.1, inputmode: 'decimal' });
+      this.listen(input, (value) => this.handles.setFriction(i, { ...this.state.now.targets.friction[i], [key]: value }), () => this.state.now.targets.friction[i]?.[key]);
+      label.append(input, make('span', TEXT.units.n, { class: 'unit' }));
+      return label;
+    };
+    const remove = button('×', () => this.handles.set({ friction: this.state.now.targets.friction.filter((_, k) => k !== i) }), { class: 'tiny', 'aria-label': TEXT.removeFriction(i + 1) });
+    row.append(labelled(TEXT.targetFriction, 'friction_n'), labelled(TEXT.targetLoad, 'load_n'), remove);
+    return row;
+  }
+
+  async search() {
+    const { targets, values, model } = this.state.now;
+    const isEmpty = targets.threshold_n === null && !targets.friction.length;
+    byId('targets-status').hidden = !isEmpty;
+    byId('targets-status').textContent = isEmpty ? TEXT.noTargets : '';
+    if (isEmpty) return;
+    byId('results').hidden = false;
+    byId('results').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+    byId('search').disabled = byId('search-here').disabled = true;
+    byId('stop').hidden = false;
+    this.lastSearch = null;
+    byId('results').classList.add('outdated');
+    const endReports = reportElapsed((seconds) => { byId('search-status').textContent = TEXT.searching(seconds); });
+    try {
+      const answer = await this.engine.request({ ask: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
+      this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), input: this.searchInput(targets, values, model) };
+      byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
+      this.showDesigns(answer.designs);
+    } catch (problem) {
+      byId('search-status').textContent = problem instanceof Superseded ? TEXT.stopped : problem.message;
+    } finally {
+      endReports();
+      byId('search').disabled = byId('search-here').disabled = false;
+      byId('stop').hidden = true;
+      this.markOutdated();
+    }
+  }
+
+  // Everything that the result of a search depends on: all but the pins, which it varies.
+  searchInput(targets, { 'layout.pins': _, ...values }, model) { return JSON.stringify([targets, values, model?.packed ?? null]); }
+
+  // Marks designs of an earlier design or of earlier targets.
+  markOutdated() {
+    if (!this.lastSearch || byId('search').disabled) return;
+    const { targets, values, model } = this.state.now;
+    const isOutdated = this.lastSearch.input !== this.searchInput(targets, values, model);
+    byId('results').classList.toggle('outdated', isOutdated);
+    byId('search-status').textContent = isOutdated ? TEXT.searchOutdated : this.lastSearch.summary;
+  }
+
+  close() {
+    this.engine.stop('search');
+    this.lastSearch = null;
+    this.curve.setExtra('preview', null);
+    byId('results').hidden = true;
+    byId('search').focus();
+  }
+
+  showDesigns(designs) {
+    this.curve.setExtra('preview', null);
+    byId('designs').replaceChildren(...designs.map((design, i) => this.card(design, i)));
+  }
+
+  card(design, i) {
+    const card = make('li', undefined, { class: 'design' });
+    const percent = Math.round(100 * design.probability);
+    const head = make('div', undefined, { class: 'design-head' });
+    head.append(make('b', TEXT.probability(percent)), this.spark(design.curve));
+    const bar = make('div', undefined, { class: 'bar', 'aria-hidden': 'true' });
+    bar.append(make('i', undefined, { style: `width: ${percent}%` }));
+    // First the targets, then the other properties.
+    const targets = make('ul', undefined, { class: 'targets' });
+    targets.append(...design.targets.map((target) => make('li', TEXT.targetResult(target), { class: target.is_met ? undefined : 'missed' })));
+    const hasThreshold = design.targets.some((target) => target.load_n === null);
+    const rest = [...(hasThreshold ? [] : [TEXT.switchesAt(design.threshold_n)]), TEXT.heaviest(design.friction_n)].join(', ');
+    const use = button(TEXT.useDesign, () => {
+      this.curve.setExtra('preview', null);
+      // Everything that the search does not vary stays unchanged.
+      const { 'layout.pins': _, ...values } = this.state.now.values;
+      const pins = design.values['layout.pins'];
+      this.state.change({ values: pins ? { ...values, 'layout.pins': pins } : values });
+      showToast(TEXT.designApplied);
+    }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
+    card.append(head, bar, make('p', TEXT.designPins(design.pins)), targets, make('p', rest, { class: 'dim' }), use);
+    const preview = (on) => this.curve.setExtra('preview', on ? { name: TEXT.previewCurve(i + 1), curve: design.curve } : null);
+    for (const [event, on] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]]) card.addEventListener(event, () => preview(on));
+    return card;
+  }
+
+  spark({ load_n, friction_n }) {
+    const [maxLoad, maxFriction] = [load_n.at(-1), Math.max(...friction_n, 1e-9)];
+    const drawing = svg('svg', { viewBox: '0 0 64 24', class: 'spark', 'aria-hidden': 'true' });
+    const points = load_n.map((x, i) => `${(62 * x / maxLoad + 1).toFixed(1)},${(23 - 21 * friction_n[i] / maxFriction).toFixed(1)}`);
+    drawing.append(svg('polyline', { points: points.join(' ') }));
+    return drawing;
+  }
+}

@@ -1,0 +1,173 @@
+'use strict';
+// All English text of the page. Reasons, problems and help in answers of the engine are shown as
+// they come.
+
+const TEXT = {
+  title: 'pinswitch: configure a printable friction switch',
+  brand: 'pinswitch',
+  skip: 'Skip the parameters',
+  // Texts of elements by `data-text`, accessible names by `data-name`.
+  layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
+  parameters: 'Parameters', close: 'Close',
+  find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No matching parameter.',
+  intro: 'A tendon runs over steel pins in silicone. As the load grows, the pins sink, the tendon meets the silicone, and friction rises.',
+  explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
+  assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
+  curve: 'Friction over load', load: 'Load', otherLaws: 'Other laws', keepCurve: 'Keep for comparison', clearComparison: 'Clear comparison',
+  curveTable: 'The curve as a table', why: 'Prediction status and reasons',
+  clearPins: 'Remove all pins', mirror: 'Mirror',
+  pinsHelp: 'Click a groove to add or remove a pin, drag a pin to move it. Keyboard: arrows select a groove, Space adds or removes a pin, Shift and an arrow move it.',
+  checks: 'Checks', materials: 'Bill of materials', parts: 'Printed parts', bed: 'Print bed',
+  targets: 'Design for targets', results: 'Proposed designs', targetsHelp: 'Drag the marks on the curve, or enter the load at which it should switch and the friction it should have.',
+  targetThreshold: 'Switches at', targetFriction: 'Friction of', targetLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', useDesign: 'Use this design',
+  measurements: 'Your measurements', chooseTable: 'Choose a table', useModel: 'Use this model in the design', removeModel: 'Back to the published constants',
+  measurementsHelp: 'Drop a table of plateaus (CSV) anywhere on the page. The calibration reports whether the model fits your switch, and what it lacks.',
+  filesTitle: 'Download', everything: 'All files as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
+
+  groups: {
+    switch: 'Switch', layout: 'Layout', segment: 'Segment', shell: 'Shell', fasteners: 'Fasteners', silicone: 'Silicone layer', pins: 'Pins', tendon: 'Tendon',
+    support: 'Side supports', mould: 'Casting mould', mount: 'Mount', parts: 'Parts', label: 'Label', print: 'Printer', mesh: 'Mesh', drawing: 'Drawing', friction: 'Friction curve',
+  },
+  // Names of fields whose key without its unit does not read well.
+  fields: {
+    'layout.pins': 'pins in', 'layout.wrap_angle_deg': 'wrap angle', 'segment.span_deg': 'span', 'silicone.hardness_shore_a': 'hardness',
+    'silicone.density_g_cm3': 'density', 'print.abs_density_g_cm3': 'density of the plastic', 'silicone.least_mix_g': 'smallest mix', 'mould.shrinkage_pct': 'shrinkage',
+    'print.bed_mm': 'side of the bed', 'friction.six_single_threshold': 'threshold of six-single', 'parts.proxy': 'rigid proxy', 'parts.coupon': 'fit coupon', 'label.engrave': 'engrave a label',
+  },
+  units: { deg: '°', shore_a: 'Shore A', 'g/cm3': 'g/cm³', g_cm3: 'g/cm³', pct: '%', n: 'N' },
+  groupChanged: (n) => `${n} changed`,
+  reset: (name) => `Reset ${name}`,
+  about: (name) => `About ${name}`,
+  aboutField: (f, value) => `${f.reason}. Range: ${f.range}. Default: ${value}, ${f.origin}.`,
+  slider: (name) => `${name}, slider`,
+  unchanged: (name, value) => `${name} is still ${value}.`,
+  notNumber: 'Enter a number.', notWhole: 'Enter a whole number.', notList: 'Enter groove numbers, separated by commas: 5, 8, 11.',
+  setTo: (name, value) => `Set ${name} to ${value}`,
+
+  fix: (changes) => `Fix: ${changes.join(', ')}`,
+  refused: 'This design cannot be built. The last valid design is shown in grey.', refusedShowing: (name) => `This design cannot be built. ${name} is shown in grey instead.`,
+  changedFrom: (name) => `${name}, changed`,
+
+  newtons: (v, digits = 1) => `${v.toFixed(digits)} N`,
+  frictionAt: (load) => `of friction at ${load} of load`,
+  range: (low, high) => `${low} to ${high}`,
+  curveName: (law, load, friction, low, high) => `Friction over load by ${law}: ${friction} N at ${load} N of load, band ${low} to ${high} N`,
+  trust: { published: 'published layout', interpolated: 'between measured layouts', extrapolated: 'extrapolated' },
+  trustMark: { published: '●', interpolated: '◐', extrapolated: '○' },
+  calibratedTrust: (status) => `your model, ${status}`,
+  trustName: (status) => `Prediction status: ${status}. Show the reasons`,
+  axisLoad: 'load (N)', axisFriction: 'friction (N)',
+  band: '95 % band', measuredPoint: 'measured', comparison: (name) => `comparison: ${name}`, more: (n) => `${n} more`, publishedConstants: 'published constants', calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
+  law: (law, source) => `Law of the curve, ${law}: ${source}.`,
+  thresholdCurrent: (n) => `now ${n}`, switchesAtLoad: (n) => `switches at ${n}`, target: (n) => `target: ${n}`,
+  thresholdHandle: 'Target threshold', frictionHandle: (i) => `Target friction ${i}`,
+  loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,
+  columns: { load: 'load (N)', eccentric: 'eccentric', concentric: 'concentric', friction: 'friction', low: 'low', high: 'high' },
+
+  groove: (i, pin) => `Groove ${i}, ${pin ? 'with a pin' : 'empty'}`,
+  pinsName: 'Grooves of the segment, from left to right',
+  pinsIn: (pins) => (pins.length ? `Pins in ${pins.join(', ')}` : 'No pins'),
+  pinsCount: (n, grooves) => `${n} of ${grooves} grooves`,
+  noPinsNote: 'The tendon touches the substrate at any load.',
+
+  checkPassed: 'passed', checkReview: 'to review', checkWarning: 'warning', checksSummary: (passed, all) => `${passed} of ${all} passed`, showPassed: (n) => `${n} passed`,
+  steelPins: 'steel pins', spare: (n, s) => `${n} + ${s} spare`, pour: 'silicone, to pour', mix: 'silicone, to mix', mixed: (b, a) => `${b} g base, ${a} g agent`,
+  tendon: 'tendon', coated: (d, o) => `${d} mm, ${o} mm coated`, screws: 'screws', nuts: 'nuts', inserts: 'heat-set inserts', dowels: 'dowels', forMount: 'for the mount',
+  rightSide: (l, r) => `${l} left, ${r} right`,
+  plastic: 'plastic, all printed parts', part: 'part', size: 'size (mm)', mass: 'mass (g)', volume: 'volume (mm³)', triangles: 'triangles',
+  bedCaption: (beds, bed, fits) => (fits ? `Outlines of the printed parts, to scale, on ${beds === 1 ? 'a bed' : `${beds} beds`} of ${bed} mm.` : `The parts do not fit on one bed of ${bed} mm: print them in several jobs.`),
+  bedPart: (name, x, y) => `${name}, ${x} by ${y} mm`, bedName: (n, bed) => `Outlines of ${n} printed parts on a bed of ${bed} mm`,
+
+  searching: (s) => `Searching for designs, ${s} s. You can continue to work on the page.`, searchModel: (name) => `; with the ${TEXT.modelName(name)}`, searchOutdated: 'These designs are for an earlier design or earlier targets. Find designs again for the present ones.',
+  invalidTarget: (max) => `Enter a number above 0 and up to ${max} N.`, noTargets: 'First enter a load at which it should switch, or a friction.',
+  stopped: 'Stopped.', probability: (p) => `${p} % probable`, designPins: (pins) => (pins.length ? `pins [${pins.join(', ')}]` : 'no pins'),
+  probabilityNote: (tolerance) => `Probability that a printed part is within ${formatNumber(100 * tolerance)} % of all targets.`,
+  switchesAt: (n) => (n === null ? 'does not switch' : `switches at ${n.toFixed(1)} N`), heaviest: (n) => `${n.toFixed(2)} N at the heaviest load`,
+  targetResult: ({ load_n, target_n, value_n, is_met }) => `${load_n === null ? TEXT.switchesAt(value_n) : `${value_n.toFixed(2)} N at ${formatNumber(load_n)} N of load`}; ${TEXT.target(`${formatNumber(target_n)} N`)}${is_met ? '' : ', missed'}`,
+  removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`,
+  removeThreshold: 'Remove the target threshold',
+
+  calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute, tens of thousands some minutes; you can continue to work on the page.`,
+  heldOutErrors: (before, after, newSession) => `Held-out error: ${before} N before, ${after} N after; expected in a new session: ${newSession} N.`,
+  modelApplied: 'The design uses your calibrated model. The address contains it and is long.', modelName: (file) => `model from ${file}`,
+  verdictOf: (file, verdict) => `${file}: ${verdict}`,
+  verdicts: {
+    none: 'the published model fits this table.', inconclusive: 'no effect detected, but the table cannot rule out all effects of consequence.', attributed: 'the published model lacks an effect, which the table identifies.',
+    ambiguous: 'the published model lacks an effect; several explain the table equally well.', unattributed: 'the published model lacks something that no known effect explains.',
+  },
+  detectedEffects: (effects) => `Detected: ${effects.map((rivals) => rivals.map(effectText).join(', or ')).join('; ')}.`,
+  notExcluded: (effects) => `Not ruled out: ${effects.map((id) => TEXT.effectNames[id] ?? id).join('; ')}.`,
+  effectNames: {
+    coating_ploughing: 'pins plough the coating of the tendon', coating_stiffening: 'friction of the coating grows with load', polygon_bending: 'the tendon bends sharply at single pins',
+    substrate_saturation: 'friction of the silicone is bounded', adhesion: 'the silicone adheres at zero load', dwell_relaxation: 'friction of the silicone depends on the dwell',
+    run_in: 'friction is higher in the first repetitions', wear_drift: 'friction drifts with the travel', rate_dependence: 'friction depends on the speed', direction_asymmetry: 'friction differs between the directions',
+    switching_hysteresis: 'the threshold differs when the load falls', switch_local_tension: 'the threshold follows the local tension along the wrap', fixture_compliance: 'the fixture bends under load',
+    stroke_position: 'the wrap angle changes along the stroke', guide_drag: 'the guide pulleys have drag', load_cell_offset: 'the load cell has an offset', load_cell_gain: 'the load cell has a wrong scale',
+    load_cell_nonlinearity: 'the load cell is not linear', load_cell_saturation: 'the load cell saturates', hook_omitted: 'the hook was not weighed', thermal_drift: 'the reading drifts with time',
+  },
+  tooLarge: (name, mb, limit) => `${name} has ${mb} MB. A table of plateaus has one line per plateau and at most ${limit} MB. To convert a raw log: pinswitch segment.`,
+  tooLargeConfiguration: (name, mb) => `${name} has ${mb} MB and is not a pinswitch configuration. Drop a TOML file that pinswitch wrote.`,
+  unknownType: (name) => `${name} has an unknown type. The page reads tables of plateaus (.csv), configurations and models (.toml).`,
+  notText: (name) => `${name} is not a text file. If another program wrote it, export it as CSV.`,
+  empty: (name) => `${name} is empty.`, unreadable: (name) => `${name} could not be read. Does it still exist?`, manyFiles: 'The page opens one file at a time: the first one.',
+
+  waitsFor: { search: 'Waiting for the search for designs.', calibrate: 'Waiting for the fit to your table.' },
+  generatingFiles: 'Generating the files …', filesFailed: 'No files: ', generating: (name) => `Generating ${name} …`, saved: (name) => `Saved ${name}.`, noFiles: 'This design cannot be built and has no files. Fix it first.',
+  megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
+  kinds: { stl: 'Printed parts, one per file', '3mf': 'All parts on a plate', step: 'CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'Viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
+
+  shared: 'Address copied: it contains the whole design.', shareByHand: 'Copy the address of this page: it contains the whole design.',
+  templateApplied: (name, lost) => (lost ? `${name} opened. Undo restores your ${lost} changed ${lost === 1 ? 'value' : 'values'}.` : `${name} opened.`), printerApplied: (name, kept) => `${name} applied.${kept.length ? ` Your own values are kept: ${kept.join(', ')}.` : ''}`,
+  opened: (file) => `${file} opened.`, notOpened: (file) => `Cannot open ${file}: `, designApplied: 'Applied. Undo to revert.',
+  restored: 'Your last design is restored.',
+  published: 'Published', printers: 'Printers',
+
+  hash: {
+    older: (v) => `The address has version ${v}, which does not exist: versions start at 1.`,
+    newer: (v) => `The address has version ${v}, newer than this page (1).`,
+    invalid: 'The address contains no design, or is cut off.', unchanged: 'The design is unchanged.',
+    unknown: (names) => `Unknown in the address: ${names.join(', ')}.`,
+    wrong: (names) => `Invalid value in the address: ${names.join(', ')}.`,
+    rest: 'The rest is applied.',
+    duplicate: (names) => `More than once in the address: ${names.join(', ')}. The last value applies.`,
+    manyFrictions: (max) => `The address has more than ${max} target frictions: the first ${max} apply.`,
+    model: 'The calibrated model in the address is cut off. The published constants apply.',
+  },
+
+  invalidMessage: 'The message contains neither an address nor valid values.',
+  modelTooLong: (name, length, max) => `${name} is too long for an address: ${length} characters packed, at most ${max}. Remove comments and unused entries.`,
+  setPage: 'Page of the set that this server follows',
+  saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `Not saved to ${file}: `, fileChanged: (file) => `${file} has changed: its values are shown. Undo to revert.`,
+  fileDiffers: (file) => `The design in the address differs from ${file}.`,
+  fileNewer: (file, names) => `Not saved: ${file} has changed since this page last read it (${names.join(', ')}).`,
+  savedOverridden: (file, fields) => `Saved to ${file}. Options of pinswitch view override ${fields.map(([, name]) => name).join(', ')}: restart it without ${[...new Set(fields.map(([option]) => option))].join(' and ')} to use the file's values.`,
+  fileMissing: (file) => `Not saved: ${file} does not exist any more.`, createFile: 'Create it',
+  showFile: (file) => `Show ${file}`, overwrite: 'Overwrite it', savedWithoutModel: (file) => `Saved to ${file} without the model: keep your model.toml and generate the parts with --model.`,
+
+  starting: 'Starting the engine …', working: 'Working …',
+  engineMissing: 'This copy of the page contains no engine, and there is no server. Open it with: pinswitch view',
+  engineFailed: (reason) => `The engine does not start in this browser (${reason}). Use a current Firefox, Chrome, Edge or Safari, or: pinswitch view`,
+  engineStopped: 'The engine stopped on this design and was restarted. Undo the last change, or try another value.',
+  engineStatus: (status) => `The engine did not answer: status ${status}.`,
+  serverGone: 'The server does not answer. Is pinswitch view still running? The last design is shown; the next change tries again.',
+  retry: 'Try again',
+  pictureName: 'A picture of the parts, exploded.',
+  noWebgl: 'This browser has no WebGL, which the 3D view needs. Pins, curve, checks and downloads work without it.',
+  fault: (message) => `Error in the page: ${message}. Reload it; the design is in the address.`,
+};
+
+// An effect in words, with its id in the catalogue and the reports.
+const effectText = (id) => (TEXT.effectNames[id] ? `${TEXT.effectNames[id]} (${id})` : id.replaceAll('_', ' '));
+
+// Why the engine refuses a design or a file: field, value, problem, help.
+function troubleText({ field, value, problem, help }, name = field) {
+  const subject = [name, value === null || value === undefined || value === '' ? '' : `= ${String(value).slice(0, 60)}`].filter(Boolean).join(' ');
+  return `${subject ? `${subject}: ` : ''}${problem}${help ? `; ${help}` : ''}`;
+}
+
+// The name of a field: its key without the unit, unless TEXT has one.
+function fieldName(field) {
+  if (TEXT.fields[field.path]) return TEXT.fields[field.path];
+  return field.key.replace(/_(mm|deg|n|g|pct|g_cm3|shore_a)$/, '').replaceAll('_', ' ');
+}
+const unitName = (field) => TEXT.units[field.unit] ?? (field.unit || TEXT.units[/_(shore_a|g_cm3|pct|n)$/.exec(field.key)?.[1]] || '');

@@ -1,0 +1,168 @@
+//! Search for designs that reach the targets on the plot.
+
+use pinswitch_calibration::ModelFile;
+use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_friction::FrictionCurve;
+use pinswitch_friction::published::GROOVES;
+use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Vary, Wish};
+use pinswitch_switch::design::Design;
+use pinswitch_switch::design_search::{
+    Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
+};
+use pinswitch_switch::prediction::predicted_curve;
+use serde::Serialize;
+
+use crate::Answer;
+use crate::calibrated_curve::calibrated_curve;
+use crate::calibrated_switch::CalibratedSwitch;
+use crate::prediction_cache::MODEL_NAME;
+use crate::refusal::Refusal;
+use crate::request::{SearchRequest, Values};
+use crate::values::{changed_values, configuration};
+
+/// Most designs that are returned, whatever the request.
+const MAX_DESIGNS: usize = 12;
+/// A third of the draws of the command line, since a person waits.
+const OPTIONS: Options = Options { best: 6, draws: 300, seed: 1, starts: 6 };
+
+/// One proposed design.
+#[derive(Debug, Serialize)]
+struct ProposedDesign {
+    values: Values,
+    pins: Vec<usize>,
+    targets: Vec<TargetValue>,
+    /// Probability that a made part reaches all targets.
+    probability: f64,
+    threshold_n: Option<f64>,
+    /// Friction at the heaviest load, N.
+    friction_n: f64,
+    curve: FrictionCurve,
+}
+
+/// A target and the value of the design.
+#[derive(Debug, Serialize)]
+struct TargetValue {
+    /// Load of a target friction, N; `None` for the threshold.
+    load_n: Option<f64>,
+    target_n: f64,
+    /// Value of the design, N; `None` if it does not switch.
+    value_n: Option<f64>,
+    is_met: bool,
+}
+
+/// Designs, the most probable first, with a summary of the search.
+#[derive(Debug, Serialize)]
+struct SearchResult {
+    designs: Vec<ProposedDesign>,
+    summary: String,
+    /// Largest relative deviation from a target at which a made part still counts.
+    tolerance: f64,
+}
+
+/// Answers a search.
+pub(crate) fn answer(request: &SearchRequest) -> Answer {
+    match result(request) {
+        Ok(result) => Answer::json(&result),
+        Err(refusal) => Answer::json(&serde_json::json!({ "trouble": refusal })),
+    }
+}
+
+fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
+    let base = Design::new(configuration(&request.values)?)?;
+    let ask = ask(request);
+    ask.check().map_err(Diagnostic::from_error)?;
+    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Diagnostic::from_error)?;
+    let options = Options { best: request.most.clamp(1, MAX_DESIGNS), ..OPTIONS };
+    let model = request.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose();
+    let model = model.map_err(Diagnostic::from_error)?;
+    let grooves = base.configuration().segment.grooves;
+    if model.is_some() && grooves != GROOVES {
+        let diagnostic = Diagnostic::new(format!("the calibrated rig has {GROOVES} grooves"))
+            .with_location(Location::field("segment.grooves", grooves.to_string()))
+            .with_help(format!("set it to {GROOVES}, or go back to the published constants"));
+        return Err(diagnostic.into());
+    }
+    let published = PublishedPhysics::default();
+    let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL_NAME.to_owned()));
+    let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
+    let found = search(&base, &ask, belief, options, &Silent);
+    let mut summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);
+    if found.blocked.is_some() {
+        summary.push_str("; no design reaches all targets, the nearest are shown");
+    }
+    let designs = found.proposals.iter().filter_map(|proposal| design(proposal, model.as_ref())).collect();
+    Ok(SearchResult { designs, summary, tolerance: DEFAULT_WITHIN })
+}
+
+/// Returns the targets of a request. Only the layout varies: dimensions have sliders, and would
+/// make the search many times as long.
+fn ask(request: &SearchRequest) -> Ask {
+    let about = |value| Wish::About { value, within: DEFAULT_WITHIN };
+    let threshold = request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, wish: about(n) });
+    let friction = request
+        .friction
+        .iter()
+        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, wish: about(at.friction_n) });
+    let vary = Vary { pattern: true, parameters: Vec::new() };
+    Ask { targets: threshold.into_iter().chain(friction).collect(), vary, ..Ask::default() }
+}
+
+fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesign> {
+    let design = Design::new(proposal.configuration.clone()).ok()?;
+    let curve = match model {
+        Some(model) => calibrated_curve(&design, model, MODEL_NAME).ok()?,
+        None => predicted_curve(&design),
+    };
+    Some(ProposedDesign {
+        values: changed_values(&proposal.configuration),
+        pins: proposal.pins.clone(),
+        targets: proposal.targets.iter().filter_map(|result| target_value(result, proposal)).collect(),
+        probability: proposal.probability.all,
+        threshold_n: proposal.threshold_n,
+        friction_n: proposal.friction_n,
+        curve,
+    })
+}
+
+fn target_value(result: &TargetResult, proposal: &Proposal) -> Option<TargetValue> {
+    let Wish::About { value: target_n, .. } = result.target.wish else { return None };
+    let (load_n, value_n) = match result.target.quantity {
+        Quantity::Threshold => (None, proposal.threshold_n),
+        Quantity::Friction { load_n } => (Some(load_n), Some(result.value)),
+        _ => return None,
+    };
+    Some(TargetValue { load_n, target_n, value_n, is_met: result.is_met })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(json: &str) -> SearchRequest {
+        serde_json::from_str(json).unwrap()
+    }
+
+    #[test]
+    fn proposed_designs_are_valid() {
+        let proposed = result(&request(r#"{"threshold_n": 24, "most": 2}"#)).unwrap();
+        assert!((1..=2).contains(&proposed.designs.len()));
+        for design in &proposed.designs {
+            assert!((0.0..=1.0).contains(&design.probability));
+            Design::new(configuration(&design.values).unwrap()).unwrap();
+        }
+    }
+
+    #[test]
+    fn every_design_has_every_target() {
+        let targets = request(r#"{"threshold_n": 24, "friction": [{"load_n": 40, "friction_n": 8.5}]}"#);
+        for design in &result(&targets).unwrap().designs {
+            let targets: Vec<_> = design.targets.iter().map(|t| (t.load_n, t.target_n)).collect();
+            assert_eq!(targets, [(None, 24.0), (Some(40.0), 8.5)]);
+        }
+    }
+
+    #[test]
+    fn a_negative_threshold_is_refused() {
+        assert!(result(&request(r#"{"threshold_n": -1}"#)).is_err());
+    }
+}

@@ -1,0 +1,137 @@
+//! `pinswitch view`: serves the page of a set, which follows its configuration, and the
+//! configurator.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+
+use clap::Args;
+use pinswitch_app::server::{ConfigurationSource, FieldOverride, Server, ServerError};
+use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_switch::config::Configuration;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::prediction::Prediction;
+
+use super::input::{read_file, read_text_file};
+use super::law::LawChoice;
+use super::source::Source;
+use super::write::write_back;
+use super::{Failure, print};
+
+/// Show a configuration in the browser, and change it there.
+///
+/// Serves two pages on 127.0.0.1, and answers no other sites' pages. The page of the set, at /, is
+/// rebuilt whenever the file changes; if the file becomes invalid, the page shows the error and
+/// keeps the last valid version. The configurator, at /configure, starts with the same
+/// configuration and writes the file only on request. Without a configuration, the page shows
+/// three-double and the configurator continues with its last visit. --law selects the curve of the
+/// page at /; the configurator shows the physics law next to the others. End with Ctrl-C.
+#[derive(Args, Clone, Debug)]
+#[command(mut_arg("config", |a| a.required(false)))]
+#[command(after_help = "Examples:
+  pinswitch view
+  pinswitch init three-double --out mine.toml && pinswitch view mine.toml")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    law: LawChoice,
+    /// Port to serve on; 0 takes any free port.
+    #[arg(long, default_value_t = 8737)]
+    port: u16,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Arc::new(ViewSource::new(arguments));
+    let server = Server::bind(source.clone(), arguments.port).map_err(|e| match e {
+        ServerError::Internal(diagnostic) => Failure::failed(diagnostic),
+        ServerError::Port(diagnostic) => Failure::bad_input(
+            diagnostic.with_location(Location::field("--port", arguments.port.to_string())),
+        ),
+        ServerError::Configuration(diagnostic) => Failure::bad_input(diagnostic),
+    })?;
+    let address = server.address();
+    print(format!("http://{address}\nhttp://{address}/configure\n").as_bytes())?;
+    if let Some(file) = source.file() {
+        log::info!("following {}; end with Ctrl-C", file.display());
+    }
+    server.run();
+    Ok(())
+}
+
+/// The configuration that the command line names.
+#[derive(Debug)]
+struct ViewSource {
+    source: Source,
+    law: LawChoice,
+    file: Option<PathBuf>,
+    /// This program, which also answers long requests in a process of their own.
+    program: Option<PathBuf>,
+}
+
+impl ViewSource {
+    fn new(arguments: &Arguments) -> Self {
+        let (source, law) = (arguments.source.clone(), arguments.law.clone());
+        Self { file: source.file(), program: std::env::current_exe().ok(), source, law }
+    }
+
+    fn required_file(&self) -> Result<&Path, Diagnostic> {
+        self.file.as_deref().ok_or_else(|| Diagnostic::new("the server follows a template, not a file"))
+    }
+}
+
+impl ConfigurationSource for ViewSource {
+    fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    fn is_explicit(&self) -> bool {
+        self.source.is_said()
+    }
+
+    fn overrides(&self) -> Vec<FieldOverride> {
+        let options = self.source.options();
+        options
+            .map(|(option, field)| FieldOverride { option: option.to_owned(), field: field.to_owned() })
+            .collect()
+    }
+
+    fn read(&self) -> Result<Vec<u8>, Diagnostic> {
+        read_file(self.required_file()?).map_err(|failure| diagnostic(&failure))
+    }
+
+    fn read_text(&self) -> Result<String, Diagnostic> {
+        read_text_file(self.required_file()?).map_err(|failure| diagnostic(&failure))
+    }
+
+    fn write(&self, text: &str) -> Result<(), Diagnostic> {
+        write_back(self.required_file()?, text.as_bytes()).map_err(Diagnostic::from_error)
+    }
+
+    fn configuration(&self, text: &str) -> Result<Configuration, Diagnostic> {
+        self.source.configuration_from(text).map_err(|failure| diagnostic(&failure))
+    }
+
+    fn design(&self, content: &[u8]) -> Result<Design, Diagnostic> {
+        let design = match self.file {
+            Some(_) => self.source.design_from(content.to_vec()),
+            None => self.source.design(),
+        };
+        design.map_err(|failure| diagnostic(&failure))
+    }
+
+    fn prediction(&self, design: &Design) -> Result<Prediction, Diagnostic> {
+        self.law.prediction(design).map_err(|failure| diagnostic(&failure))
+    }
+
+    fn worker(&self) -> Option<Command> {
+        let mut command = Command::new(self.program.as_ref()?);
+        command.args(["--quiet", "answer"]);
+        Some(command)
+    }
+}
+
+/// Returns the diagnostic of a failure.
+fn diagnostic(failure: &Failure) -> Diagnostic {
+    Diagnostic::new(failure.message())
+}

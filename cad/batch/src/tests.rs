@@ -118,7 +118,7 @@ fn shards_in_a_store_merge_to_one_run() {
 fn failing_variants_do_not_fail_others() {
     let (variants, source) = plan();
     for (mesh_maker, reason) in [
-        (fails as MeshMaker, "cannot put a file together: no paper left"),
+        (fails as MeshMaker, "cannot encode a file: no paper left"),
         (panics as MeshMaker, "internal error (panic); please report the configuration"),
     ] {
         let fresh = Fresh::new();

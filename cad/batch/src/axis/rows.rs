@@ -154,8 +154,8 @@ mod tests {
     fn invalid_rows_are_located() {
         for (text, expected) in [
             ("shell.with_mm\n3\n", "a.csv:1: shell.with_mm: unknown field; did you mean"),
-            ("shell.width_mm\n12\n-3\n", "a.csv:3: shell.width_mm = -3: invalid value"),
-            ("shell.width_mm\n12\n# a\n\n-3\n", "a.csv:5: shell.width_mm = -3: invalid value"),
+            ("shell.width_mm\n12\n-3\n", "a.csv:3: shell.width_mm = -3: outside 2 to 100"),
+            ("shell.width_mm\n12\n# a\n\n-3\n", "a.csv:5: shell.width_mm = -3: outside 2 to 100"),
             ("shell.width_mm,shell.wall_mm\n12\n", "a.csv:2: expected 2 cells, found 1; give one cell"),
             ("shell.width_mm,shell.wall_mm\n# a\n12\n", "a.csv:3: expected 2 cells, found 1"),
             ("shell.width_mm\n", "a.csv:1: the table has no rows"),

@@ -14,7 +14,7 @@ fn a_batch_has_parts_table_and_page() {
     let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(said.contains("b: 12 variants made, 12 refused, 0 failed"), "{said}");
     // Two pin layouts, two tendon lengths, three widths: shells and supports with labels, one coupon, one ring per width.
-    assert!(said.contains("48 part files, 28 of them different"), "{said}");
+    assert!(said.contains("48 part files, 28 of them distinct"), "{said}");
     let b = folder.path().join("b");
     let rows = table(&b);
     assert_eq!(rows.len(), VARIANTS);

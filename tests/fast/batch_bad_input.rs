@@ -21,15 +21,15 @@ fn invalid_sweeps_are_refused() {
     for (sweep, expected) in [
         (
             axes("\"shell.with_mm\" = [1]"),
-            "sweep.toml:2:19: shell.with_mm: unknown field; did you mean \"shell.width_mm\"?",
+            "sweep.toml:2:19: shell.with_mm: unknown field; help: did you mean \"shell.width_mm\"?",
         ),
         (
             axes("\"support.slots\" = { from = 1, to = 3, step = 1 }"),
-            "sweep.toml:2:19: support.slots: range over a field that does not take numbers; give a list of values",
+            "sweep.toml:2:19: support.slots: range over a field that does not take numbers; help: give a list of values",
         ),
         (
             axes("\"shell.width_mm\" = [\"wide\"]"),
-            "sweep.toml:2:20: shell.width_mm = \"wide\": not a number; give a number from 2 to 100",
+            "sweep.toml:2:20: shell.width_mm = \"wide\": not a number; help: give a number from 2 to 100",
         ),
         (
             format!(
@@ -47,11 +47,14 @@ fn invalid_sweeps_are_refused() {
         (String::new(), "sweep.toml:1:1: the sweep has no axes ([axes], [sample] or [rows])"),
         (
             axes("\"shell.width_mm\" = { from = 16, to = 12, step = 1 }"),
-            "sweep.toml:2:20: shell.width_mm = 16 to 12: from is above to; write from = 12, to = 16",
+            "sweep.toml:2:20: shell.width_mm = 16 to 12: from is above to; help: write from = 12, to = 16",
         ),
         (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2:20: shell.width_mm = 500: outside 2 to 100"),
-        ("[axis]\n".to_owned(), "sweep.toml:1:1: axis: unknown table; known are sweep, set, axes"),
-        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2:9: sweep.basis: unknown key; known are name, base"),
+        ("[axis]\n".to_owned(), "sweep.toml:1:1: axis: unknown table; help: known are sweep, set, axes"),
+        (
+            "[sweep]\nbasis = 1\n".to_owned(),
+            "sweep.toml:2:9: sweep.basis: unknown key; help: known are name, base",
+        ),
         (
             "[sweep]\nbase = \"four-double\"\n".to_owned(),
             "sweep.toml:2:8: sweep.base = \"four-double\": neither a file",
@@ -78,9 +81,9 @@ fn invalid_sweeps_are_refused() {
         ),
         (
             format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),
-            "sweep.toml:4:12: constraints.require = \"shell.width > 3\": unknown name 'shell.width'; did you mean shell.width_mm?",
+            "sweep.toml:4:12: constraints.require = \"shell.width > 3\": unknown name 'shell.width'; help: did you mean shell.width_mm?",
         ),
-        ("[axes\n".to_owned(), "sweep.toml:1:6: syntax: "),
+        ("[axes\n".to_owned(), "sweep.toml:1:6: invalid TOML: "),
     ] {
         let folder = with_sweep(&sweep);
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
@@ -159,7 +162,7 @@ fn unwritable_destinations_are_refused() {
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", out]);
         let shown = pinswitch_diagnostic::excerpt(out, 160);
         assert!(code == Some(2) && error.starts_with(&format!("error: {shown}")), "{error}");
-        assert!(error.contains("; give a") || error.contains("give another --out"), "{error}");
+        assert!(error.contains("; help: give a") || error.contains("give another --out"), "{error}");
     }
 }
 

@@ -144,7 +144,7 @@ fn files_of_other_commands_are_recognised() {
     for (file, command) in given {
         let (code, said) = ended(folder.path(), &["generate", &file]);
         assert!(
-            code == Some(2) && said.contains(command) && said.contains("of no configuration"),
+            code == Some(2) && said.contains(command) && said.contains("not a configuration"),
             "{file}: {said}"
         );
     }

@@ -100,7 +100,7 @@ fn invalid_input_gives_one_error() {
     std::fs::write(path.join("runs.csv"), "series,substrate\n1,glass\n").unwrap();
     for (arguments, words) in [
         ("experiment empty --out next", "empty/report.json: cannot read"),
-        ("experiment other --out next", "other/report.json: missing field"),
+        ("experiment other --out next", "missing field `schema`"),
         (
             "experiment other --rig rig.toml --out next",
             "rig.toml:1:11: loads_g = 0 weights: 1 to 40 weights are possible",

@@ -139,7 +139,8 @@ fn problems_are_located() {
         let (code, said) = ended(at, &arguments);
         assert_eq!(code, Some(2), "{said}");
         assert!(
-            said.contains("bad.toml:12:24: unknown variable 'sped_pct'; did you mean speed_pct?"),
+            said.contains("bad.toml:12:24: unknown variable 'sped_pct'\n")
+                && said.contains("\n  help: did you mean speed_pct?"),
             "{said}"
         );
     }

@@ -18,6 +18,7 @@ use pinswitch_slicer::Slicer;
 use pinswitch_solid::verification::Kernel;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
+use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
 use pinswitch_switch::parts::{Part, fit_on_bed, printed};
@@ -191,8 +192,12 @@ impl<'a> VariantMaker<'a> {
         match self.build(variant, &accepted) {
             Ok(manifest) => Ok(VariantOutcome::Made { manifest, reused: false }),
             Err(ContentError::Destination(e)) if e.is_fatal() => Err(e),
-            Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
-                Ok(VariantOutcome::Refused(e.into()))
+            Err(ContentError::Set(SetError::Build(error))) => {
+                // A part that cannot be built is the fault of a value, if another value makes it buildable.
+                match feasibility::explained(error, accepted.design.configuration()) {
+                    BuildError::Configuration(e) => Ok(VariantOutcome::Refused(e.into())),
+                    other => Ok(VariantOutcome::Failed(ContentError::Set(SetError::Build(other)).into())),
+                }
             }
             Err(e) => Ok(VariantOutcome::Failed(e.into())),
         }

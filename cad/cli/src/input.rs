@@ -108,7 +108,7 @@ mod tests {
         let location = diagnostic.location().unwrap();
         assert_eq!((location.file.as_deref(), location.line), (Some(&*file.to_string_lossy()), Some(2)));
         assert!(error.to_string().contains("byte 0xff"), "{error}");
-        assert_eq!(diagnostic.help(), Some("give a text file, saved as UTF-8"));
+        assert_eq!(diagnostic.help(), Some("save the file as UTF-8 text"));
     }
 
     #[test]

@@ -11,6 +11,8 @@ use crate::{Location, excerpt, neutral};
 
 /// Most characters of a problem, of a help and of each cause: more would not be read.
 const LONGEST: usize = 520;
+/// Most characters of the one-line form.
+const LONGEST_LINE: usize = 590;
 /// Most causes that are shown.
 const MAX_CAUSES: usize = 5;
 
@@ -170,11 +172,12 @@ fn shown(text: &str) -> String {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.headline())?;
-        match &self.help {
-            Some(help) => write!(f, "; {}", shown(help)),
-            None => Ok(()),
-        }
+        let headline = self.headline();
+        let line = match &self.help {
+            Some(help) => format!("{headline}; {}", shown(help)),
+            None => headline,
+        };
+        f.write_str(&excerpt(&line, LONGEST_LINE))
     }
 }
 

@@ -120,8 +120,8 @@ fn with_reasons(start: &Configuration, mut found: Configuration, subject: &str) 
     Proposal { configuration: found, changes }
 }
 
-/// The error with the nearest feasible values of `configuration`; unchanged where none is found.
-fn explained(error: BuildError, configuration: &Configuration) -> BuildError {
+/// Returns the error with the nearest feasible values of `configuration`; unchanged where none is found.
+pub fn explained(error: BuildError, configuration: &Configuration) -> BuildError {
     let problem = Problem::new(configuration, &error);
     let found = search::proposals(&problem);
     let Some(first) = found.first() else { return error };

@@ -180,7 +180,7 @@ fn malformed_targets_are_refused() {
         ),
         (
             &["design", "--friction", "at most 5 at 50", "--friction", "at least 8 at 30"],
-            "friction grows with load",
+            "friction increases with load",
         ),
         (&["design", "--threshold", "1e-30"], "0.2 to 1000"),
         (&["design", "--threshold", "20", "--pins", "6..3"], "runs backwards"),
@@ -189,7 +189,7 @@ fn malformed_targets_are_refused() {
         (&["design", "--threshold", "20", "--load-range", "50..3"], "runs backwards"),
         (&["design", "--threshold", "20", "--vary", "thickness"], "layer_mm"),
         (&["design", "--threshold", "20", "--vary", "layer_mm=1..99"], "0.3 to 10"),
-        (&["design", "--threshold", "20", "--outer-radius=-3"], "above 0"),
+        (&["design", "--threshold", "20", "--outer-radius=-3"], "outside 0.1 to 1000 mm"),
         (&["design", "--threshold", "20", "--best", "0"], "--best = 0"),
         (&["design", "--ask", "no-such.toml"], "cannot read"),
         (&["design", "--ask", "odd.toml"], "vary.thickness"),

@@ -26,7 +26,7 @@ fn a_batch_has_parts_table_and_page() {
         let of = b.join("variants").join(&row["id"]);
         if row["status"] == "refused" {
             assert!(
-                row["reason"].contains("segment.grooves = 60 makes grooves overlap") && !of.exists(),
+                row["reason"].contains("segment.grooves = 60: grooves overlap") && !of.exists(),
                 "{row:?}"
             );
             continue;

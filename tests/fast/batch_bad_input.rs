@@ -83,7 +83,7 @@ fn invalid_sweeps_are_refused() {
             format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),
             "sweep.toml:4:12: constraints.require = \"shell.width > 3\": unknown name 'shell.width'; help: did you mean shell.width_mm?",
         ),
-        ("[axes\n".to_owned(), "sweep.toml:1:6: invalid TOML: "),
+        ("[axes\n".to_owned(), "sweep.toml:1:6: syntax: "),
     ] {
         let folder = with_sweep(&sweep);
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);

@@ -2,7 +2,6 @@
 
 use std::io::{Cursor, Write};
 
-use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::to_toml;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::formats::{ALL, named};
@@ -58,7 +57,7 @@ impl FileSet {
         let configuration = configuration(&design.values)?;
         let source = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
         let (built, prediction) = build(cache, configuration, design.model.as_deref())?;
-        let formats = named(&[ALL]).map_err(Diagnostic::from)?;
+        let formats = named(&[ALL])?;
         let set = Set::new(&built, &prediction, &formats).map_err(set_refusal)?;
         let set = set.made_from(SourceEntry::new(source.name.clone())).map_err(set_refusal)?;
         let files = std::iter::once(source).chain(set.files).collect();

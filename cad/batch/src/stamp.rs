@@ -174,7 +174,7 @@ impl Stamp {
     /// stamp of this sweep is replaced.
     ///
     /// # Errors
-    /// As [`Self::check`].
+    /// The stamp cannot be written.
     pub fn write(&self, destination: &Destination) -> Result<bool, StampError> {
         // Another shard may write the stamp at the same time: both write the same bytes.
         let existed = destination.get(STAMP)?.is_some();

@@ -4,7 +4,6 @@ use clap::Args;
 use pinswitch_batch::{Destination, MergeError, merge};
 use pinswitch_diagnostic::Diagnostic;
 
-use super::failure::unconverted;
 use super::{Failure, print_json};
 
 /// Join the shards of a batch.
@@ -29,7 +28,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let open = |place: &String| {
-        Destination::open(place, ".partial-merge").map_err(|e| Failure::bad_input(unconverted(e)))
+        Destination::open(place, ".partial-merge").map_err(Failure::bad_input)
     };
     let out = match (&arguments.out, arguments.places.as_slice()) {
         (Some(out), _) => out,
@@ -42,8 +41,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let places = arguments.places.iter().map(open).collect::<Result<Vec<_>, _>>()?;
     let tally = merge(&places, &open(out)?).map_err(|e| match e {
-        MergeError::Products(_) | MergeError::Destination(_) => Failure::failed(unconverted(e)),
-        other => Failure::bad_input(unconverted(other)),
+        MergeError::Products(_) | MergeError::Destination(_) => Failure::failed(e),
+        other => Failure::bad_input(other),
     })?;
     if arguments.json {
         print_json(&tally)?;

@@ -15,7 +15,6 @@ use pinswitch_batch::{
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 
-use super::failure::unconverted;
 use super::second_kernel::requested_kernel;
 use super::terminal::print_line;
 use super::{Failure, print_json, print_text, slicing};
@@ -95,7 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || {
         Destination::open(out, &partial_folder(arguments.shard))
-            .map_err(|e| Failure::bad_input(unconverted(e)))
+            .map_err(Failure::bad_input)
     };
     if arguments.dry_run {
         let mut failing = Vec::new();
@@ -173,8 +172,8 @@ fn count(arguments: &Arguments, sweep: &UncheckedSweep) -> Result<u64, Failure> 
 
 fn refused(error: RunError) -> Failure {
     match error {
-        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(unconverted(error)),
-        other => Failure::failed(unconverted(other)),
+        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(error),
+        other => Failure::failed(other),
     }
 }
 
@@ -272,7 +271,7 @@ fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
     let threads = pool.current_num_threads();
     let estimate = pool
         .install(|| estimate(variants, arguments.shard, threads, mesh_file))
-        .map_err(|e| Failure::failed(unconverted(e)))?;
+        .map_err(Failure::failed)?;
     if arguments.slice {
         log::info!("--slice takes some seconds more per distinct part, which the time does not include");
     }

@@ -29,7 +29,7 @@ pub(super) fn proposals(problem: &Problem<'_>) -> Vec<Configuration> {
         found = singles(problem, &lines);
     }
     if found.is_empty() {
-        found.extend(verified(problem, |problem| combined(problem)));
+        found.extend(verified(problem, combined));
     }
     found
 }

@@ -5,6 +5,9 @@
 //! there cannot cancel itself here. `tests/harness` includes this file, too. It supports the kinds
 //! of entity that the writer uses, walls about vertical axes, and refuses everything else.
 
+// Only tests read with it; the bytes that the writer makes do not depend on these functions.
+#![allow(clippy::disallowed_methods)]
+
 use std::collections::BTreeMap;
 
 /// Largest distance, mm, between coordinates that must agree.

@@ -153,7 +153,10 @@ fn merged_shards_equal_one_run() {
     }
     let (code, said) = ended(path, &["merge", "shards"]);
     assert_eq!(code, Some(2));
-    assert!(said.contains("variants 17 to 24 of 24 are in no finished shard; run --shard 3/3"), "{said}");
+    assert!(
+        said.contains("variants 17 to 24 of 24 are in no finished shard\n  help: run --shard 3/3"),
+        "{said}"
+    );
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "3/3"]);
     done(path, &["merge", "shards"]);
     let mut merged = hashes(&path.join("shards"));

@@ -132,7 +132,7 @@ fn folders_with_other_files_stay_unchanged() {
     assert_eq!(code, Some(2));
     assert_eq!(
         error,
-        "error: b contains another sweep (\"small\"); give another --out (nothing was changed)"
+        "error: b contains another sweep (\"small\"); help: give another --out (nothing was changed)"
     );
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/thesis"), "dear").unwrap();
@@ -160,7 +160,7 @@ fn unwritable_destinations_are_refused() {
     let long = "x".repeat(300);
     for out in ["file", "file/b", "/proc/b", "gopher://bucket/b", "s4://bucket/b", &long] {
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", out]);
-        let shown = pinswitch_diagnostic::excerpt(out, 160);
+        let shown = &out[..out.len().min(40)];
         assert!(code == Some(2) && error.starts_with(&format!("error: {shown}")), "{error}");
         assert!(error.contains("; help: give a") || error.contains("give another --out"), "{error}");
     }

@@ -51,7 +51,7 @@ pub struct RawLog {
 /// let rows = simulate(&plan).rows;
 /// let run = RawRun::new(&plan, &rows, "plan.toml")?;
 /// let log = run.log(0).ok_or("a run of one log")?;
-/// let read = |_: &str| Ok::<_, String>(log.text.clone().into_bytes());
+/// let read = |_: &str| std::io::Result::Ok(log.text.clone().into_bytes());
 /// let segmented = segment_run(&run.description(""), "run.toml", read)?;
 /// assert_eq!(segmented.rows.len(), log.truth.len(), "every repetition has its plateau");
 /// # Ok::<(), Box<dyn std::error::Error>>(())

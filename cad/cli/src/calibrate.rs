@@ -137,7 +137,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Reads and joins the tables; also returns their names for errors.
 fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
-    let bad_input = |e| Failure::bad_input(unconverted(e));
+    let bad_input = Failure::bad_input;
     let mut tables = Vec::new();
     for path in paths {
         let name = path.display().to_string();
@@ -204,7 +204,7 @@ fn published(out: &Path) -> Result<(), Failure> {
             constants.join(", ")
         ));
     }
-    let plot = published_plot(&all).map_err(|e| Failure::failed(unconverted(e)))?;
+    let plot = published_plot(&all).map_err(Failure::failed)?;
     let html = published_page(&all, &plot);
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
     let files = [
@@ -221,10 +221,8 @@ fn published(out: &Path) -> Result<(), Failure> {
 /// Makes every file in memory, before the first one is written.
 fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<Vec<OutputFile>, Failure> {
     let (selection, data) = (&calibration.selection, &calibration.data);
-    let toml = |fitted| {
-        ModelFile::new(fitted, data, selection.noise).to_text().map_err(|e| Failure::failed(unconverted(e)))
-    };
-    let plots = plots(calibration).map_err(|e| Failure::failed(unconverted(e)))?;
+    let toml = |fitted| ModelFile::new(fitted, data, selection.noise).to_text().map_err(Failure::failed);
+    let plots = plots(calibration).map_err(Failure::failed)?;
     let title =
         std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let html = page(&title, calibration, &plots);

@@ -7,7 +7,6 @@ use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::design::Design;
 
 use super::Failure;
-use super::failure::unconverted;
 use super::input::read_text_file;
 
 /// Reads a model.toml or baseline.toml that `calibrate` wrote; also returns its name for errors.
@@ -17,7 +16,7 @@ use super::input::read_text_file;
 pub(super) fn read_model(path: &Path) -> Result<(ModelFile, String), Failure> {
     let name = path.display().to_string();
     let text = read_text_file(path)?;
-    let model = ModelFile::parse(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let model = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
     Ok((model, name))
 }
 

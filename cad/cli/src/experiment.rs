@@ -70,13 +70,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rig = match &arguments.rig {
         None => RigLimits::default(),
         Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
-            .map_err(|e| Failure::bad_input(unconverted(e)))?,
+            .map_err(Failure::bad_input)?,
     };
     let report = report(folder)?;
     let (model, _) = read_model(&folder.join("model.toml"))?;
     let path = folder.join("residuals.csv");
     let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
-        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+        .map_err(Failure::bad_input)?;
     let name = folder.display().to_string();
     let vocabulary = with_form(arguments.effects.vocabulary()?, folder, &report)?;
     if let Some(id) = undefined_effect(&report, &model, &vocabulary) {
@@ -151,9 +151,7 @@ fn with_form(vocabulary: Vocabulary, folder: &Path, report: &Report) -> Result<V
         return Ok(vocabulary);
     }
     let path = folder.join(FORM_FILE);
-    vocabulary
-        .read(&read_text_file(&path)?, &path.display().to_string())
-        .map_err(|e| Failure::bad_input(unconverted(e)))
+    vocabulary.read(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)
 }
 
 /// Formats a probability in percent, never as 0 or 100.

@@ -119,8 +119,8 @@ pub(super) struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let path = JointPath::new(arguments.wrap_at_straight, arguments.wrap_per_flexion)
-        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let path =
+        JointPath::new(arguments.wrap_at_straight, arguments.wrap_per_flexion).map_err(Failure::bad_input)?;
     let joints_deg = flexions(arguments.joint, &path)?;
     if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && *load <= MAX_LOAD_N)) {
         return Err(Failure::bad_input(
@@ -180,7 +180,7 @@ fn layout(
         .into_iter()
         .map(|load_n| over_joint(contact, path, joints_deg, load_n, predicted))
         .collect::<Result<_, _>>()
-        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+        .map_err(Failure::bad_input)?;
     Ok(Layout {
         name: design.configuration().switch.name.to_string(),
         law: curve.law,
@@ -208,7 +208,7 @@ fn files(report: &Report) -> Result<Vec<OutputFile>, Failure> {
         })
         .collect();
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
-    let svg = finger_svg(&layouts).map_err(|e| Failure::failed(unconverted(e)))?;
+    let svg = finger_svg(&layouts).map_err(Failure::failed)?;
     Ok(vec![
         file("finger.svg", svg.into_bytes()),
         file("finger.csv", csv(report).into_bytes()),

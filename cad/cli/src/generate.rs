@@ -131,14 +131,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // What the slicer refuses is said at the end: the parts are made all the same.
     let sliced = slicer.map(|slicer| slicing::slicing(slicer, &built, &prediction)).transpose();
     if let Ok(Some((slicing, files))) = &sliced {
-        set = set.sliced(slicing.entry(), files.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
+        set = set.sliced(slicing.entry(), files.clone()).map_err(Failure::failed)?;
     }
     if let Some(fix) = &fix {
-        set = set
-            .with_file(OutputFile::new(FIXED, fix.text.clone().into_bytes()))
-            .map_err(|e| Failure::failed(unconverted(e)))?;
+        set =
+            set.with_file(OutputFile::new(FIXED, fix.text.clone().into_bytes())).map_err(Failure::failed)?;
     }
-    let set = set.made_from(origin.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
+    let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
     for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
         let location = Location::file(folder.join(changed).display().to_string());
         warn(Diagnostic::new("was changed since it was written, and stays").with_location(location));
@@ -151,7 +150,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_text(&slicing.table())?;
     }
     if arguments.json {
-        print_data(&set.manifest.bytes().map_err(|e| Failure::failed(unconverted(e)))?)?;
+        print_data(&set.manifest.bytes().map_err(Failure::failed)?)?;
     }
     Ok(())
 }

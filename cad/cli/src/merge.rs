@@ -27,9 +27,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let open = |place: &String| {
-        Destination::open(place, ".partial-merge").map_err(Failure::bad_input)
-    };
+    let open = |place: &String| Destination::open(place, ".partial-merge").map_err(Failure::bad_input);
     let out = match (&arguments.out, arguments.places.as_slice()) {
         (Some(out), _) => out,
         (None, [only]) => only,

@@ -14,7 +14,6 @@ use pinswitch_report::contact_svg;
 use pinswitch_switch::output::OutputFile;
 use serde::Serialize;
 
-use super::failure::unconverted;
 use super::source::Source;
 use super::terminal::to_json;
 use super::{Failure, print_json, print_text};
@@ -55,7 +54,7 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
-    let report = report().map_err(|e| Failure::failed(unconverted(e)))?;
+    let report = report().map_err(Failure::failed)?;
     if let Some(folder) = &arguments.out {
         let contact = design.contact();
         if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
@@ -74,9 +73,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 contact_profile(contact, load, Direction::Eccentric).map(|profile| (load, profile))
             })
             .collect::<Result<Vec<_>, _>>()
-            .map_err(|e| Failure::failed(unconverted(e)))?;
+            .map_err(Failure::failed)?;
         let title = format!("{}: the tendon over its pins", design.configuration().switch.name);
-        let svg = contact_svg(&title, &profiles).map_err(|e| Failure::failed(unconverted(e)))?;
+        let svg = contact_svg(&title, &profiles).map_err(Failure::failed)?;
         let files = [("contact.svg", svg.into_bytes()), ("physics.json", to_json(&report)?)]
             .map(|(name, bytes)| OutputFile { name: name.to_owned(), bytes });
         write_set(folder, &files)?;

@@ -7,7 +7,6 @@ use pinswitch_calibration::inference::Levels;
 use pinswitch_simulation::{NoisePlan, Plan, power};
 
 use super::calibrated_curve::read_model;
-use super::failure::unconverted;
 use super::user_effects::UserEffects;
 use super::{Failure, print_json, print_text};
 use crate::input::read_text_file;
@@ -37,7 +36,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.plan.display().to_string();
     let text = read_text_file(&arguments.plan)?;
     let vocabulary = arguments.effects.vocabulary()?;
-    let bad_input = |e| Failure::bad_input(unconverted(e));
+    let bad_input = Failure::bad_input;
     let mut plan = Plan::parse_among(&text, &name, &vocabulary).map_err(bad_input)?;
     if let Some(model) = &arguments.noise {
         plan.noise = noise_of(model)?;

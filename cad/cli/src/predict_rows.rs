@@ -6,7 +6,6 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 use pinswitch_calibration::table::PlateauTable;
 
 use super::calibrated_curve::read_model;
-use super::failure::unconverted;
 use super::source::Source;
 use super::{Failure, print_data};
 use crate::write::write_file;
@@ -63,9 +62,8 @@ impl Rows {
         let (model, model_name) = read_model(model)?;
         let bytes = crate::input::read_file(rows)?;
         let table = PlateauTable::read_conditions(bytes.as_slice(), &rows.display().to_string())
-            .map_err(|e| Failure::bad_input(unconverted(e)))?;
-        let (predicted, sd) =
-            model.predict(&table.rows, &model_name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+            .map_err(Failure::bad_input)?;
+        let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {
             Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::from),

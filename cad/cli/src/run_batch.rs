@@ -92,10 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let range = arguments.shard.range(count);
     let variants = Variants::new(counted.check().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
-    let open = || {
-        Destination::open(out, &partial_folder(arguments.shard))
-            .map_err(Failure::bad_input)
-    };
+    let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
     if arguments.dry_run {
         let mut failing = Vec::new();
         if arguments.out.is_some() {
@@ -269,9 +266,8 @@ fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
     let threads = pool.current_num_threads();
-    let estimate = pool
-        .install(|| estimate(variants, arguments.shard, threads, mesh_file))
-        .map_err(Failure::failed)?;
+    let estimate =
+        pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;
     if arguments.slice {
         log::info!("--slice takes some seconds more per distinct part, which the time does not include");
     }

@@ -12,7 +12,6 @@ use pinswitch_report::log_svg;
 use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
 
-use super::failure::unconverted;
 use super::terminal::to_json;
 use super::{Failure, print_text};
 use crate::write::write_set;
@@ -39,7 +38,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.run.display().to_string();
     let text = crate::input::read_text_file(&arguments.run)?;
-    let plan = RunPlan::parse(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let plan = RunPlan::parse(&text, &name).map_err(Failure::bad_input)?;
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
     let stem =
         arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
@@ -54,11 +53,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                     .with_help("copy it into the folder, or allow it with --read-outside"),
             ));
         }
-        let (log, segmented) = run
-            .add(series, &read_log(&path)?, &path.display().to_string())
-            .map_err(|e| Failure::bad_input(unconverted(e)))?;
+        let (log, segmented) =
+            run.add(series, &read_log(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
         if !arguments.no_plots {
-            let svg = log_svg(&series.file, &log, &segmented).map_err(|e| Failure::failed(unconverted(e)))?;
+            let svg = log_svg(&series.file, &log, &segmented).map_err(Failure::failed)?;
             let log_stem =
                 series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
             // The name of a log may be a path; its figure is a file next to the table.

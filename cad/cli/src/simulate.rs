@@ -18,7 +18,6 @@ use pinswitch_switch::output::OutputFile;
 use rayon::prelude::*;
 
 use super::calibrated_curve::read_model;
-use super::failure::unconverted;
 use super::power::noise_of;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
@@ -137,9 +136,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return rehearsal(arguments, runs, out);
     }
     let (plan, name) = plan(arguments)?;
-    let text = plan.to_text().map_err(|e| Failure::failed(unconverted(e)))?;
+    let text = plan.to_text().map_err(Failure::failed)?;
     let simulated = simulate(&plan);
-    simulated.check(&name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    simulated.check(&name).map_err(Failure::bad_input)?;
     let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
     files.extend([
@@ -156,11 +155,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Simulates planned runs on the rig of a model or of a plan, and writes their table.
 fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failure> {
     let name = runs.display().to_string();
-    let runs = read_runs(&read_text_file(runs)?, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let runs = read_runs(&read_text_file(runs)?, &name).map_err(Failure::bad_input)?;
     let rig = match &arguments.rig {
         None => RigLimits::default(),
         Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
-            .map_err(|e| Failure::bad_input(unconverted(e)))?,
+            .map_err(Failure::bad_input)?,
     };
     let rows = match &arguments.model {
         Some(path) => {
@@ -175,7 +174,7 @@ fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
             plan.wrap_angle_deg = rig.wrap_angle_deg.unwrap_or(plan.wrap_angle_deg);
             let rows = rows_of(&runs, &rig, "");
             let simulated = simulate_rows(&plan, rows);
-            simulated.check(&name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+            simulated.check(&name).map_err(Failure::bad_input)?;
             simulated.rows
         }
     };
@@ -186,7 +185,7 @@ fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
 /// Returns the plan with the effects of the command line, and its name for errors.
 fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
     let vocabulary = arguments.vocabulary.vocabulary()?;
-    let bad_input = |e| Failure::bad_input(unconverted(e));
+    let bad_input = Failure::bad_input;
     let (mut plan, name) = match &arguments.plan {
         Some(path) => {
             let name = path.display().to_string();
@@ -223,7 +222,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
 
 /// Returns the description of a raw run, its logs, their true plateaus, and the faults that were added.
 fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputFile>, Failure> {
-    let run = RawRun::new(plan, rows, name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let run = RawRun::new(plan, rows, name).map_err(Failure::bad_input)?;
     let failed_io = |e: std::io::Error| Failure::failed(Diagnostic::from_error(e));
     let mut files = Vec::new();
     let mut truth = "file,direction,repetition,force_N\n".to_owned();

@@ -136,7 +136,7 @@ impl Source {
     pub(super) fn load_fixed(&self) -> Result<(LoadedDesign, Fix), Failure> {
         let (text, file, kind) = read_configuration_text(self.config())?;
         let (configuration, _) = self.configuration_of_text(&text, &file)?;
-        let proposal = feasibility::repair(&configuration).map_err(|e| Failure::failed(unconverted(e)))?;
+        let proposal = feasibility::repair(&configuration).map_err(Failure::failed)?;
         let proposal = proposal.unwrap_or(Proposal { configuration, changes: Vec::new() });
         let (written, _) = read(&text, &file).map_err(Failure::bad_input)?;
         let text_of_fix =

@@ -6,7 +6,6 @@ use clap::Args;
 use pinswitch_calibration::effects::Vocabulary;
 
 use super::Failure;
-use super::failure::unconverted;
 
 /// Files with user-defined effects.
 #[derive(Args, Clone, Debug)]
@@ -24,9 +23,7 @@ impl UserEffects {
     pub(super) fn vocabulary(&self) -> Result<Vocabulary, Failure> {
         self.user_effects.iter().try_fold(Vocabulary::built_in(), |vocabulary, path| {
             let text = crate::input::read_text_file(path)?;
-            vocabulary
-                .read(&text, &path.display().to_string())
-                .map_err(|e| Failure::bad_input(unconverted(e)))
+            vocabulary.read(&text, &path.display().to_string()).map_err(Failure::bad_input)
         })
     }
 }

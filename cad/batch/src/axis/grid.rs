@@ -70,13 +70,21 @@ mod tests {
             ("shell.width_mm", "{ from = 10, to = 12 }", "shell.width_mm: range without step or count"),
             ("shell.width_mm", "{ from = 10, to = 12, step = 0 }", "shell.width_mm.step = 0: not above 0"),
             ("shell.width_mm", "{ from = 10, to = 12, by = 1 }", "shell.width_mm.by: unknown key of a range"),
-            ("shell.width_mm", "{ from = 10, to = 200, step = 1 }", "shell.width_mm = 200.0: outside 2 to 100"),
+            (
+                "shell.width_mm",
+                "{ from = 10, to = 200, step = 1 }",
+                "shell.width_mm = 200.0: outside 2 to 100",
+            ),
             (
                 "segment.grooves",
                 "{ from = 3, to = 5, count = 9 }",
                 "segment.grooves.count = 9: only 3 different values from 3 to 5; lower count to 3",
             ),
-            ("segment.grooves", "{ from = 3, to = 5, step = 0.5 }", "segment.grooves = 3.5: not a whole number"),
+            (
+                "segment.grooves",
+                "{ from = 3, to = 5, step = 0.5 }",
+                "segment.grooves = 3.5: not a whole number",
+            ),
         ] {
             let error = values(path, text).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");

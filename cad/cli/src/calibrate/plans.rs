@@ -94,7 +94,7 @@ fn form_of(folder: &Path) -> Result<Option<Vocabulary>, Failure> {
     }
     let (text, name) = (read_text_file(&path)?, path.display().to_string());
     let vocabulary = Vocabulary::built_in().read(&text, &name);
-    vocabulary.map(Some).map_err(|e| Failure::bad_input(unconverted(e)))
+    vocabulary.map(Some).map_err(Failure::bad_input)
 }
 
 /// Adds the forms that the plans test to a vocabulary, unless it defines them under any name.
@@ -114,9 +114,7 @@ pub(super) fn with_forms(vocabulary: Vocabulary, plans: &[PathBuf]) -> Result<Vo
             return Ok(vocabulary);
         }
         let path = folder_of(folder).join(FORM_FILE);
-        vocabulary
-            .read(&read_text_file(&path)?, &path.display().to_string())
-            .map_err(|e| Failure::bad_input(unconverted(e)))
+        vocabulary.read(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)
     })
 }
 
@@ -136,15 +134,14 @@ fn runs_of(folder: &Path) -> Result<(Vec<PlannedRun>, String), Failure> {
                 .with_help(GIVE_PLAN),
         ));
     }
-    let runs = read_runs(&read_text_file(&path)?, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let runs = read_runs(&read_text_file(&path)?, &name).map_err(Failure::bad_input)?;
     Ok((runs, name))
 }
 
 /// Matches a table with the runs of a plan.
 fn match_table(runs: &[PlannedRun], table: &Path) -> Result<PlanMatch, Failure> {
     let name = table.display().to_string();
-    let table = PlateauTable::read(read_file(table)?.as_slice(), &name)
-        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let table = PlateauTable::read(read_file(table)?.as_slice(), &name).map_err(Failure::bad_input)?;
     Ok(PlanMatch::new(runs, &table.rows))
 }
 

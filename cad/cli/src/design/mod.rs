@@ -21,7 +21,6 @@ use pinswitch_switch::request::{Parameter, Quantity, Request};
 use serde::Serialize;
 
 use super::calibrated_curve::read_model;
-use super::failure::unconverted;
 use super::source::Source;
 use super::terminal::to_json;
 use super::{Failure, print_json, print_text};
@@ -95,9 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.source.with_preset(request.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
     check_pins(&request, base.configuration())?;
-    request
-        .check_loads(load_range_n(base.configuration(), &request))
-        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+    request.check_loads(load_range_n(base.configuration(), &request)).map_err(Failure::bad_input)?;
     if arguments.model.is_some() {
         check_model_scope(&request, base.configuration())?;
     }
@@ -223,7 +220,7 @@ fn files(found: &Found, report: &Report<'_>, request: &Request) -> Result<Vec<Ou
         })
         .collect();
     let svg = pareto_svg(&found.candidates, &chosen, target_region(request, found.range_n))
-        .map_err(|e| Failure::failed(unconverted(e)))?;
+        .map_err(Failure::failed)?;
     files.push(OutputFile { name: "pareto.svg".to_owned(), bytes: svg.into_bytes() });
     files.push(OutputFile { name: "design.json".to_owned(), bytes: to_json(report)? });
     Ok(files)

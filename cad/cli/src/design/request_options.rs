@@ -10,7 +10,6 @@ use pinswitch_switch::request::{
 };
 
 use crate::Failure;
-use crate::failure::unconverted;
 use crate::range::Range;
 
 /// Targets, limits, and the parameters that may vary.
@@ -76,7 +75,7 @@ impl RequestOptions {
             Some(path) => {
                 let name = path.display().to_string();
                 let text = crate::input::read_text_file(path)?;
-                Request::read(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?
+                Request::read(&text, &name).map_err(Failure::bad_input)?
             }
             None => Request::default(),
         };

@@ -140,7 +140,7 @@ fn folders_with_other_files_stay_unchanged() {
     assert_eq!(code, Some(2));
     assert_eq!(
         error,
-        "error: papers is not empty and not a batch folder (batch.json not found); give an empty or new --out (nothing was \
+        "error: papers is not empty and not a batch folder (batch.json not found); help: give an empty or new --out (nothing was \
          changed)"
     );
     assert_eq!(std::fs::read_dir(path.join("papers")).unwrap().count(), 1);

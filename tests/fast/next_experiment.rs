@@ -108,7 +108,7 @@ fn invalid_input_gives_one_error() {
         ("experiment other --minutes 0 --out next", "minutes"),
         ("experiment other --minutes nan --out next", "minutes"),
         ("simulate --runs runs.csv --out x", "runs.csv: column 'pins' is missing"),
-        ("calibrate runs.csv --plan other --out x", "--plan is given 1 times and 0 tables follow the first"),
+        ("calibrate runs.csv --plan other --out x", "--plan is given 1 times, but 0 tables follow the first"),
         ("calibrate runs.csv runs.csv --plan empty --out x", "empty/experiment.json: cannot read"),
         (
             "calibrate runs.csv runs.csv --plan other --out x",

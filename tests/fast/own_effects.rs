@@ -156,7 +156,7 @@ fn problems_are_located() {
     // Formulas that are valid but do not mean what they seem to.
     for (from, to, words) in [
         ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' means the absence of every effect"),
-        ("-a * exp(-((speed_pct - c)/w)^2)", "-a*(40 < speed_pct < c)*w/w", "a comparison of a comparison"),
+        ("-a * exp(-((speed_pct - c)/w)^2)", "-a*(40 < speed_pct < c)*w/w", "comparisons cannot be chained"),
         ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "so the effect does nothing"),
     ] {
         assert!(good.contains(from), "{from}");

@@ -52,7 +52,10 @@ fn names_are_not_paths() {
         std::fs::write(work.join("mine.toml"), &toml).unwrap();
         let (code, said) = generate(&work, &["mine.toml"]);
         assert_eq!(code, Some(2), "{name:?}: {said}");
-        assert!(said.starts_with("error: mine.toml:2: switch.name = ") && said.contains("1 to 80"), "{said}");
+        assert!(
+            said.starts_with("error: mine.toml:2:8: switch.name = ") && said.contains("1 to 80"),
+            "{said}"
+        );
         let sweep = format!(
             "[sweep]\nname = {}\n[axes]\n\"shell.width_mm\" = [14]\n",
             toml_edit::Value::from(name.as_str())

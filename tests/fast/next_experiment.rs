@@ -112,7 +112,7 @@ fn invalid_input_gives_one_error() {
         ("calibrate runs.csv runs.csv --plan empty --out x", "empty/experiment.json: cannot read"),
         (
             "calibrate runs.csv runs.csv --plan other --out x",
-            "other/experiment.json: schema = \"x/1\" is not",
+            "other/experiment.json: schema = \"x/1\": is not",
         ),
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();

@@ -216,7 +216,7 @@ fn a_3mf_makes_its_set_again() {
     .unwrap();
     archive.finish().unwrap();
     let (code, output) = ended(folder.path(), &["generate", "foreign.3mf"]);
-    assert!(code == Some(2) && output.contains("foreign.3mf: holds no configuration"), "{output}");
+    assert!(code == Some(2) && output.contains("foreign.3mf: the 3MF contains no configuration"), "{output}");
 }
 
 #[test]

@@ -27,6 +27,9 @@ pub(super) struct Grid {
 
 /// Length of an element of the straight spans, relative to the others.
 const STRAIGHT: f64 = 1.5;
+/// Length of the shortest element next to a pin, relative to the others. A shorter one would be so
+/// stiff in bending that rounding hides the balance of forces.
+const SHORTEST: f64 = 0.05;
 /// Largest difference between equal angles, in radians.
 const SAME_RAD: f64 = 1e-9;
 /// Clearance of the straight span beyond the wrap at which no pin touches it, in heights of a
@@ -80,11 +83,15 @@ impl Grid {
             (Some(first), Some(last)) => ((first - margin).max(-end), (last + margin).min(end)),
             _ => (-end, end),
         };
-        let mut corners: Vec<f64> =
-            inside.iter().copied().chain([-end, -half, half, end, span.0, span.1]).collect();
-        corners.sort_by(f64::total_cmp);
-        corners.dedup_by(|a, b| (*a - *b).abs() < SAME_RAD);
         let step = wrap_rad / elements.max(1) as f64;
+        let mut corners = inside.clone();
+        corners.dedup_by(|a, b| (*a - *b).abs() < SAME_RAD);
+        for corner in [-end, end, -half, half, span.0, span.1] {
+            if corners.iter().all(|c| (c - corner).abs() > SHORTEST * step) {
+                corners.push(corner);
+            }
+        }
+        corners.sort_by(f64::total_cmp);
         let mut angle_rad: Vec<f64> = corners.first().copied().into_iter().collect();
         for pair in corners.windows(2) {
             // Beyond the wrap the tendon is almost straight.
@@ -100,12 +107,10 @@ impl Grid {
         let mut element_mm = Vec::with_capacity(nodes.saturating_sub(1));
         for (i, pair) in angle_rad.windows(2).enumerate() {
             let length = (pair[1] - pair[0]) * bed.axis_radius_mm();
-            let middle = (pair[0] + pair[1]) / 2.0;
+            let silicone = (pair[1].min(span.1) - pair[0].max(span.0)).max(0.0) * bed.axis_radius_mm();
             for node in [i, i + 1] {
                 share_mm[node] += length / 2.0;
-                if middle > span.0 && middle < span.1 {
-                    silicone_mm[node] += length / 2.0;
-                }
+                silicone_mm[node] += silicone / 2.0;
             }
             element_mm.push(length);
         }

@@ -315,6 +315,35 @@ fn moved(pins: &[f64], wrap: f64, bed: Bed, which: usize, factor: f64) -> Contac
     Contact::new(Substrate::Silicone, pins, wrap).unwrap().with_bed(b)
 }
 
+/// A pin at the very end of the wrap leaves no short, stiff element: friction has no spike there.
+#[test]
+fn a_pin_at_the_end_makes_no_spike() {
+    let published = Bed::published();
+    let bed = Bed {
+        contact_radius_mm: 28.897,
+        tendon_radius_mm: 0.706,
+        pin_diameter_mm: 0.971,
+        groove_radius_mm: 0.35,
+        layer_mm: 1.0,
+        layer_width_mm: 6.0,
+        modulus_mpa: 0.5 * published.modulus_mpa,
+        ..published
+    };
+    let pins = [-0.147_183, 0.073_591, 0.515_140];
+    let friction = |to_end_rad: f64| {
+        let contact = moved(&pins, 2.0 * (pins[2] + to_end_rad), bed, 7, 1.0);
+        PhysicsSwitch::new(&contact, Constants::published()).friction_n(3.0).unwrap()
+    };
+    let at_the_end = friction(0.0);
+    for exponent in -9..=-3 {
+        let offset = libm::pow(10.0, f64::from(exponent));
+        for to_end_rad in [-offset, offset] {
+            let change = friction(to_end_rad) / at_the_end - 1.0;
+            assert!(change.abs() < 1e-3 + 5.0 * offset / pins[2], "{change} at {to_end_rad} rad");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(192))]
 

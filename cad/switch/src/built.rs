@@ -48,7 +48,7 @@ impl BuiltPart {
     /// do not have. `pinswitch check` and the tests include it.
     ///
     /// # Errors
-    /// [`BuildError`] if there is no valid mesh.
+    /// [`BuildError`] if the mesh is not valid.
     pub fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
         Self::with_caps(part, design, &CapCache::new(usize::MAX))
     }
@@ -80,11 +80,11 @@ impl BuiltPart {
     }
 }
 
-/// The mesh of `part` as it is written, on the print bed, and what it measures: for one part of many, with the caps that
-/// others have left in `caps`.
+/// Returns the mesh of `part` on the print bed, which files contain, and its measured properties.
+/// Reuses the caps of other parts in `caps`.
 ///
 /// # Errors
-/// [`BuildError`]; a mesh that the oracle refuses is never returned.
+/// [`BuildError`] for a part that cannot be built, or whose mesh is invalid.
 pub fn examined_print_mesh(
     part: &Part,
     design: &Design,
@@ -97,7 +97,8 @@ pub fn examined_print_mesh(
     Ok((mesh, facts))
 }
 
-/// Whether the part or body of this name is built and meshed validly, if `design` has it.
+/// Returns whether `design` can build and mesh the part or body of this name. A part that `design`
+/// does not have counts as built.
 pub(crate) fn builds(name: &str, design: &Design, caps: &CapCache) -> bool {
     if let Some(part) = printed_part(name, design) {
         return part.is_ok_and(|part| BuiltPart::with_caps(part, design, caps).is_ok());
@@ -107,7 +108,7 @@ pub(crate) fn builds(name: &str, design: &Design, caps: &CapCache) -> bool {
         .is_ok_and(|bodies| bodies.into_iter().filter(|body| body.name == name).all(is_meshed))
 }
 
-/// Compares the mesh of `part` as it is written, on the print bed, with that of a second kernel.
+/// Compares the written mesh of `part`, on the print bed, with that of a second kernel.
 ///
 /// # Errors
 /// A diagnostic that names the part, the quantity, both values and the bound.
@@ -163,8 +164,8 @@ impl Built {
         Self::following(design, None, &CapCache::new(usize::MAX))
     }
 
-    /// The same for a series of designs: takes unchanged parts from the design `before`, and caps from `caps`, to which it adds
-    /// its own.
+    /// Builds one design of a series. Reuses unchanged parts of the design `before`, and caps from
+    /// `caps`, to which it adds new ones.
     ///
     /// # Errors
     /// As [`Built::new`].

@@ -40,7 +40,7 @@ pub fn read_over(
 /// range.
 #[derive(Clone, Debug)]
 pub struct ClampedReading {
-    /// The configuration; all values lie in their ranges.
+    /// The configuration; all values are within their ranges.
     pub configuration: Configuration,
     /// Locations of the values in the text.
     pub locations: FieldLocations,

@@ -1,6 +1,6 @@
-//! Clearance holes of screws: which thread a hole is for, and how exactly it is made (ISO 273).
+//! Clearance holes: the thread that fits a hole, and the tolerance of the hole (ISO 273).
 
-/// Threads with their clearance holes, fine, medium and coarse, mm (ISO 273).
+/// Threads with their fine, medium and coarse clearance holes, mm (ISO 273).
 const HOLES_MM: [(&str, [f64; 3]); 9] = [
     ("M1.6", [1.7, 1.8, 2.0]),
     ("M2", [2.2, 2.4, 2.6]),
@@ -14,27 +14,27 @@ const HOLES_MM: [(&str, [f64; 3]); 9] = [
 ];
 /// Tolerance of each series (ISO 273).
 const GRADES: [&str; 3] = ["H12", "H13", "H14"];
-/// What rounding may take of a hole, mm.
+/// Allowance for rounding errors in the diameter of a hole, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// What a clearance hole is for.
+/// The thread and the tolerance of a clearance hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Clearance {
-    /// The largest thread that passes; `None` under M1.6.
+    /// The largest thread that fits; `None` below M1.6.
     pub(crate) thread: Option<&'static str>,
-    /// Tolerance of its diameter.
+    /// Tolerance of the diameter.
     pub(crate) grade: &'static str,
 }
 
-/// The largest thread that a hole passes, and its tolerance.
+/// Returns the largest thread that fits a hole, and the tolerance of the hole.
 pub(crate) fn clearance(hole_mm: f64) -> Clearance {
     let passes = |(_, series): &&(&str, [f64; 3])| series[0] <= hole_mm + ROUNDING_MM;
     let thread = HOLES_MM.iter().rev().find(passes).map(|(name, _)| *name);
     Clearance { thread, grade: clearance_grade(thread, hole_mm) }
 }
 
-/// Tolerance of a hole for a thread: that of the widest series that it reaches. A hole for no thread in particular is of the
-/// medium series.
+/// Returns the tolerance of a hole for a thread: that of the widest series whose diameter it
+/// reaches. A hole without a thread belongs to the medium series.
 pub(crate) fn clearance_grade(thread: Option<&str>, hole_mm: f64) -> &'static str {
     let of_thread = HOLES_MM.iter().find(|(name, _)| Some(*name) == thread);
     let reached =
@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(clearance_grade(Some("M5"), 6.6), "H14");
     }
 
-    /// The rules suggest the same holes for the threads of the shell's screws.
+    /// The rules suggest the same holes for the screws of the shell.
     #[test]
     fn the_holes_of_rules_are_those_of_the_standard() {
         let ours: Vec<f64> = HOLES_MM.iter().flat_map(|(_, series)| *series).collect();

@@ -1,49 +1,51 @@
-//! Screws, nuts, heads, inserts and dowels: what fits this design, and where (cad/doc/dimensions.md, "Fasteners").
+//! Screws, nuts, heads, inserts and dowels: sizes and positions (cad/doc/dimensions.md,
+//! "Fasteners").
 
 use super::Dimensions;
 use crate::config::{FastenerKind, MountKind};
 
-/// Wall left around a fastener hole or a recess (cad/doc/print-limits.md, "Fasteners").
+/// Least wall around a fastener hole or a recess (cad/doc/print-limits.md, "Fasteners").
 pub(super) const HOLE_EDGE_MM: f64 = 0.5;
-/// What a recess is wider than nut or head, mm.
+/// Clearance of a recess around a nut or a head, mm.
 const RECESS_PLAY_MM: f64 = 0.2;
-/// What a counterbore is wider than the head, mm: a printed hole comes out small.
+/// Clearance of a counterbore around a head, mm. Printed holes are smaller than drawn.
 const HEAD_PLAY_MM: f64 = 0.5;
-/// Least plate that carries nut or head beyond its recess, mm.
+/// Least thickness of the plate under a recess that carries a nut or a head, mm.
 const LEAST_SEAT_MM: f64 = 1.0;
-/// Wall between a dowel and the fastener beside it, mm.
+/// Wall between a dowel and the adjacent fastener, mm.
 const DOWEL_WALL_MM: f64 = 1.5;
-/// What a dowel's hole is wider than the dowel, mm.
+/// Clearance of a dowel hole, mm.
 const DOWEL_PLAY_MM: f64 = 0.1;
-/// What closes a hole above a recess, in layers, and no less than [`LEAST_MEMBRANE_MM`].
+/// Thickness of the membrane that closes a hole above a recess, in layers; at least
+/// [`LEAST_MEMBRANE_MM`].
 const MEMBRANE_LAYERS: f64 = 2.0;
-/// Thinnest of such a membrane, mm: what every printer lays down.
+/// Least thickness of a membrane, mm: one that every printer can print.
 const LEAST_MEMBRANE_MM: f64 = 0.4;
-/// Room for the tip of a screw between two inserts, mm.
+/// Space for the tips of the screws between two inserts, mm.
 pub(super) const INSERT_TIP_MM: f64 = 1.0;
-/// Shoulder on which an insert stops above a narrower hole, mm.
+/// Width of the shoulder under an insert, above a narrower hole, mm.
 pub(super) const INSERT_SHOULDER_MM: f64 = 0.1;
-/// How far a head lies below the face that stands on a table, mm.
+/// Distance of a head below a face that rests on a table, mm.
 pub(super) const HEAD_BELOW_MM: f64 = 0.2;
-/// What rounding may take of a wall, mm.
+/// Allowance for rounding errors in a wall, mm.
 const ROUNDING_MM: f64 = 1e-9;
-/// Lengths of socket screws, mm (ISO 4762); each thread has those between its [`Thread::lengths_mm`].
+/// Lengths of socket screws, mm (ISO 4762). [`Thread::lengths_mm`] limits those of each thread.
 const SCREW_LENGTHS_MM: [f64; 16] =
     [2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
 /// Diameters of dowels, mm (ISO 2338).
 pub(super) const DOWELS_MM: &[f64] = &[0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
-/// Clearance holes of M1.6 to M5, fine, medium and coarse, mm (ISO 273).
+/// Fine, medium and coarse clearance holes of M1.6 to M5, mm (ISO 273).
 pub(super) const CLEARANCE_HOLES_MM: &[f64] =
     &[1.7, 1.8, 2.0, 2.2, 2.4, 2.6, 2.7, 2.9, 3.1, 3.2, 3.4, 3.6, 4.3, 4.5, 4.8, 5.3, 5.5, 5.8];
-/// What a screw stands out of its nut: a turn of its thread, mm.
-const STANDS_OUT_MM: f64 = 0.5;
-/// Air between the tips of two screws that meet in the shell, mm.
+/// Protrusion of a screw from its nut: one turn of the thread, mm.
+const SCREW_PROTRUSION_MM: f64 = 0.5;
+/// Gap between the tips of two screws that meet in the shell, mm.
 const SCREW_AIR_MM: f64 = 0.5;
-/// Least that a screw must reach into an insert, in diameters of the hole.
+/// Least engagement of a screw in an insert, in diameters of the hole.
 const LEAST_GRIP: f64 = 0.6;
-/// Socket screws and nuts of the sheath stop: M3.
+/// Thread of the socket screws and nuts of the sheath stop: M3.
 pub(crate) const STOP_SCREW: Thread = THREADS[3];
-/// Head of the axle's hexagon bolt, M8: across its flats and its height, mm (ISO 4017).
+/// Hexagon head of the M8 bolt of the axle: width across flats and height, mm (ISO 4017).
 pub(crate) const AXLE_HEAD_MM: [f64; 2] = [13.0, 5.3];
 
 /// A metric thread with the hardware that fits it. Sources: cad/doc/print-limits.md, "Fasteners".
@@ -51,25 +53,25 @@ pub(crate) const AXLE_HEAD_MM: [f64; 2] = [13.0, 5.3];
 pub struct Thread {
     /// Name, such as `M3`.
     pub name: &'static str,
-    /// Narrowest hole that it passes, mm.
+    /// Diameter of the narrowest clearance hole, mm.
     pub least_hole_mm: f64,
-    /// Nut across its flats and its height (ISO 4032), mm.
+    /// Nut: width across flats and height (ISO 4032), mm.
     pub nut_mm: [f64; 2],
     /// Head of a socket screw: diameter and height (ISO 4762), mm.
     pub head_mm: [f64; 2],
-    /// Heat-set insert: hole and length, mm; `None` where none is sold for prints.
+    /// Heat-set insert: hole and length, mm; `None` where none is sold for printed parts.
     pub insert_mm: Option<[f64; 2]>,
     /// Shortest and longest socket screw (ISO 4762), mm.
     pub lengths_mm: [f64; 2],
 }
 
 impl Thread {
-    /// The shortest screw of at least `least_mm` that is sold.
+    /// Returns the shortest available screw of at least `least_mm`.
     pub fn at_least_mm(&self, least_mm: f64) -> Option<f64> {
         self.sold_mm().find(|l| *l >= least_mm - ROUNDING_MM)
     }
 
-    /// The longest screw of at most `most_mm` that is sold.
+    /// Returns the longest available screw of at most `most_mm`.
     pub fn at_most_mm(&self, most_mm: f64) -> Option<f64> {
         self.sold_mm().filter(|l| *l <= most_mm + ROUNDING_MM).last()
     }
@@ -80,7 +82,7 @@ impl Thread {
     }
 }
 
-/// Threads, the narrowest first.
+/// Threads, ascending.
 const THREADS: [Thread; 6] = [
     thread("M1.6", 1.7, [3.2, 1.3], [3.0, 1.6], None, [2.5, 16.0]),
     thread("M2", 2.2, [4.0, 1.6], [3.8, 2.0], Some([3.2, 4.0]), [3.0, 20.0]),
@@ -104,51 +106,54 @@ const fn thread(
 /// A recess in an outer face: hexagonal for nuts, round for heads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recess {
-    /// Half of its width across the radius: half across flats, or the radius.
+    /// Half of the radial width: half of the width across flats, or the radius.
     pub radial_mm: f64,
-    /// Half of its width along the arc: to a corner, or the radius.
+    /// Half of the width along the arc: the distance to a corner, or the radius.
     pub along_mm: f64,
     /// Depth.
     pub depth_mm: f64,
-    /// Whether it is a hexagon.
+    /// Whether the recess is a hexagon.
     pub is_hexagon: bool,
 }
 
-/// What joins shell and supports.
+/// The hardware that joins shell and supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fastening {
-    /// The largest thread that the holes take; `None` for holes under M1.6.
+    /// The largest thread that fits the holes; `None` for holes below M1.6.
     pub thread: Option<Thread>,
-    /// Nut traps in the right support's outer face, if they are wanted and fit.
+    /// Nut traps in the outer face of the right support, if requested and if they fit.
     pub nut_trap: Option<Recess>,
-    /// Counterbores for the heads in the outer faces of the supports, if they are wanted and fit: of the left one, unless a
-    /// mounting plate covers it, and with inserts of the right one.
+    /// Counterbores for the heads in the outer faces of the supports, if requested and if they fit:
+    /// in the left support unless a mounting plate covers it, and with inserts in the right one.
     pub counterbore: Option<Recess>,
-    /// Counterbores for the heads in the outer face of the mounting plate, if they are wanted and fit.
+    /// Counterbores for the heads in the outer face of the mounting plate, if requested and if they
+    /// fit.
     pub mount_counterbore: Option<Recess>,
-    /// Hole and length of the inserts at both ends of the shell's holes.
+    /// Hole and length of the inserts at both ends of the holes in the shell.
     pub insert_mm: Option<[f64; 2]>,
 }
 
 impl Fastening {
-    /// The recess in the outer face of a support: where the screws' heads are, or their nuts.
+    /// Returns the recess in the outer face of a support, for the heads of the screws or for their
+    /// nuts.
     pub const fn recess(&self, has_heads: bool) -> Option<Recess> {
         if has_heads { self.counterbore } else { self.nut_trap }
     }
 }
 
-/// A counterbore for the heads of a thread.
+/// Returns a counterbore for the heads of a thread.
 fn head_recess(thread: &Thread, depth_mm: f64) -> Recess {
     let radius = (thread.head_mm[0] + HEAD_PLAY_MM) / 2.0;
     Recess { radial_mm: radius, along_mm: radius, depth_mm, is_hexagon: false }
 }
 
-/// Counterbore in the mounting plate for a screw of the sheath stop.
+/// Returns the counterbore in the mounting plate for a screw of the sheath stop.
 pub(crate) fn stop_recess() -> Recess {
     head_recess(&STOP_SCREW, STOP_SCREW.head_mm[1] + HEAD_BELOW_MM)
 }
 
-/// Pocket in the mounting plate for the head of the axle's bolt, which it keeps from turning.
+/// Returns the pocket in the mounting plate for the head of the axle bolt. It prevents rotation of
+/// the bolt.
 pub(crate) fn axle_recess() -> Recess {
     let radial_mm = (AXLE_HEAD_MM[0] + RECESS_PLAY_MM) / 2.0;
     let along_mm = radial_mm / libm::cos(std::f64::consts::FRAC_PI_6);
@@ -156,7 +161,7 @@ pub(crate) fn axle_recess() -> Recess {
 }
 
 impl Dimensions {
-    /// The hardware of this design: what is wanted, as far as it fits.
+    /// Returns the hardware of this design: the requested hardware, as far as it fits.
     pub fn fastening(&self) -> Fastening {
         let c = self.configuration();
         let f = &c.fasteners;
@@ -174,7 +179,7 @@ impl Dimensions {
             .filter(|_| !has_mount || f.kind == FastenerKind::Insert)
             .and_then(|t| fits(head_recess(&t, f.head_recess_mm)));
         let mount_counterbore = thread.filter(|_| has_mount && f.count > 0).and_then(|t| {
-            let depth = if self.lies_on_a_table() { t.head_mm[1] + HEAD_BELOW_MM } else { 0.0 };
+            let depth = if self.rests_on_a_table() { t.head_mm[1] + HEAD_BELOW_MM } else { 0.0 };
             let recess = head_recess(&t, f.head_recess_mm.max(depth));
             let is_apart = self.fastener_angles_rad().windows(2).all(|w| self.are_apart(w, &recess));
             let fits = c.mount.plate_mm + ROUNDING_MM >= self.seated_mm(recess.depth_mm) && is_apart;
@@ -185,35 +190,37 @@ impl Dimensions {
         Fastening { thread, nut_trap, counterbore, mount_counterbore, insert_mm }
     }
 
-    /// Thickness of what closes a hole above a recess: the printer bridges it, and the screw breaks it.
+    /// Returns the thickness of the membrane above a recess. It is printed as a bridge, and the
+    /// screw breaks it.
     pub fn membrane_mm(&self) -> f64 {
         (MEMBRANE_LAYERS * self.configuration().print.layer_mm).max(LEAST_MEMBRANE_MM)
     }
 
-    /// Wall that must stay around a fastener.
+    /// Returns the least wall around a fastener.
     fn rim_mm(&self) -> f64 {
         let p = &self.configuration().print;
         HOLE_EDGE_MM.max(p.least_wall_mm)
     }
 
-    /// Whether the mounting plate lies flat on something: heads must not stand out of it.
-    pub(crate) fn lies_on_a_table(&self) -> bool {
+    /// Returns whether the mounting plate rests on a flat surface, so that heads must not protrude.
+    pub(crate) fn rests_on_a_table(&self) -> bool {
         matches!(self.configuration().mount.kind, MountKind::Flange | MountKind::Rig)
     }
 
-    /// Thickness of a plate in which something sinks by `depth_mm`: with what closes the hole, and what carries the head.
+    /// Returns the least thickness of a plate with a recess of `depth_mm`: recess, membrane, and
+    /// the seat of the head.
     pub(crate) fn seated_mm(&self, depth_mm: f64) -> f64 {
         depth_mm + self.membrane_mm() + LEAST_SEAT_MM
     }
 
-    /// Whether a wall stays between the recesses of two neighbours.
+    /// Returns whether the wall between the recesses of two neighbours is thick enough.
     fn are_apart(&self, angles_rad: &[f64], recess: &Recess) -> bool {
         let chord = 2.0 * self.fastener_radius_mm() * libm::sin((angles_rad[1] - angles_rad[0]) / 2.0);
         chord + ROUNDING_MM >= 2.0 * recess.along_mm + self.rim_mm()
     }
 
-    /// Whether a recess fits in the outer face of a support: on its seat, with a wall to the inner face, the slots, the
-    /// ends and its neighbours.
+    /// Returns whether a recess fits in the outer face of a support: above a seat, and with walls
+    /// to the inner face, the slots, the ends and its neighbours.
     fn recess_fits(&self, recess: &Recess) -> bool {
         let c = self.configuration();
         let (middle, rim) = (self.fastener_radius_mm(), self.rim_mm());
@@ -227,7 +234,7 @@ impl Dimensions {
             && self.fastener_angles_rad().windows(2).all(|w| self.are_apart(w, recess))
     }
 
-    /// Whether nut traps in the right support are wanted and do not fit.
+    /// Returns whether nut traps in the right support are requested and do not fit.
     pub fn lacks_nut_traps(&self) -> bool {
         let f = &self.configuration().fasteners;
         let is_wanted = f.kind == FastenerKind::NutTrap && f.count > 0 && f.nut_recess_mm > 0.0;
@@ -235,7 +242,7 @@ impl Dimensions {
         is_wanted && fastening.thread.is_some() && fastening.nut_trap.is_none()
     }
 
-    /// Whether counterbores in the supports are wanted and do not fit.
+    /// Returns whether counterbores in the supports are requested and do not fit.
     pub fn lacks_counterbores(&self) -> bool {
         let (c, fastening) = (self.configuration(), self.fastening());
         let f = &c.fasteners;
@@ -244,13 +251,13 @@ impl Dimensions {
         is_wanted && fastening.thread.is_some() && fastening.counterbore.is_none()
     }
 
-    /// Whether a recess in a support is wanted and does not fit.
+    /// Returns whether a recess in a support is requested and does not fit.
     pub(crate) fn lacks_recesses(&self) -> bool {
         self.lacks_nut_traps() || self.lacks_counterbores()
     }
 
-    /// Length of the screws that enter from the left and from the right, mm, the latter with inserts only; `None` where no
-    /// such screw is sold (ISO 4762).
+    /// Returns the lengths of the screws from the left and, with inserts, from the right, mm.
+    /// `None` if no screw of a suitable length is sold (ISO 4762).
     pub fn screw_lengths_mm(&self) -> Option<(f64, Option<f64>)> {
         let c = self.configuration();
         let fastening = self.fastening();
@@ -265,7 +272,8 @@ impl Dimensions {
         };
         let hole = c.fasteners.hole_diameter_mm;
         if let Some([_, length]) = fastening.insert_mm {
-            // From each side, as long as the insert and its share of the room between both allow.
+            // The longest screw from each side is limited by the insert, and by its share of the
+            // space between both inserts.
             let longest = |plates_mm: f64| {
                 let most = plates_mm + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
                 thread.at_most_mm(most).filter(|l| *l >= plates_mm + LEAST_GRIP * hole)
@@ -273,17 +281,17 @@ impl Dimensions {
             return Some((longest(left_plates)?, Some(longest(in_support)?)));
         }
         let right = c.support.plate_mm - depth(fastening.nut_trap);
-        let stack = left_plates + c.shell.width_mm + right + thread.nut_mm[1] + STANDS_OUT_MM;
+        let stack = left_plates + c.shell.width_mm + right + thread.nut_mm[1] + SCREW_PROTRUSION_MM;
         Some((thread.at_least_mm(stack)?, None))
     }
 
-    /// Half of what a fastener takes of the arc of the shell.
+    /// Returns half of the width of a fastener along the arc of the shell.
     pub(crate) fn shell_hole_mm(&self) -> f64 {
         let hole = self.configuration().fasteners.hole_diameter_mm;
         self.fastening().insert_mm.map_or(hole, |[bore, _]| bore.max(hole)) / 2.0
     }
 
-    /// Half of what a fastener takes of the arc, in the widest of all parts.
+    /// Returns half of the largest width of a fastener along the arc, over all parts.
     pub(crate) fn fastener_along_mm(&self) -> f64 {
         let f = self.fastening();
         let hole = self.configuration().fasteners.hole_diameter_mm / 2.0;
@@ -291,19 +299,20 @@ impl Dimensions {
         recesses.chain(f.insert_mm.map(|[hole, _]| hole / 2.0)).fold(hole, f64::max)
     }
 
-    /// Half of what a fastener takes of the mounting plate.
+    /// Returns half of the width of a fastener in the mounting plate.
     pub(crate) fn mount_along_mm(&self) -> f64 {
         let hole = self.configuration().fasteners.hole_diameter_mm / 2.0;
         self.fastening().mount_counterbore.map_or(hole, |r| r.along_mm)
     }
 
-    /// Radius of the holes for dowels; `None` without dowels.
+    /// Returns the radius of the dowel holes; `None` without dowels.
     pub fn dowel_hole_radius_mm(&self) -> Option<f64> {
         let d = self.configuration().fasteners.dowel_diameter_mm;
         (d > 0.0).then_some((d + DOWEL_PLAY_MM) / 2.0)
     }
 
-    /// Angles of the two dowels, beside the outermost fasteners; empty without dowels.
+    /// Returns the angles of the two dowels, adjacent to the outermost fasteners; empty without
+    /// dowels.
     pub fn dowel_angles_rad(&self) -> Vec<f64> {
         let Some(radius) = self.dowel_hole_radius_mm() else { return Vec::new() };
         let at = self.fastener_radius_mm();
@@ -316,18 +325,19 @@ impl Dimensions {
         vec![-angle, angle]
     }
 
-    /// Depth of the dowels' holes in the supports.
+    /// Returns the depth of the dowel holes in the supports.
     pub fn dowel_depth_mm(&self) -> f64 {
         self.configuration().support.plate_mm / 2.0
     }
 
-    /// Length to which dowels are cut, mm: half a millimetre less than their room.
+    /// Returns the length of the dowels, mm: at least half a millimetre less than the space for
+    /// them.
     pub fn dowel_length_mm(&self) -> f64 {
         let room = self.configuration().shell.width_mm + 2.0 * self.dowel_depth_mm();
         ((room - 0.5) * 2.0).floor() / 2.0
     }
 
-    /// Whether the dowels have walls around them.
+    /// Returns whether the walls around the dowels are thick enough.
     pub(super) fn dowels_fit(&self) -> bool {
         let Some(radius) = self.dowel_hole_radius_mm() else { return true };
         let c = self.configuration();

@@ -59,8 +59,9 @@ impl Design {
     /// Checks the rules of `configuration`.
     ///
     /// # Errors
-    /// A [`Diagnostic`] of the first broken rule: field, value, problem and bound. It has no help:
-    /// [`crate::feasibility::design`] adds the nearest values that build, which takes longer to find.
+    /// A [`Diagnostic`] of the first broken rule: field, value, problem and bound. It contains no
+    /// help, since [`crate::feasibility::design`] needs more time to find the nearest feasible
+    /// values.
     pub fn new(configuration: Configuration) -> Result<Self, Diagnostic> {
         let dimensions = Dimensions::new(configuration);
         rules::check(&dimensions)?;

@@ -1,69 +1,69 @@
-//! Where the holes of a mounting plate lie (cad/doc/dimensions.md, "Mounting").
+//! Positions of the holes of a mounting plate (cad/doc/dimensions.md, "Mounting").
 
 use super::Dimensions;
 use super::fastening::{axle_recess, stop_recess};
 use crate::config::MountKind;
 use pinswitch_solid::profile::{Disc, Point2, Vector2, polar};
 
-/// Radius of the rig's guide pulley at the bottom of its groove (paper), mm.
+/// Radius of the guide pulley of the rig at the bottom of its groove (paper), mm.
 pub(crate) const PULLEY_RADIUS_MM: f64 = 22.0;
-/// Bore of a 608 bearing, and its hole in the plate for an M8 bolt, mm.
+/// Hole in the plate for the M8 bolt that fits the bore of a 608 bearing, mm.
 const AXLE_HOLE_MM: f64 = 8.4;
-/// Diameter of the guide pulley's seat for a 608 bearing, whose outer ring measures 22 mm (ISO 15), with an allowance for
-/// the press fit, mm.
+/// Diameter of the seat of the guide pulley for a 608 bearing, mm. The outer ring measures 22 mm
+/// (ISO 15); the rest is an allowance for the press fit.
 pub(crate) const BEARING_SEAT_MM: f64 = 22.1;
-/// Width of each flange's rim of the guide pulley, mm.
+/// Width of the rim of each flange of the guide pulley, mm.
 const PULLEY_RIM_MM: f64 = 1.2;
-/// Least width of the guide pulley: a 608 bearing of 7 mm over its ledge.
+/// Least width of the guide pulley, mm: a 608 bearing of 7 mm over its ledge.
 const LEAST_PULLEY_MM: f64 = 8.5;
-/// Air between pulley and switch, mm.
+/// Gap between guide pulley and switch, mm.
 pub(super) const PULLEY_AIR_MM: f64 = 2.0;
 /// Length of the sheath stop along the tendon, mm.
 const STOP_LENGTH_MM: f64 = 14.0;
-/// Screws of the sheath stop: M3.
+/// Clearance hole of the M3 screws of the sheath stop, mm.
 const STOP_HOLE_MM: f64 = 3.4;
-/// Wall around sheath and screws of the sheath stop, mm.
+/// Wall around the sheath and the screws of the sheath stop, mm.
 const STOP_WALL_MM: f64 = 2.0;
 
-/// Outer diameter of the pulley's flanges beyond its groove, in tendon diameters.
+/// Height of the flanges of the guide pulley above the bottom of its groove, in tendon diameters.
 const PULLEY_DEPTH: f64 = 1.5;
 
-/// Radius of the guide pulley's flanges.
+/// Returns the outer radius of the flanges of the guide pulley.
 pub(crate) fn pulley_outer_mm(tendon_mm: f64) -> f64 {
     PULLEY_RADIUS_MM + PULLEY_DEPTH * tendon_mm
 }
 
-/// Width of the guide pulley for a tendon.
+/// Returns the width of the guide pulley for a tendon.
 pub(crate) fn pulley_width_mm(tendon_mm: f64) -> f64 {
     (2.0 * (PULLEY_RIM_MM + PULLEY_DEPTH * tendon_mm) + 1.2 * tendon_mm).max(LEAST_PULLEY_MM)
 }
 
-/// A hole right through the plate.
+/// A through hole in the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
-    /// Its middle.
+    /// Centre.
     pub centre: Point2,
-    /// Its radius, mm.
+    /// Radius, mm.
     pub radius_mm: f64,
 }
 
-/// The sheath stop: a block beside the tendon, away from the load.
+/// The sheath stop: a block around the tendon, on the side away from the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheathStop {
-    /// Where the tendon enters it from the switch.
+    /// Entry point of the tendon from the switch.
     pub start: Point2,
-    /// Along the tendon, away from the switch; a unit vector.
+    /// Direction of the tendon away from the switch; a unit vector.
     pub along: Vector2,
     /// Length along the tendon, mm.
     pub length_mm: f64,
-    /// Half of the block's width across the tendon, mm.
+    /// Half of the width of the block across the tendon, mm.
     pub half_width_mm: f64,
-    /// Its screws.
+    /// Holes for its screws.
     pub screws: [Hole; 2],
 }
 
 impl SheathStop {
-    /// The stop by itself, from the origin along +x.
+    /// Returns the stop at the origin, with the tendon along +x.
     pub fn along_the_paper(&self) -> Self {
         let outwards = Vector2::new(-self.along.y, self.along.x);
         let screws = self.screws.map(|hole| {
@@ -74,39 +74,40 @@ impl SheathStop {
     }
 }
 
-/// A mounting plate: the holes that it has beside those of the fasteners.
+/// A mounting plate with its holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mounting {
-    /// Holes for screws, or bores.
+    /// Holes for the screws of the plate, or bores of a link.
     pub holes: Vec<Hole>,
-    /// The guide pulley's axle, on the rig.
+    /// Axle of the guide pulley, on the rig.
     pub axle: Option<Hole>,
     /// The sheath stop.
     pub sheath: Option<SheathStop>,
-    /// What all holes take of the plate, those of the fasteners with it: their recesses included.
+    /// Areas of all holes, including those of the fasteners, with their recesses.
     pub taken: Vec<Hole>,
-    /// Discs whose hull the plate is.
+    /// Discs whose convex hull is the plate.
     pub discs: Vec<Disc>,
 }
 
 impl Dimensions {
-    /// Radius on which the axis of the tendon lies where it rests on the silicone.
+    /// Returns the radius of the axis of the tendon where it rests on the silicone.
     pub fn tendon_axis_radius_mm(&self) -> f64 {
         self.contact_radius_mm() + self.tendon_diameter_mm() / 2.0
     }
 
-    /// Half of the angle over which the tendon touches.
+    /// Returns half of the wrap angle.
     pub fn half_wrap_rad(&self) -> f64 {
         self.configuration().layout.wrap_angle_deg.to_radians() / 2.0
     }
 
-    /// Height of the sheath stop's base above the plate, mm: the sheath lies on it, its axis in the middle of the switch.
+    /// Returns the height of the base of the sheath stop above the plate, mm. The sheath rests on
+    /// the base, with its axis in the middle of the switch.
     pub fn sheath_floor_mm(&self) -> f64 {
         let c = self.configuration();
         c.support.plate_mm + c.shell.width_mm / 2.0 - c.tendon.sheath_diameter_mm / 2.0
     }
 
-    /// The mounting plate; `None` without one.
+    /// Returns the mounting plate; `None` without one.
     pub fn mounting(&self) -> Option<Mounting> {
         let c = self.configuration();
         let m = &c.mount;
@@ -129,7 +130,8 @@ impl Dimensions {
         Some(Mounting { holes, axle, sheath, taken: all, discs })
     }
 
-    /// What holes take of the plate, with their recesses: its own, the axle's, the fasteners' and the sheath stop's.
+    /// Returns the areas of all holes with their recesses: those of the plate, the axle, the
+    /// fasteners and the sheath stop.
     fn taken(&self, holes: &[Hole], axle: Option<Hole>, sheath: Option<&SheathStop>) -> Vec<Hole> {
         let fasteners = self
             .fastener_angles_rad()
@@ -141,13 +143,13 @@ impl Dimensions {
         holes.iter().copied().chain(axle).chain(fasteners).chain(screws).collect()
     }
 
-    /// Distance of a point from the supports, mm; 0 behind them.
-    pub(super) fn beside_support_mm(&self, p: Point2) -> f64 {
+    /// Returns the distance of a point from the supports, mm; 0 within them.
+    pub(super) fn distance_to_support_mm(&self, p: Point2) -> f64 {
         let (inner, outer) = (self.inner_radius_mm(), self.support_radius_mm());
         let half = self.half_span_rad();
         let (radius, angle) = (p.coords.norm(), libm::atan2(p.x, p.y).abs());
         let radial = (inner - radius).max(radius - outer).max(0.0);
-        // Their ends are shifted outwards along the tangent.
+        // The ends of the supports are shifted outwards along the tangent.
         let mirrored = Vector2::new(p.x.abs(), p.y);
         let outwards = polar(1.0, half).coords;
         let along = Vector2::new(outwards.y, -outwards.x);
@@ -160,7 +162,7 @@ impl Dimensions {
         libm::hypot(beyond, (inner - height).max(height - outer).max(0.0))
     }
 
-    /// Four holes around the supports.
+    /// Returns the centres of the four holes around the supports.
     fn flange_holes(&self) -> [Point2; 4] {
         let m = &self.configuration().mount;
         let half = self.half_span_rad();
@@ -171,7 +173,7 @@ impl Dimensions {
         [[-x, low], [x, low], [-x, high], [x, high]].map(|[x, y]| Point2::new(x, y))
     }
 
-    /// The two bores of a finger link.
+    /// Returns the centres of the two bores of a finger link.
     fn link_bores(&self) -> [Point2; 2] {
         let m = &self.configuration().mount;
         let angle = m.bore_axis_deg.to_radians();
@@ -180,13 +182,13 @@ impl Dimensions {
         [middle - along * (m.bore_distance_mm / 2.0), middle + along * (m.bore_distance_mm / 2.0)]
     }
 
-    /// Axis of the guide pulley on the load side, over which the tendon runs on in the same sense, and four holes for the
-    /// table around both.
+    /// Returns the axis of the guide pulley on the load side, around which the tendon continues in
+    /// the same sense, and the four holes of the rig around switch and pulley.
     fn rig(&self) -> (Point2, [Point2; 4]) {
         let m = &self.configuration().mount;
         let leaves = -self.half_wrap_rad();
         let outwards = polar(1.0, leaves).coords;
-        // Away from the wrap: to ever smaller angles.
+        // The direction away from the wrap is that of decreasing angles.
         let along = Vector2::new(-outwards.y, outwards.x);
         let drop = self.tendon_axis_radius_mm() - PULLEY_RADIUS_MM - self.tendon_diameter_mm() / 2.0;
         let middle = Point2::from(outwards * drop + along * m.pulley_distance_mm);
@@ -198,7 +200,7 @@ impl Dimensions {
         (middle, [at(behind, 0.0), at(behind, aside), at(beyond, -aside / 2.0), at(beyond, aside / 2.0)])
     }
 
-    /// The sheath stop on the side away from the load; `None` without a sheath.
+    /// Returns the sheath stop on the side away from the load; `None` without a sheath.
     fn sheath_stop(&self) -> Option<SheathStop> {
         let sheath = self.configuration().tendon.sheath_diameter_mm;
         if sheath <= 0.0 {
@@ -208,7 +210,7 @@ impl Dimensions {
         let outwards = polar(1.0, leaves).coords;
         let along = Vector2::new(outwards.y, -outwards.x);
         let axis = self.tendon_axis_radius_mm();
-        // Beyond the supports, whose corners lie within their outer radius.
+        // Beyond the supports, whose corners are within their outer radius.
         let clear = self.support_radius_mm() + STOP_WALL_MM;
         let half_width_mm = sheath / 2.0 + 2.0 * STOP_WALL_MM + STOP_HOLE_MM + STOP_WALL_MM;
         let inner = (axis - half_width_mm).max(0.0);

@@ -1,5 +1,6 @@
-//! The tendon's two straight ends beyond the wrap, and how near they come to each other, to the guide pulley and to the
-//! sheath stop (cad/doc/dimensions.md, "Tendon"). All of these stand at the same height.
+//! The straight ends of the tendon beyond the wrap, and their distances from each other, from the
+//! guide pulley and from the sheath stop (cad/doc/dimensions.md, "Tendon"). All of these are at the
+//! same height, so distances are computed in the plane.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,22 +9,22 @@ use super::{Dimensions, pulley_outer_mm};
 use crate::config::MountKind;
 use pinswitch_solid::profile::{Point2, Vector2, polar};
 
-/// What is shown of an end that nothing shortens, mm.
+/// Length of an end in pictures if nothing shortens it, mm.
 const SHOWN_MM: f64 = 20.0;
-/// Least of an end that is shown, mm.
+/// Least length of an end in pictures, mm.
 const LEAST_SHOWN_MM: f64 = 1.0;
-/// Air around the tendon beside what it must not touch, mm.
+/// Gap between the tendon and bodies that it must not touch, mm.
 const TENDON_AIR_MM: f64 = 1.0;
-/// A length beyond which nothing of ours stands, mm: an end that runs on.
+/// Length of an end without a pulley, mm: longer than every set.
 const FAR_MM: f64 = 1e4;
-/// Ends that meet within this length must be led past each other, mm.
+/// Distance beyond the wrap within which crossing ends are reported, mm.
 const NEAR_MM: f64 = 100.0;
 
-/// An end of the tendon, from where it leaves the wrap along its tangent.
+/// An end of the tendon, which leaves the wrap along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TendonEnd {
     pub(super) start: Point2,
-    /// Away from the wrap; a unit vector.
+    /// Direction away from the wrap; a unit vector.
     pub(super) along: Vector2,
 }
 
@@ -34,7 +35,7 @@ impl TendonEnd {
 }
 
 impl Dimensions {
-    /// The ends on the load's side and on the other.
+    /// Returns the end on the load side, and the other end.
     pub(super) fn tendon_ends(&self) -> [TendonEnd; 2] {
         [-1.0, 1.0].map(|side| {
             let outwards = polar(1.0, side * self.half_wrap_rad()).coords;
@@ -43,15 +44,15 @@ impl Dimensions {
         })
     }
 
-    /// What is shown of the ends, mm: on the load's side, up to the guide pulley on the rig, and on the other. Ends that
-    /// would meet are shown shorter.
+    /// Returns the lengths of the ends in pictures, mm: on the load side, which on the rig extends
+    /// to the guide pulley, and on the other side. Ends that would meet are shortened.
     pub fn shown_ends_mm(&self) -> [f64; 2] {
         let pulley = (self.configuration().mount.kind == MountKind::Rig)
             .then_some(self.configuration().mount.pulley_distance_mm);
         if self.fits(pulley, SHOWN_MM) {
             return [pulley.unwrap_or(SHOWN_MM), SHOWN_MM];
         }
-        // What fits is found to a hundredth of a millimetre, from the shortest on.
+        // Bisection to a hundredth of a millimetre, from the shortest length.
         let (mut fits, mut meets) = (LEAST_SHOWN_MM, SHOWN_MM);
         while meets - fits > 0.01 {
             let middle = f64::midpoint(fits, meets);
@@ -60,10 +61,11 @@ impl Dimensions {
         [pulley.unwrap_or(fits), fits]
     }
 
-    /// Whether ends of this length keep clear of each other, and the free one of the guide pulley.
+    /// Returns whether ends of this length clear each other, and the free end also clears the guide
+    /// pulley.
     fn fits(&self, pulley_mm: Option<f64>, length_mm: f64) -> bool {
         if self.half_wrap_rad() <= FRAC_PI_2 {
-            // They run apart.
+            // The ends diverge.
             return true;
         }
         let [load, other] = self.tendon_ends();
@@ -76,14 +78,15 @@ impl Dimensions {
             && axle.is_none_or(|hole| from_segment_mm(hole.centre, free) >= flanges + air)
     }
 
-    /// Whether the shortest ends that are shown keep clear.
+    /// Returns whether ends of the least length clear each other.
     pub(super) fn ends_keep_clear(&self) -> bool {
         let rig = self.configuration().mount.kind == MountKind::Rig;
         self.fits(rig.then_some(self.configuration().mount.pulley_distance_mm), LEAST_SHOWN_MM)
     }
 
-    /// Least length of tendon that does what the set is for, mm: the wrap, on the rig the way to the guide pulley and half a
-    /// turn over it, the sheath stop, and two ends to take hold of. Whole millimetres.
+    /// Returns the least length of tendon for the set, rounded up to a millimetre: the wrap, on the
+    /// rig the distance to the guide pulley and half a turn around it, the sheath stop, and two
+    /// free ends to grip.
     pub(super) fn least_tendon_mm(&self) -> f64 {
         let c = self.configuration();
         let wrap = 2.0 * self.half_wrap_rad() * self.tendon_axis_radius_mm();
@@ -100,29 +103,30 @@ impl Dimensions {
         (wrap + pulley + stop + 2.0 * SHOWN_MM).ceil()
     }
 
-    /// How far beyond the wrap the two ends meet, mm, if they do so soon: they must be led past each other there.
+    /// Returns the distance beyond the wrap at which the two ends cross, mm; `None` if they do not
+    /// cross within [`NEAR_MM`]. Ends that cross must be guided past each other.
     pub(super) fn ends_meet_mm(&self) -> Option<f64> {
         let half = self.half_wrap_rad();
         let meet = self.tendon_axis_radius_mm() * libm::tan(PI - half);
         (half > FRAC_PI_2 && meet < NEAR_MM).then_some(meet)
     }
 
-    /// How much nearer the sheath stop stands to the guide pulley, or to the tendon on the load's side, than it may, mm;
-    /// negative where it keeps clear of both.
+    /// Returns by how much the sheath stop is too close to the guide pulley, or to the tendon on
+    /// the load side, mm; negative if it clears both.
     pub(super) fn stop_in_the_way_mm(&self, mounting: &Mounting) -> f64 {
         let Some(stop) = mounting.sheath else { return f64::NEG_INFINITY };
         let [load, _] = self.tendon_ends();
         let length_mm = mounting.axle.map_or(FAR_MM, |_| self.configuration().mount.pulley_distance_mm);
-        let tendon =
-            self.tendon_diameter_mm() / 2.0 + TENDON_AIR_MM - beside_mm(&stop, load.up_to(length_mm));
+        let tendon = self.tendon_diameter_mm() / 2.0 + TENDON_AIR_MM
+            - distance_to_stop_mm(&stop, load.up_to(length_mm));
         let reach = pulley_outer_mm(self.tendon_diameter_mm()) + super::mounting::PULLEY_AIR_MM;
-        let pulley = mounting.axle.map(|hole| reach - beside_mm(&stop, [hole.centre; 2]));
+        let pulley = mounting.axle.map(|hole| reach - distance_to_stop_mm(&stop, [hole.centre; 2]));
         tendon.max(pulley.unwrap_or(f64::NEG_INFINITY))
     }
 }
 
-/// Distance of a segment from the sheath stop's block, mm; 0 within.
-fn beside_mm(stop: &SheathStop, segment: [Point2; 2]) -> f64 {
+/// Returns the distance of a segment from the block of the sheath stop, mm; 0 inside.
+fn distance_to_stop_mm(stop: &SheathStop, segment: [Point2; 2]) -> f64 {
     let outwards = Vector2::new(-stop.along.y, stop.along.x) * stop.half_width_mm;
     let corners = [(0.0, -1.0), (stop.length_mm, -1.0), (stop.length_mm, 1.0), (0.0, 1.0)]
         .map(|(along, across)| stop.start + stop.along * along + outwards * across);
@@ -134,7 +138,7 @@ fn beside_mm(stop: &SheathStop, segment: [Point2; 2]) -> f64 {
     if is_within { 0.0 } else { edges.fold(f64::INFINITY, f64::min) }
 }
 
-/// Distance between two segments, mm; 0 where they cross.
+/// Returns the distance between two segments, mm; 0 if they cross.
 fn between_mm(a: [Point2; 2], b: [Point2; 2]) -> f64 {
     let side = |s: [Point2; 2], p: Point2| (s[1] - s[0]).perp(&(p - s[0]));
     let parts = |s: [Point2; 2], t: [Point2; 2]| side(s, t[0]) * side(s, t[1]) < 0.0;
@@ -150,7 +154,7 @@ fn between_mm(a: [Point2; 2], b: [Point2; 2]) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Distance of a point from a segment, mm.
+/// Returns the distance of a point from a segment, mm.
 fn from_segment_mm(p: Point2, [from, to]: [Point2; 2]) -> f64 {
     let (line, to_point) = (to - from, p - from);
     let length2 = line.norm_squared();
@@ -170,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn segments_are_as_far_apart_as_they_are() {
+    fn distances_between_segments_are_exact() {
         let segment = |a: [f64; 2], b: [f64; 2]| [Point2::from(a), Point2::from(b)];
         let base = segment([0.0, 0.0], [4.0, 0.0]);
         assert_eq!(between_mm(base, segment([1.0, -1.0], [2.0, 3.0])), 0.0);
@@ -180,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_shown_whole_until_they_would_meet() {
+    fn ends_that_would_meet_are_shortened() {
         assert_eq!(dimensions(&[]).shown_ends_mm(), [SHOWN_MM; 2]);
         assert_eq!(dimensions(&["layout.wrap_angle_deg=200"]).shown_ends_mm(), [SHOWN_MM; 2]);
         let [load, other] = dimensions(&["layout.wrap_angle_deg=280"]).shown_ends_mm();

@@ -1,4 +1,4 @@
-//! What is believed of a switch before it is made: its curve, and how wrong that may be.
+//! Predictive distributions: the best estimate of the curve of a switch, and its uncertainty.
 
 use nalgebra::Matrix3;
 use pinswitch_friction::physics::{Constants, PhysicsSwitch};
@@ -6,34 +6,38 @@ use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus, Transiti
 
 use super::curve::Curve;
 
-/// Quantile of the normal distribution that a band of 95 % reaches.
+/// Quantile of the standard normal distribution at the ends of a 95 % band.
 const BAND_QUANTILE: f64 = 1.96;
 
-/// A switch as a belief sees it: grooves, and what the tendon touches.
+/// The input of a prediction: grooves, and the contact of the tendon.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// Occupied grooves, ascending, numbered from 1.
     pub pins: Vec<usize>,
-    /// What the tendon touches.
+    /// Contact of the tendon.
     pub contact: Contact,
 }
 
-/// What a model may be wrong by beyond its constants. All loads share one standard normal: a model that is too low at one
-/// load is too low at the others. Standard deviations are of logarithms, one for each side.
+/// Errors of a model other than those of its constants. One standard normal variable scales the
+/// errors at all loads: a model that is too low at one load is too low at every load. Each field is
+/// a standard deviation of a logarithm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelError {
-    /// Of the friction at each load, upwards.
+    /// Standard deviation of the friction at each load, upwards.
     pub up: Vec<f64>,
-    /// Of the friction at each load, downwards.
+    /// Standard deviation of the friction at each load, downwards.
     pub down: Vec<f64>,
-    /// Of the threshold where the friction is higher than believed: it comes earlier by this.
+    /// Standard deviation of the threshold towards lighter loads, where the friction exceeds the
+    /// best estimate.
     pub threshold_earlier: f64,
-    /// Of the threshold where the friction is lower than believed: it comes later by this.
+    /// Standard deviation of the threshold towards heavier loads, where the friction is below the
+    /// best estimate.
     pub threshold_later: f64,
 }
 
 impl ModelError {
-    /// The curve as it is if the model errs by `z`, and the factor on its threshold.
+    /// Returns the curve for a model error of `z` standard deviations, and the factor on its
+    /// threshold.
     pub fn applied(&self, curve: Curve, z: f64) -> (Curve, f64) {
         let side = if z > 0.0 { &self.up } else { &self.down };
         let threshold = if z > 0.0 { self.threshold_earlier } else { self.threshold_later };
@@ -41,32 +45,33 @@ impl ModelError {
     }
 }
 
-/// The best guess of a part, its constants moved one by one, and what the model may be wrong by.
+/// The best estimate of a part, its changes with each constant, and the model error.
 #[derive(Clone, Debug)]
 pub struct Believed {
-    /// How far the model is to be trusted.
+    /// Prediction status.
     pub trust: PredictionStatus,
-    /// The best guess.
+    /// The best estimate.
     pub middle: Curve,
-    /// The curve with each constant's standard normal at one.
+    /// One curve for each constant, whose standard normal variable is one.
     pub moved: Vec<Curve>,
-    /// What the model may be wrong by.
+    /// The model error.
     pub error: ModelError,
 }
 
-/// A model with what is uncertain about it. A second one stands behind `design --model`.
+/// A model with its uncertainty. `design --model` selects another implementation.
 pub trait Belief: Sync {
-    /// How many standard normals draw its constants.
+    /// Returns the number of standard normal variables that determine the constants.
     fn constants(&self) -> usize;
 
-    /// The curve of `part` with constants drawn by `z`; all zero is the best guess. `None` if it cannot be computed.
+    /// Returns the curve of `part` with the constants at `z`; the best estimate is at zero. `None`
+    /// if the curve cannot be computed.
     fn curve(&self, part: &Part, loads_n: &[f64], z: &[f64]) -> Option<Curve>;
 
-    /// The curve of the best guess with its band and trust.
+    /// Returns the best estimate of the curve with its band and status.
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve>;
 
-    /// All that is believed of `part`: the model error is what the band holds beyond the constants, whose variance is taken
-    /// out in quadrature.
+    /// Returns the predictive distribution of `part`. The model error is the part of the band that
+    /// the constants do not explain; their variance is subtracted in quadrature.
     fn believed(&self, part: &Part, loads_n: &[f64]) -> Option<Believed> {
         let banded = self.banded(part, loads_n)?;
         let zeros = vec![0.0; self.constants()];
@@ -94,7 +99,8 @@ pub trait Belief: Sync {
         let (earlier, later) = match Transition::of(&banded) {
             Some(t) => {
                 let earlier = beyond(t.threshold_n / t.low_n, threshold);
-                // The band may end above the friction of the threshold at all loads: then the other side stands in.
+                // The upper end of the band may be above all loads. Its distance is then assumed to
+                // be at least that of the lower end.
                 let is_cut = banded.load_n.last().is_some_and(|last| t.high_n >= *last);
                 let later = beyond(t.high_n / t.threshold_n, threshold);
                 (earlier, if is_cut { later.max(earlier) } else { later })
@@ -111,7 +117,8 @@ pub trait Belief: Sync {
     }
 }
 
-/// The physics with the constants fitted to the published maxima, lognormal with the covariance of their fit.
+/// The physics with constants fitted to the published maxima. The constants are lognormal, with the
+/// covariance of the fit.
 #[derive(Clone, Debug)]
 pub struct PublishedPhysics {
     root: Matrix3<f64>,
@@ -120,7 +127,7 @@ pub struct PublishedPhysics {
 impl Default for PublishedPhysics {
     fn default() -> Self {
         let covariance = Matrix3::from_row_slice(&Constants::published_covariance().concat());
-        // A covariance that is no longer positive would leave the constants as they are.
+        // If the covariance is not positive definite, the constants have no uncertainty.
         let root = covariance.cholesky().map_or_else(Matrix3::zeros, |c| c.l());
         Self { root }
     }
@@ -162,7 +169,7 @@ mod tests {
         (0..20).map(|i| 3.0 * libm::pow(50.0f64 / 3.0, f64::from(i) / 19.0)).collect()
     }
 
-    /// Constants and model error together are the band again.
+    /// Constants and model error together reproduce the band.
     #[test]
     fn belief_and_band_agree() {
         let (belief, part, loads) = (PublishedPhysics::default(), part(), loads());
@@ -179,7 +186,7 @@ mod tests {
     #[test]
     fn more_friction_is_an_earlier_threshold() {
         let (belief, mut part, loads) = (PublishedPhysics::default(), part(), loads());
-        // Far from what was measured, so that the model error is more than the constants'.
+        // Far from the measured part, so that the model error exceeds that of the constants.
         part.contact = part.contact.with_unmodelled(vec!["another mix".to_owned()]);
         let Believed { error, middle, .. } = belief.believed(&part, &loads).unwrap();
         let (up, earlier) = error.applied(middle.clone(), 1.0);

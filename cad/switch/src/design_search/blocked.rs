@@ -1,10 +1,11 @@
-//! Why a request cannot be met: what the nearest design misses, what holds it there, and what would move it.
+//! The reason why no design meets a request: the missed targets of the nearest design, the limits
+//! that block it, and changes that would meet the request.
 
 use serde::Serialize;
 
 use super::candidate::Trial;
 use super::refine::{Aim, Place, refined};
-use super::relaxed::usual;
+use super::relaxed::extended_range;
 use super::space::{Space, is_predictable};
 use crate::config::Configuration;
 use crate::request::{Limits, Materials, Parameter, Request, Target, Vary};
@@ -12,72 +13,76 @@ use pinswitch_friction::{pluralise, sort_by_number};
 
 /// Steps of the search over all parameters together.
 const TOGETHER_STEPS: u64 = 400;
-/// Values of a parameter that are tried, from one end of its range to the other.
-const TRIED: usize = 60;
-/// A parameter this near to the end of its range, as a share of it, lies at the end.
-const AT_THE_END: f64 = 0.01;
-/// Share of the miss that a move must take away to be worth naming.
-const WORTH_NAMING: f64 = 0.02;
+/// Number of intervals between the values of a parameter that are evaluated.
+const SCAN_STEPS: usize = 60;
+/// Distance from the end of its range at which a parameter is considered to be at the end, as a
+/// share of the range.
+const RANGE_END_SHARE: f64 = 0.01;
+/// Least reduction of the miss for which a change is reported, as a share of the miss.
+const LEAST_REDUCTION: f64 = 0.02;
 
-/// A target that the nearest design does not meet.
+/// A target that the nearest design misses.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Missed {
-    /// The target, in words.
+    /// The target as text.
     pub target: String,
-    /// What the nearest design has.
+    /// Value of the nearest design.
     pub value: f64,
-    /// The bound that it would have to reach.
+    /// The violated bound.
     pub bound: f64,
-    /// How far it lies from the bound, as a share of the bound: the one measure in which misses are stated.
+    /// Distance of the value from the bound, as a share of the bound. All misses are reported in
+    /// this measure.
     pub by: f64,
 }
 
-/// A change of one parameter, all others kept.
+/// A change of one parameter while all others stay fixed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Move {
     /// The parameter.
     pub parameter: Parameter,
     /// Its value in the nearest design.
     pub from: f64,
-    /// The value that comes nearest to the request.
+    /// The value with the smallest miss.
     pub to: f64,
-    /// Whether all targets are met there.
+    /// Whether this value meets all targets.
     pub meets: bool,
-    /// What is missed there.
+    /// Targets that this value misses.
     pub missed: Vec<Missed>,
-    /// How far all is missed there, to compare moves by: a root of summed squares of logarithms.
+    /// The miss at this value, to compare changes: the root of the sum of squared logarithms.
     #[serde(skip)]
     pub(super) miss: f64,
-    /// What forbids it: a limit of the request, or a rule of what can be printed.
+    /// The limit of the request or the rule that forbids the change.
     pub forbidden_by: String,
 }
 
-/// Why a request cannot be met.
+/// The reason why no design meets a request.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Blocked {
     /// Targets that the nearest design misses.
     pub missed: Vec<Missed>,
-    /// The limit that blocks it, in words.
+    /// The blocking limit as text.
     pub limit: String,
-    /// What would move the nearest design, the best first.
+    /// Single changes that would bring the nearest design closer to the request, the best first.
     pub moves: Vec<Move>,
-    /// Where no single change meets the request: changes of several parameters that do so together, if there are any within
-    /// what is usual, with no limits of size and any material.
+    /// Changes of several parameters that together meet the request, if no single change does. The
+    /// search for them uses the default ranges without limits of size, and any material. Empty if
+    /// it finds none.
     pub together: Vec<Change>,
 }
 
-/// A parameter that changes with others.
+/// The change of one parameter among several.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// The parameter.
     pub parameter: Parameter,
     /// Its value in the nearest design.
     pub from: f64,
-    /// Its value in a design that meets the request.
+    /// Its value in the design that meets the request.
     pub to: f64,
 }
 
-/// Why `nearest` is not what was asked. `other_pins` is the best miss with any number of pins.
+/// Returns the reason why `nearest` does not meet the request. `other_pins` is the smallest miss
+/// with any number of pins, and that number.
 pub(super) fn blocked(
     trial: &Trial<'_>,
     space: &Space,
@@ -89,27 +94,28 @@ pub(super) fn blocked(
     let mut moves: Vec<Move> = Parameter::ALL
         .iter()
         .filter_map(|p| best_move(trial, space, nearest, *p))
-        .filter(|m| m.miss < (1.0 - WORTH_NAMING) * miss)
+        .filter(|m| m.miss < (1.0 - LEAST_REDUCTION) * miss)
         .collect();
-    // What meets the request first: where the request itself sets the limit before what is merely held, then by how little it
-    // changes. After that what comes nearest.
-    let is_held = |m: &Move| {
+    // Changes that meet the request come first. Among these, parameters that the request lets vary
+    // precede fixed ones, and small changes precede large ones. The other changes follow in the
+    // order of their miss.
+    let is_fixed = |m: &Move| {
         !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.request, m.parameter)
     };
     let change = |m: &Move| libm::log(m.to / m.from).abs();
     sort_by_number(&mut moves, |m| if m.meets { change(m) } else { m.miss });
     sort_by_number(&mut moves, |m| match m.meets {
-        true => f64::from(is_held(m)),
+        true => f64::from(is_fixed(m)),
         false => 2.0,
     });
     let of_pins = |pins: usize, effect: &str| {
-        let asked = trial.request.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
-        format!("limits.pins = {asked}: with {} the request {effect}", pluralise(pins, "pin"))
+        let range = trial.request.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
+        format!("limits.pins = {range}: with {} the request {effect}", pluralise(pins, "pin"))
     };
     let limit = match (moves.first(), other_pins) {
         (Some(first), _) if first.meets => first.forbidden_by.clone(),
         (_, Some((pins, other))) if other <= 0.0 => of_pins(pins, "can be met"),
-        (None, Some((pins, other))) if other < (1.0 - WORTH_NAMING) * miss => {
+        (None, Some((pins, other))) if other < (1.0 - LEAST_REDUCTION) * miss => {
             of_pins(pins, "is missed by less")
         }
         (Some(first), _) => format!("{}; no single parameter reaches the request", first.forbidden_by),
@@ -121,7 +127,8 @@ pub(super) fn blocked(
     Blocked { missed, limit, moves, together }
 }
 
-/// Changes of all parameters, from the nearest design, that meet the request; none if the search finds none.
+/// Returns changes of all parameters that lead from the nearest design to one that meets the
+/// request; empty if the search finds none.
 fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
     let free = Request {
         limits: Limits {
@@ -131,23 +138,23 @@ fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
         materials: Materials::default(),
         vary: Vary {
             pattern: false,
-            parameters: Parameter::ALL.iter().map(|p| usual(*p, nearest)).collect(),
+            parameters: Parameter::ALL.iter().map(|p| extended_range(*p, nearest)).collect(),
         },
         ..trial.request.clone()
     };
-    let trial = trial.with_ask(&free);
+    let trial = trial.with_request(&free);
     let space = Space::new(nearest, &free);
     let start = Place { material: 0, pins: nearest.layout.pins.clone(), at: space.base() };
     let there = refined(&trial, &space, &start, Aim::Nearest, TOGETHER_STEPS);
-    let found = space.configuration(there.material, &there.pins, &there.at);
-    if trial.shortfall(&found).is_none_or(|miss| miss > 0.0) {
+    let solution = space.configuration(there.material, &there.pins, &there.at);
+    if trial.shortfall(&solution).is_none_or(|miss| miss > 0.0) {
         return Vec::new();
     }
-    let change = |p: &Parameter| Change { parameter: *p, from: p.value(nearest), to: p.value(&found) };
+    let change = |p: &Parameter| Change { parameter: *p, from: p.value(nearest), to: p.value(&solution) };
     Parameter::ALL.iter().map(change).filter(|c| libm::log(c.to / c.from).abs() > 0.005).collect()
 }
 
-/// Targets, and sizes where they are wishes, that `configuration` misses.
+/// Returns the targets that `configuration` misses, and the sizes where their limits are soft.
 fn all_missed(trial: &Trial<'_>, configuration: &Configuration) -> Vec<Missed> {
     let values = trial.median(configuration).unwrap_or_default();
     let targets = trial.request.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n));
@@ -178,7 +185,7 @@ fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
     None
 }
 
-/// The value of one parameter that comes nearest to the request, whatever the request allows.
+/// Returns the value of one parameter with the smallest miss, whether or not the request allows it.
 fn best_move(
     trial: &Trial<'_>,
     space: &Space,
@@ -193,22 +200,22 @@ fn best_move(
     } else {
         (least, most)
     };
-    let tried = (0..=TRIED).filter_map(|i| {
-        let to = parameter.rounded(low * libm::pow(high / low, i as f64 / TRIED as f64), (low, high));
+    let candidates = (0..=SCAN_STEPS).filter_map(|i| {
+        let to = parameter.rounded(low * libm::pow(high / low, i as f64 / SCAN_STEPS as f64), (low, high));
         let mut moved = nearest.clone();
         parameter.set(&mut moved, to);
         if (to - from).abs() < 1e-9 || !is_predictable(&moved) {
             return None;
         }
         let miss = trial.shortfall(&moved)?;
-        // What no printer makes is no advice.
+        // A configuration that cannot be printed is useless as advice.
         let printable = crate::design::is_accepted(moved.clone());
         printable.then_some((to, miss, moved))
     });
-    // Of those that meet it, the one that changes least; otherwise the one that comes nearest.
+    // Among equal misses, such as zero, the smallest change is the best.
     let change = |to: f64| libm::log(to / from).abs();
     let (to, miss, moved) =
-        tried.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
+        candidates.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
     let forbidden_by = forbidden(trial.request, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
         .unwrap_or_else(|| {
@@ -218,7 +225,7 @@ fn best_move(
     Some(Move { parameter, from, to, meets: miss == 0.0, missed, miss, forbidden_by })
 }
 
-/// Whether the request names the materials that a parameter is taken from.
+/// Returns whether the request lists the materials that determine a parameter.
 const fn is_listed(request: &Request, parameter: Parameter) -> bool {
     match parameter {
         Parameter::PinDiameterMm => !request.materials.pin_diameter_mm.is_empty(),
@@ -227,11 +234,11 @@ const fn is_listed(request: &Request, parameter: Parameter) -> bool {
     }
 }
 
-/// What in the request keeps a parameter from going there.
+/// Returns the field of the request that forbids a change; `None` if the request allows it.
 fn forbidden(request: &Request, space: &Space, parameter: Parameter, from: f64, to: f64) -> Option<String> {
     let name = parameter.name();
     if let Some(v) = space.varied.iter().find(|v| v.parameter == parameter) {
-        let slack = AT_THE_END * (v.to - v.from);
+        let slack = RANGE_END_SHARE * (v.to - v.from);
         return if to > v.to {
             Some(format!("vary.{name} ends at {}", v.to))
         } else if to < v.from {

@@ -1,4 +1,5 @@
-//! A configuration on trial, its curve against the targets, and the loads to look at.
+//! Evaluation of a candidate: its curve at the loads of the search, the values of the targets, and
+//! the limits.
 
 use pinswitch_friction::{Substrate, Transition};
 
@@ -9,17 +10,18 @@ use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
 use crate::request::{Quantity, Request, SOURCES, Target};
 
-/// Loads between the ends, evenly in their logarithm.
+/// Number of loads of a curve, evenly spaced in their logarithm.
 const LOADS: usize = 22;
-/// How far the loads reach beyond the range: a made part may switch a little outside of it.
+/// Factor by which the loads extend beyond the range, since the threshold of a made part may be
+/// slightly outside.
 const REACH: f64 = 1.5;
 
-/// Loads of `predict` on each side of a threshold that are looked at.
+/// Number of loads of `predict` on each side of a threshold at which it is refined.
 const AROUND: usize = 2;
-/// Share by which a threshold between few loads may be off.
+/// Largest relative error of a threshold that is interpolated between the loads of a search.
 const NEAR: f64 = 0.05;
 
-/// What does not change during a search.
+/// The invariants of a search.
 pub(super) struct Trial<'a> {
     pub(super) request: &'a Request,
     pub(super) belief: &'a dyn Belief,
@@ -27,13 +29,15 @@ pub(super) struct Trial<'a> {
     pub(super) range_n: (f64, f64),
     /// Loads at which curves are computed.
     pub(super) loads_n: Vec<f64>,
-    /// The loads of the curve that `predict` shows: its threshold is the one that is stated.
+    /// Loads of the curve of `predict`, which determine the reported threshold.
     predicted_n: Vec<f64>,
-    /// Whether limits of size are wishes, whose excess counts as a miss, and refuse nothing.
+    /// Whether limits of size are soft: an excess counts as a miss, and does not exclude a
+    /// configuration.
     has_soft_sizes: bool,
 }
 
-/// The draw of one made part: constants, model, dimensions. All standard normal.
+/// The random variables of one made part: constants, model error and dimensions. All are standard
+/// normal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Draw {
     pub(super) constants: Vec<f64>,
@@ -68,22 +72,23 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The same loads for another request.
-    pub(super) fn with_ask<'b>(&'b self, request: &'b Request) -> Trial<'b> {
+    /// Returns the same loads for another request.
+    pub(super) fn with_request<'b>(&'b self, request: &'b Request) -> Trial<'b> {
         Trial { request, loads_n: self.loads_n.clone(), predicted_n: self.predicted_n.clone(), ..*self }
     }
 
-    /// The same for another request, whose limits of size are wishes.
+    /// Returns the same loads for another request, with soft limits of size.
     pub(super) fn with_soft_sizes<'b>(&'b self, request: &'b Request) -> Trial<'b> {
-        Trial { has_soft_sizes: true, ..self.with_ask(request) }
+        Trial { has_soft_sizes: true, ..self.with_request(request) }
     }
 
-    /// Whether limits of size are wishes.
+    /// Returns whether limits of size are soft.
     pub(super) const fn has_soft_sizes(&self) -> bool {
         self.has_soft_sizes
     }
 
-    /// Limits of size: field, the size that `configuration` has, and the largest, mm.
+    /// Returns the limited sizes: the field, the size of `configuration`, and the largest allowed
+    /// size, mm.
     fn sizes(&self, configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
         let limits = &self.request.limits;
         let radius_mm = || Dimensions::new(configuration.clone()).support_radius_mm();
@@ -93,21 +98,23 @@ impl<'a> Trial<'a> {
         radius.into_iter().chain(width).collect()
     }
 
-    /// Sizes that are wishes and not kept: field, size and largest, mm.
+    /// Returns the sizes that exceed soft limits: the field, the size, and the limit, mm.
     pub(super) fn missed_sizes(&self, configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
         let mut sizes = if self.has_soft_sizes { self.sizes(configuration) } else { Vec::new() };
         sizes.retain(|(_, size, most)| size > &(most + 1e-9));
         sizes
     }
 
-    /// How far a configuration misses the targets, and the sizes where they are wishes.
+    /// Returns the miss of a configuration: that of the targets, combined with that of soft limits
+    /// of size.
     pub(super) fn shortfall(&self, configuration: &Configuration) -> Option<f64> {
         let targets = self.miss(&self.median(configuration)?);
         let sizes = self.missed_sizes(configuration);
         Some(sizes.iter().map(|(_, size, most)| libm::log(size / most)).fold(targets, libm::hypot))
     }
 
-    /// The part of a configuration on silicone; `None` if the tendon would not lie on all of its pins.
+    /// Returns the part of a configuration on silicone; `None` without pins, or if the tendon does
+    /// not touch all of them.
     pub(super) fn part(&self, configuration: &Configuration) -> Option<Part> {
         let mut configuration = configuration.clone();
         configuration.layout.substrate = Substrate::Silicone;
@@ -117,15 +124,15 @@ impl<'a> Trial<'a> {
         (contact.pins().count() == pins.len() && !pins.is_empty()).then_some(Part { pins, contact })
     }
 
-    /// Values of all targets by the best guess.
+    /// Returns the best estimates of all targets.
     pub(super) fn median(&self, configuration: &Configuration) -> Option<Vec<f64>> {
         let part = self.part(configuration)?;
         let curve = self.belief.curve(&part, &self.loads_n, &vec![0.0; self.belief.constants()])?;
         Some(self.values(&curve, self.settled(&part, &curve)))
     }
 
-    /// The factor that takes the threshold of `curve`, between the few loads of a search, to the one between the loads of
-    /// `predict`; 1 where it is found at none of these.
+    /// Returns the ratio of the threshold between the loads of `predict` to that of `curve`, which
+    /// has fewer loads; 1 if the threshold is not between the loads of `predict`.
     pub(super) fn settled(&self, part: &Part, curve: &Curve) -> f64 {
         let here = curve.switching();
         let between = |from: usize, to: usize| {
@@ -135,7 +142,7 @@ impl<'a> Trial<'a> {
         };
         let count = self.predicted_n.len();
         let next = self.predicted_n.partition_point(|l| *l < here.threshold_n);
-        // Nearly always a few loads around it are enough.
+        // A few loads around the threshold are nearly always sufficient.
         let (from, to) = (next.saturating_sub(AROUND + 1), (next + AROUND).min(count));
         let is_near = here.is_found && next > 0 && next < count;
         let is_beyond = here.threshold_n < self.predicted_n[0] * (1.0 - NEAR)
@@ -148,7 +155,7 @@ impl<'a> Trial<'a> {
         found.map_or(1.0, |found| found / here.threshold_n)
     }
 
-    /// Values of the targets on a curve whose threshold is moved by a factor.
+    /// Returns the values of the targets of a curve whose threshold is multiplied by a factor.
     pub(super) fn values(&self, curve: &Curve, threshold_factor: f64) -> Vec<f64> {
         let value = |t: &Target| {
             let value = curve.value(t.quantity, self.range_n);
@@ -157,7 +164,8 @@ impl<'a> Trial<'a> {
         self.request.targets.iter().map(value).collect()
     }
 
-    /// Whether the best guess meets all targets; a threshold must lie within the loads.
+    /// Returns whether the best estimate meets all targets. A threshold must also be within the
+    /// loads.
     pub(super) fn is_met(&self, values: &[f64]) -> bool {
         self.request.targets.iter().zip(values).all(|(t, v)| self.meets(t, *v))
     }
@@ -168,7 +176,7 @@ impl<'a> Trial<'a> {
         within && target.requirement.is_met(value)
     }
 
-    /// How far the values miss the targets: root of the sum of squares of the logarithms.
+    /// Returns the miss of the values: the root of the sum of the squared logarithms.
     pub(super) fn miss(&self, values: &[f64]) -> f64 {
         let excess = |(t, v): (&Target, &f64)| {
             let outside = if t.quantity == Quantity::Threshold {
@@ -181,7 +189,7 @@ impl<'a> Trial<'a> {
         self.request.targets.iter().zip(values).map(excess).sum::<f64>().sqrt()
     }
 
-    /// The values of a made part, predicted in full.
+    /// Returns the values of a made part from a complete prediction.
     pub(super) fn made(
         &self,
         part: &Part,
@@ -196,12 +204,13 @@ impl<'a> Trial<'a> {
         Some(self.values(&curve, threshold_factor))
     }
 
-    /// All that is believed of a part.
+    /// Returns the predictive distribution of a part.
     pub(super) fn believed(&self, part: &Part) -> Option<Believed> {
         self.belief.believed(part, &self.loads_n)
     }
 
-    /// The curve of a part whose dimensions are off by `made`, by the best guess.
+    /// Returns the best estimate of the curve of a part with deviations of `made` standard
+    /// deviations in its dimensions.
     pub(super) fn curve_of_made(
         &self,
         part: &Part,
@@ -213,8 +222,8 @@ impl<'a> Trial<'a> {
         self.belief.curve(&made, &self.loads_n, &vec![0.0; self.belief.constants()])
     }
 
-    /// Whether a configuration can be printed and keeps to all limits, without the error of [`Self::broken_limit`], whose
-    /// remedies take longer to find than a step of a search may.
+    /// Returns whether a configuration can be printed and satisfies all limits. Faster than
+    /// [`Self::broken_limit`], whose remedies take too long for a step of a search.
     pub(super) fn keeps_limits(&self, configuration: &Configuration) -> bool {
         let mut on_silicone = configuration.clone();
         on_silicone.layout.substrate = Substrate::Silicone;
@@ -224,7 +233,8 @@ impl<'a> Trial<'a> {
                 || self.sizes(configuration).into_iter().all(|(_, size, most)| size <= most + 1e-9))
     }
 
-    /// Which limit of the part a configuration breaks; `None` if it can be printed and keeps to all.
+    /// Returns the limit that a configuration violates; `None` if it can be printed and satisfies
+    /// all of them.
     pub(super) fn broken_limit(&self, configuration: &Configuration) -> Option<String> {
         let mut on_silicone = configuration.clone();
         on_silicone.layout.substrate = Substrate::Silicone;
@@ -247,14 +257,14 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// The bed that the shell needs, where it has none so large. Whether all parts fit is asked of what is proposed, since it
-/// takes longer than a step of a search may.
+/// Returns the side of the bed that the shell needs, if that of the printer is smaller. The search
+/// checks whether all parts fit only for proposals, since that takes too long for a step.
 fn lacking_bed_mm(c: &Configuration) -> Option<f64> {
     let needed_mm = Dimensions::new(c.clone()).least_bed_mm();
     (needed_mm > c.print.bed_mm).then_some(needed_mm)
 }
 
-/// Width of the assembled switch: the shell between its two supports.
+/// Returns the width of the assembled switch: the shell and its two supports.
 pub(super) fn outer_width_mm(c: &Configuration) -> f64 {
     c.shell.width_mm + 2.0 * c.support.plate_mm
 }
@@ -267,7 +277,7 @@ mod tests {
     use crate::request::{Requirement, Target};
 
     #[test]
-    fn a_threshold_is_the_one_that_is_predicted() {
+    fn thresholds_agree_with_predictions() {
         let request = Request {
             targets: vec![Target { quantity: Quantity::Threshold, requirement: Requirement::AtLeast(5.0) }],
             ..Request::default()

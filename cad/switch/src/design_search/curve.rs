@@ -1,31 +1,32 @@
-//! A bare curve, and the quantities that targets are about.
+//! Curves without bands, and the values of the target quantities.
 
 use pinswitch_friction::FrictionCurve;
 
 use crate::request::Quantity;
 
-/// Half of the ratio of loads, as a logarithm, over which the stiffness is taken: the curve from 15 % under to 15 % over
-/// the threshold. Narrower, and the mesh of the physics shows; wider, and the knee is cut.
+/// Half of the logarithm of the ratio of loads over which the stiffness is computed: the curve from
+/// 15 % below to 15 % above the threshold. A narrower range shows the mesh of the physics, and a
+/// wider one cuts off the knee.
 const STIFFNESS_HALF_SPAN: f64 = 0.14;
 
-/// Friction and the silicone's share over ascending loads.
+/// Friction and share of the silicone at ascending loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Loads, N, ascending.
     pub load_n: Vec<f64>,
     /// Friction, N.
     pub friction_n: Vec<f64>,
-    /// Share of the friction that silicone makes.
+    /// Share of the friction that silicone carries.
     pub silicone_share: Vec<f64>,
 }
 
-/// Where a curve switches.
+/// The threshold of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Switching {
-    /// Load at which silicone makes half of the friction, N. Where it does at none of the loads, a stand-in beyond them
-    /// that moves the right way as the curve changes.
+    /// Load at which silicone carries half of the friction, N. If no load reaches this share, an
+    /// extrapolated load that is monotonic in the share at the end of the curve.
     pub threshold_n: f64,
-    /// Whether that load was found between those of the curve.
+    /// Whether the threshold is within the loads of the curve.
     pub is_found: bool,
 }
 
@@ -40,30 +41,30 @@ impl From<&FrictionCurve> for Curve {
 }
 
 impl Curve {
-    /// Friction at `load_n`, between points by straight lines in logarithms.
+    /// Returns the friction at `load_n`, interpolated linearly in logarithms.
     pub fn friction_at(&self, load_n: f64) -> f64 {
         interpolate(&self.load_n, &self.friction_n, load_n)
     }
 
-    /// Where it switches.
+    /// Returns the threshold.
     pub fn switching(&self) -> Switching {
         let share = &self.silicone_share;
-        let found = |threshold_n, is_found| Switching { threshold_n, is_found };
-        let (Some(first), Some(last)) = (share.first(), share.last()) else { return found(1.0, false) };
+        let result = |threshold_n, is_found| Switching { threshold_n, is_found };
+        let (Some(first), Some(last)) = (share.first(), share.last()) else { return result(1.0, false) };
         let (lightest, heaviest) = (self.load_n[0], self.load_n[self.load_n.len() - 1]);
         if *first >= 0.5 {
-            return found(lightest * 0.5 / first, false);
+            return result(lightest * 0.5 / first, false);
         }
         match share.iter().position(|s| *s >= 0.5) {
             Some(i) => {
                 let part = (0.5 - share[i - 1]) / (share[i] - share[i - 1]);
-                found(self.load_n[i - 1] * libm::pow(self.load_n[i] / self.load_n[i - 1], part), true)
+                result(self.load_n[i - 1] * libm::pow(self.load_n[i] / self.load_n[i - 1], part), true)
             }
-            None => found(heaviest * 0.5 / last.max(0.05), false),
+            None => result(heaviest * 0.5 / last.max(0.05), false),
         }
     }
 
-    /// The value of `quantity`; `range_n` are the lightest and heaviest load.
+    /// Returns the value of `quantity`; `range_n` contains the lightest and the heaviest load.
     pub fn value(&self, quantity: Quantity, range_n: (f64, f64)) -> f64 {
         match quantity {
             Quantity::Threshold => self.switching().threshold_n,
@@ -74,7 +75,7 @@ impl Curve {
         }
     }
 
-    /// `d ln D / d ln F` around `load_n`.
+    /// Returns `d ln D / d ln F` around `load_n`.
     fn stiffness(&self, load_n: f64) -> f64 {
         let (first, last) = (self.load_n[0], self.load_n[self.load_n.len() - 1]);
         let low = (load_n * libm::exp(-STIFFNESS_HALF_SPAN)).clamp(first, last);
@@ -85,7 +86,7 @@ impl Curve {
         libm::log(self.friction_at(high) / self.friction_at(low)) / libm::log(high / low)
     }
 
-    /// The same curve, its friction at each load times `exp(error)`.
+    /// Returns the curve with the friction at each load multiplied by `exp(error)`.
     #[must_use]
     pub fn scaled(mut self, errors: impl Iterator<Item = f64>) -> Self {
         self.friction_n.iter_mut().zip(errors).for_each(|(d, error)| *d *= libm::exp(error));
@@ -93,7 +94,8 @@ impl Curve {
     }
 }
 
-/// `column` at `load_n`, linear in the logarithms of both; clamped to the ends.
+/// Returns `column` at `load_n`, interpolated linearly in the logarithms of both, and constant
+/// beyond the ends.
 fn interpolate(loads_n: &[f64], column: &[f64], load_n: f64) -> f64 {
     let i = loads_n.partition_point(|l| *l < load_n);
     let Some(last) = loads_n.len().checked_sub(1) else { return 0.0 };

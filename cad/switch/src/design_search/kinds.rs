@@ -1,30 +1,33 @@
-//! When two answers differ in kind, and not only in the last digit.
+//! The criterion by which two proposals are different designs, and not variations of one.
 
 use crate::config::Configuration;
 use crate::request::Parameter;
 
-/// Ratio of a parameter from which on another material or another mould is meant.
-const CLEARLY_OTHER: f64 = 1.25;
-/// Angle by which a pin must lie elsewhere, degrees: one and a half grooves of the published segment.
-const CLEARLY_ELSEWHERE_DEG: f64 = 9.0;
+/// Least ratio of two values of a parameter that requires another material or another mould.
+const DIFFERENT_RATIO: f64 = 1.25;
+/// Least displacement of a pin that makes a different layout, degrees: one and a half grooves of
+/// the published segment.
+const DIFFERENT_ANGLE_DEG: f64 = 9.0;
 
-/// Whether two configurations differ in kind: in the number of pins, in the place of a pin by 9 degrees (mirror images are
-/// the same), or in a parameter or the tendon by a quarter.
+/// Returns whether two configurations are different designs: another number of pins, a pin
+/// displaced by 9 degrees (mirror images are equal), or a parameter or a tendon that differs by a
+/// quarter.
 pub fn differ_in_kind(a: &Configuration, b: &Configuration) -> bool {
     let (pins_a, pins_b) = (angles_deg(a), angles_deg(b));
     if pins_a.len() != pins_b.len() {
         return true;
     }
-    let apart = |a: f64, b: f64| a.max(b) / a.min(b).max(1e-9) >= CLEARLY_OTHER;
+    let apart = |a: f64, b: f64| a.max(b) / a.min(b).max(1e-9) >= DIFFERENT_RATIO;
     let tendon = |c: &Configuration| c.tendon.rope_diameter_mm + 2.0 * c.tendon.coating_mm;
     let parameters = Parameter::ALL.iter().filter(|p| **p != Parameter::PitchDeg);
     parameters.into_iter().any(|p| apart(p.value(a), p.value(b)))
         || apart(tendon(a), tendon(b))
-        || elsewhere_deg(&pins_a, &pins_b) >= CLEARLY_ELSEWHERE_DEG
+        || largest_shift_deg(&pins_a, &pins_b) >= DIFFERENT_ANGLE_DEG
 }
 
-/// The farthest that a pin of one lies from its partner in the other, or in the other's mirror image.
-fn elsewhere_deg(a: &[f64], b: &[f64]) -> f64 {
+/// Returns the largest distance between corresponding pins, degrees, for the layout or its mirror
+/// image, whichever is closer.
+fn largest_shift_deg(a: &[f64], b: &[f64]) -> f64 {
     let farthest =
         |b: &mut dyn Iterator<Item = f64>| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     farthest(&mut b.iter().copied()).min(farthest(&mut b.iter().rev().map(|angle| -angle)))
@@ -51,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_and_twins_are_of_one_kind() {
+    fn mirror_images_are_of_one_kind() {
         let same = |_: &mut Configuration| {};
         let base = with(&[5, 8, 10], same);
         assert!(!differ_in_kind(&base, &with(&[6, 8, 11], same)), "a mirror image");
@@ -65,7 +68,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn kinds_are_mutual_and_nothing_differs_from_itself(
+        fn difference_in_kind_is_symmetric(
             a in proptest::collection::btree_set(1usize..16, 1..8), b in proptest::collection::btree_set(1usize..16, 1..8)
         ) {
             let (a, b): (Vec<usize>, Vec<usize>) = (a.into_iter().collect(), b.into_iter().collect());

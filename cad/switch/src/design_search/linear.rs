@@ -1,5 +1,6 @@
-//! A cheap guess of the probability: each target's logarithm as a sum of independent errors. It leads the search and says
-//! what the uncertainty comes from; what is stated in the end comes from [`super::probability`].
+//! A fast approximation of the probability: the logarithm of each target is a sum of independent
+//! errors. It guides the search and gives the sources of the uncertainty. Reported probabilities
+//! come from [`super::probability`].
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -10,21 +11,21 @@ use super::candidate::Trial;
 use crate::config::Configuration;
 use crate::request::{Quantity, SOURCES, Target, Tolerances};
 
-/// Standard deviation that stands in before anything is known of a candidate.
+/// Standard deviation of a candidate whose uncertainty is not computed.
 pub(super) const GUESSED_SD: f64 = 0.12;
-/// Least standard deviation: without any, a probability has no slope.
+/// Least standard deviation. With zero, the probability would have no slope.
 const LEAST_SD: f64 = 0.005;
 
 /// One target of a candidate.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
-    /// Best guess.
+    /// Best estimate.
     pub(super) value: f64,
-    /// Variance of its logarithm by the constants.
+    /// Variance of the logarithm due to the constants.
     constants: f64,
-    /// Change of its logarithm as the model errs by one standard deviation up, and down.
+    /// Change of the logarithm for a model error of one standard deviation upwards, and downwards.
     model: (f64, f64),
-    /// Change of its logarithm by each tolerance.
+    /// Change of the logarithm for one standard deviation of each tolerance.
     made: [f64; SOURCES],
 }
 
@@ -33,27 +34,27 @@ pub(super) struct Spread {
 pub struct VarianceShare {
     /// `constants`, `model`, or a tolerance.
     pub source: String,
-    /// Its share, 0..1.
+    /// Share of the variance, from 0 to 1.
     pub share: f64,
 }
 
-/// A candidate, target by target.
+/// The approximation for all targets of a candidate.
 #[derive(Clone, Debug)]
 pub(super) struct Linear {
     pub(super) targets: Vec<Spread>,
 }
 
 impl Spread {
-    /// Standard deviation of the logarithm, upwards and downwards.
+    /// Returns the standard deviation of the logarithm, upwards and downwards.
     fn sd(&self) -> (f64, f64) {
         let made: f64 = self.made.iter().map(|d| d * d).sum();
         let rest = self.constants + made + LEAST_SD * LEAST_SD;
-        // The model may move a quantity to one side whichever way it errs.
+        // Model errors of either sign may change a quantity in the same direction.
         let (up, down) = (self.model.0.max(self.model.1), self.model.0.min(self.model.1));
         ((rest + up * up).sqrt(), (rest + down * down).sqrt())
     }
 
-    /// Shares of the variance, largest first.
+    /// Returns the shares of the variance, the largest first.
     pub(super) fn shares(&self) -> Vec<VarianceShare> {
         let model = f64::midpoint(self.model.0.powi(2), self.model.1.powi(2));
         let mut all = vec![("constants".to_owned(), self.constants), ("model".to_owned(), model)];
@@ -69,7 +70,7 @@ impl Spread {
 }
 
 impl Linear {
-    /// The candidate of `configuration`; `None` if it cannot be predicted.
+    /// Returns the approximation for `configuration`; `None` if it cannot be predicted.
     pub(super) fn of(trial: &Trial<'_>, configuration: &Configuration) -> Option<Self> {
         let part = trial.part(configuration)?;
         let believed = trial.believed(&part)?;
@@ -106,20 +107,21 @@ impl Linear {
         Some(Self { targets })
     }
 
-    /// Minus the logarithm of the probability of meeting all targets, as if they were independent.
+    /// Returns minus the logarithm of the probability of meeting all targets, which are treated as
+    /// independent.
     pub(super) fn cost(&self, trial: &Trial<'_>) -> f64 {
         let one = |(t, s): (&Target, &Spread)| cost(t, trial.range_n, s.value, s.sd());
         trial.request.targets.iter().zip(&self.targets).map(one).sum()
     }
 }
 
-/// The same with standard deviations that are only guessed.
+/// Returns the same for the standard deviation [`GUESSED_SD`] of every target.
 pub(super) fn guessed_cost(trial: &Trial<'_>, values: &[f64]) -> f64 {
     let one = |(t, v): (&Target, &f64)| cost(t, trial.range_n, *v, (GUESSED_SD, GUESSED_SD));
     trial.request.targets.iter().zip(values).map(one).sum()
 }
 
-/// Minus the logarithm of the probability that a target is met.
+/// Returns minus the logarithm of the probability that a target is met.
 fn cost(target: &Target, range_n: (f64, f64), value: f64, (up, down): (f64, f64)) -> f64 {
     let (mut low, mut high) = target.requirement.interval();
     if target.quantity == Quantity::Threshold {
@@ -133,16 +135,17 @@ fn cost(target: &Target, range_n: (f64, f64), value: f64, (up, down): (f64, f64)
     -log_between(scaled(low), scaled(high))
 }
 
-/// Logarithm of the probability that a standard normal lies between both; it falls smoothly however far they lie out.
+/// Returns the logarithm of the probability that a standard normal variable is between the bounds.
+/// It stays smooth for bounds far in the tails.
 fn log_between(low: f64, high: f64) -> f64 {
     let normal = Normal::standard();
-    // By symmetry to the side where the tails are computed exactly.
+    // Symmetry moves the interval to the side on which the tail is accurate.
     let (low, high) = if low > 0.0 { (-high, -low) } else { (low, high) };
     let inside = normal.cdf(high) - normal.cdf(low);
     if high > -30.0 && inside > 1e-200 {
         return libm::log(inside);
     }
-    // The tail: phi(x)/|x|.
+    // Asymptotic tail: phi(x)/|x|.
     let x = high.abs().max(1.0);
     -x * x / 2.0 - libm::log(x) - 0.919
 }

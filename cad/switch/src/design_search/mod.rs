@@ -1,5 +1,6 @@
-//! From a request to configurations: patterns by enumeration, continuous parameters by a simplex, ranked by the probability that
-//! a made part meets the request. `cad/doc/design.md` explains every step.
+//! The search for configurations that meet a request. It enumerates patterns, optimises continuous
+//! parameters with a simplex, and ranks designs by the probability that a made part meets the
+//! request. `cad/doc/design.md` explains every step.
 
 mod belief;
 mod blocked;
@@ -35,27 +36,28 @@ pub use probability::Probability;
 pub use proposal::{Proposal, TargetResult};
 pub use sensitivity::Sensitivity;
 
-/// Curves that the enumeration computes at the most.
+/// Largest number of curves that the enumeration computes.
 const ENUMERATED: usize = 9_000;
-/// Places of the continuous parameters at which patterns are enumerated, beside the base.
+/// Number of points in the space of continuous parameters at which patterns are enumerated, in
+/// addition to the base.
 const SPREAD_PLACES: usize = 5;
-/// Steps of the simplex with guessed standard deviations, for each parameter.
+/// Simplex steps per parameter with guessed standard deviations.
 const GUESSED_STEPS: u64 = 40;
-/// Steps of the simplex with the real ones, for each parameter.
+/// Simplex steps per parameter with computed standard deviations.
 const PROBABLE_STEPS: u64 = 14;
-/// Candidates whose probability is computed in full, beyond those that are proposed.
+/// Number of candidates whose full probability is computed, in addition to the proposals.
 const SPARE: usize = 3;
 
-/// How a search is run.
+/// Options of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many designs to propose.
+    /// Number of designs to propose.
     pub best: usize,
-    /// Made parts that are drawn for a probability.
+    /// Number of simulated parts for a probability.
     pub draws: usize,
     /// Seed of the draws.
     pub seed: u64,
-    /// Patterns whose continuous parameters are searched.
+    /// Number of patterns whose continuous parameters are optimised.
     pub starts: usize,
 }
 
@@ -65,15 +67,15 @@ impl Default for Options {
     }
 }
 
-/// Hears how far a search has come. It may be called from many threads.
+/// Receives the progress of a search, possibly from several threads.
 pub trait Progress: Sync {
-    /// A stage begins, of so many steps.
+    /// Reports the start of a stage with this number of steps.
     fn begin(&self, stage: &'static str, steps: usize);
-    /// One step of it is done.
+    /// Reports a completed step.
     fn step(&self);
 }
 
-/// Hears nothing.
+/// Ignores all progress.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
@@ -82,24 +84,26 @@ impl Progress for Silent {
     fn step(&self) {}
 }
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// Lightest and heaviest load that it looked at, N.
+    /// Lightest and heaviest load of the search, N.
     pub range_n: (f64, f64),
-    /// Patterns that differ, mirror images counted once, of the base's grooves.
+    /// Number of different patterns of the grooves of the base. Mirror images count once.
     pub patterns: usize,
-    /// Curves of patterns that were computed.
+    /// Number of patterns whose curves were computed.
     pub tried: usize,
-    /// The base's patterns, for a picture.
+    /// Patterns of the base, for a plot.
     pub candidates: Vec<LayoutCandidate>,
-    /// Designs that meet the request by the best guess, the most probable first; if there are none, the nearest one.
+    /// Designs whose best estimate meets the request, the most probable first; the nearest design
+    /// if no design meets it.
     pub proposals: Vec<Proposal>,
-    /// Why there are none.
+    /// The reason why no design meets the request.
     pub blocked: Option<Blocked>,
 }
 
-/// The loads that `request` looks at: its own range or the configuration's, widened to the loads and thresholds that it names.
+/// Returns the lightest and the heaviest load for `request`: its own range, or that of the
+/// configuration, extended to the loads and thresholds of the targets.
 pub fn load_range_n(base: &Configuration, request: &Request) -> (f64, f64) {
     if let Some(range) = request.load_range_n {
         return range;
@@ -108,7 +112,7 @@ pub fn load_range_n(base: &Configuration, request: &Request) -> (f64, f64) {
     for target in &request.targets {
         let (least, most) = match (target.quantity, target.requirement) {
             (Quantity::Friction { load_n }, _) => (load_n, load_n),
-            // Room under an early threshold, or no load is lighter than it.
+            // Extended below the threshold, so that lighter loads exist.
             (Quantity::Threshold, Requirement::AtMost(most)) => (most / 1.2, most),
             (Quantity::Threshold, Requirement::AtLeast(least)) => (least, least * 1.2),
             (Quantity::Threshold, requirement) => requirement.interval(),
@@ -119,7 +123,8 @@ pub fn load_range_n(base: &Configuration, request: &Request) -> (f64, f64) {
     (low, high.min(1000.0))
 }
 
-/// Searches for designs that meet `request`, from `base`. The same arguments give the same answer.
+/// Searches for designs that meet `request`, starting from `base`. Equal arguments give equal
+/// results.
 pub fn search(
     base: &Design,
     request: &Request,
@@ -194,7 +199,8 @@ pub fn search(
     found
 }
 
-/// How often made parts of `configuration` meet `request`, with draws of another seed: a check of a stated probability.
+/// Returns the probability that a made part of `configuration` meets `request`, with another seed,
+/// to verify a reported probability.
 pub fn simulated(
     base: &Design,
     request: &Request,
@@ -211,7 +217,7 @@ pub fn simulated(
     )
 }
 
-/// A place whose best guess is known.
+/// A configuration with its cost and its miss.
 struct Judged {
     configuration: Configuration,
     cost: f64,
@@ -237,7 +243,7 @@ fn judged(trial: &Trial<'_>, space: &Space, places: Vec<Place>) -> Vec<Judged> {
     .collect()
 }
 
-/// The first `count` that differ in kind from all before them.
+/// Returns the first `count` candidates, each a different design from all before it.
 fn distinct(pool: Vec<Judged>, count: usize) -> Vec<Judged> {
     let mut taken: Vec<Judged> = Vec::new();
     for candidate in pool {
@@ -251,16 +257,17 @@ fn distinct(pool: Vec<Judged>, count: usize) -> Vec<Judged> {
     taken
 }
 
-/// What the enumeration of patterns found.
+/// The result of the enumeration of patterns.
 struct Enumerated {
-    /// By guessed cost, least first.
+    /// Places by ascending guessed cost.
     places: Vec<(f64, Place)>,
     patterns: usize,
     tried: usize,
     candidates: Vec<LayoutCandidate>,
 }
 
-/// Every pattern with every material, at the base and at places spread over the continuous parameters.
+/// Evaluates every pattern with every material, at the base and at points that cover the continuous
+/// parameters.
 fn enumerate(trial: &Trial<'_>, space: &Space, progress: &dyn Progress) -> Enumerated {
     let mut points = vec![space.base()];
     if !space.varied.is_empty() {
@@ -304,7 +311,8 @@ fn enumerate(trial: &Trial<'_>, space: &Space, progress: &dyn Progress) -> Enume
     Enumerated { places, patterns, tried, candidates }
 }
 
-/// Where the continuous search begins: the best places that differ in kind, then the best of the rest.
+/// Returns the starting points of the continuous search: the best places that are different
+/// designs, then the best of the others.
 fn starts(space: &Space, places: &[(f64, Place)], count: usize) -> Vec<Place> {
     let configuration = |p: &Place| space.configuration(p.material, &p.pins, &p.at);
     let mut taken: Vec<(Configuration, Place)> = Vec::new();
@@ -330,7 +338,7 @@ fn starts(space: &Space, places: &[(f64, Place)], count: usize) -> Vec<Place> {
     starts
 }
 
-/// The least miss with any number of pins, and that number.
+/// Returns the smallest miss with any number of pins, and that number.
 fn with_any_pins(trial: &Trial<'_>, request: &Request, base: &Configuration) -> Option<(usize, f64)> {
     let mut free = request.clone();
     free.limits.pins = None;

@@ -1,5 +1,5 @@
-//! How often a made part meets the request: every draw is a part of its own, with its dimensions, constants and model error,
-//! predicted in full.
+//! The probability that a made part meets the request. Every draw is a simulated part with its own
+//! dimensions, constants and model error, and a complete prediction.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -12,29 +12,30 @@ use crate::config::Configuration;
 use crate::parallel::map_each;
 use crate::request::SOURCES;
 
-/// How often the draws met the request.
+/// The probability of meeting a request, estimated from simulated parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Probability {
     /// Share of draws that meet all targets.
     pub all: f64,
     /// Share of draws that meet each target.
     pub each: Vec<f64>,
-    /// From which to which value 95 % of the draws of each target lie.
+    /// 2.5 % and 97.5 % quantiles of each target.
     pub band: Vec<[f64; 2]>,
-    /// Draws that could be predicted.
+    /// Number of draws that could be predicted.
     pub draws: usize,
 }
 
 impl Probability {
-    /// Standard error of `all` by the number of draws.
+    /// Returns the standard error of `all` for this number of draws.
     pub fn standard_error(&self) -> f64 {
         (self.all * (1.0 - self.all) / self.draws.max(1) as f64).sqrt()
     }
 }
 
-/// The draws of a seed: the same for every candidate, so that candidates are compared on the same parts. Each standard
-/// normal has one value in each of `count` equally probable intervals (a Latin hypercube): the ends of a band of independent
-/// draws lie several percent off.
+/// Returns the draws of a seed. They are the same for every candidate, so that all candidates are
+/// compared on the same parts. Each standard normal variable has one value in each of `count`
+/// equally probable intervals (a Latin hypercube), since independent draws give quantiles with
+/// errors of several percent.
 pub(super) fn draws(seed: u64, count: usize, constants: usize) -> Vec<Draw> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let normal = Normal::standard();
@@ -55,7 +56,8 @@ pub(super) fn draws(seed: u64, count: usize, constants: usize) -> Vec<Draw> {
         .collect()
 }
 
-/// The probability that a made part of `configuration` meets the request; `None` if it cannot be predicted.
+/// Returns the probability that a made part of `configuration` meets the request; `None` if it
+/// cannot be predicted.
 pub(super) fn probability(
     trial: &Trial<'_>,
     configuration: &Configuration,
@@ -64,7 +66,7 @@ pub(super) fn probability(
     let part = trial.part(configuration)?;
     let error = trial.believed(&part)?.error;
     let hardness = configuration.silicone.hardness_shore_a;
-    // A part that finds no equilibrium is left out of the count: it says nothing of the request.
+    // A part without an equilibrium is excluded, since it carries no information about the request.
     let made: Vec<Vec<f64>> =
         map_each(draws.iter().collect(), |draw| trial.made(&part, hardness, &error, draw))
             .into_iter()
@@ -121,7 +123,7 @@ mod tests {
         let trial = Trial::new(&request, &belief, (f.load_min_n, f.load_max_n), f.points);
         let part = trial.part(&configuration).unwrap();
         let law = belief.banded(&part, &[trial.range_n.1]).unwrap();
-        // A seed whose independent draws had a band 4 % too narrow at its lower end.
+        // With this seed, independent draws gave a band whose lower end was 4 % too high.
         let drawn = probability(&trial, &configuration, &draws(1, 400, belief.constants())).unwrap();
         for (drawn, law) in drawn.band[0].iter().zip([law.band_low_n[0], law.band_high_n[0]]) {
             assert!((drawn / law - 1.0).abs() < 0.02, "{drawn} {law}");

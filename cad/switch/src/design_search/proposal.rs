@@ -1,4 +1,4 @@
-//! A design that is proposed, and all that is stated of it.
+//! Proposed designs with their reported properties.
 
 use std::collections::BTreeMap;
 
@@ -16,23 +16,23 @@ use crate::design::Design;
 use crate::parts::can_be_printed;
 use crate::request::{Parameter, Quantity, Target};
 
-/// One target and what the proposal has.
+/// A target with the result of a proposal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TargetResult {
     /// The target.
     #[serde(flatten)]
     pub target: Target,
-    /// The best guess.
+    /// Best estimate.
     pub value: f64,
-    /// From which to which value 95 % of made parts lie.
+    /// 2.5 % and 97.5 % quantiles over made parts.
     pub band: [f64; 2],
-    /// Whether the best guess meets it.
+    /// Whether the best estimate meets the target.
     pub is_met: bool,
-    /// Share of made parts that meet it.
+    /// Share of made parts that meet the target.
     pub probability: f64,
 }
 
-/// A configuration and what is stated of it.
+/// A configuration with its reported properties.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proposal {
     /// Occupied grooves.
@@ -45,30 +45,30 @@ pub struct Proposal {
     pub outer_radius_mm: f64,
     /// Width of the assembled switch, mm.
     pub outer_width_mm: f64,
-    /// How far the model is to be trusted there.
+    /// Prediction status over the requested loads.
     pub trust: PredictionStatus,
-    /// Threshold by the best guess, N; absent if it does not switch within the loads.
+    /// Best estimate of the threshold, N; absent if it is outside the loads.
     pub threshold_n: Option<f64>,
-    /// Friction at the heaviest load by the best guess, N.
+    /// Best estimate of the friction at the heaviest load, N.
     pub friction_n: f64,
-    /// How often made parts meet the request.
+    /// Probability that a made part meets the request.
     pub probability: Probability,
-    /// Standard error of that share, by the number of draws.
+    /// Standard error of that probability for the number of draws.
     pub standard_error: f64,
-    /// Target by target.
+    /// Results by target.
     pub targets: Vec<TargetResult>,
-    /// The target that is met least often, by its place in the request.
+    /// Index of the target that is met least often.
     pub tightest: usize,
-    /// What the uncertainty of that target comes from, largest first.
+    /// Sources of the uncertainty of that target, the largest first.
     pub uncertainty: Vec<VarianceShare>,
-    /// What a change of each parameter does.
+    /// Sensitivity to each parameter.
     pub sensitivity: Vec<Sensitivity>,
     /// The configuration.
     #[serde(skip)]
     pub configuration: Configuration,
 }
 
-/// The proposal of a configuration; `None` if it cannot be built or predicted.
+/// Returns the proposal of a configuration; `None` if it cannot be built or predicted.
 pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &[Draw]) -> Option<Proposal> {
     let mut configuration = configuration.clone();
     configuration.layout.substrate = pinswitch_friction::Substrate::Silicone;
@@ -104,7 +104,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
         tendon_mm: [configuration.tendon.rope_diameter_mm, configuration.tendon.coating_mm],
         outer_radius_mm: design.support_radius_mm(),
         outer_width_mm: outer_width_mm(&configuration),
-        // Of the loads that were asked about; the search looks beyond them.
+        // For the requested loads only, since the search extends beyond them.
         trust: trial.belief.banded(&part, &[trial.range_n.0, trial.range_n.1])?.status,
         threshold_n: within.then_some(threshold_n),
         friction_n: curve.value(Quantity::MaxFriction, trial.range_n),
@@ -118,7 +118,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     })
 }
 
-/// A curve as a point of a picture.
+/// Returns a curve as a point of a plot.
 pub(super) fn pictured(curve: &Curve, pins: &[usize], range_n: (f64, f64)) -> LayoutCandidate {
     let switching = curve.switching();
     let within = switching.is_found && (range_n.0..=range_n.1).contains(&switching.threshold_n);

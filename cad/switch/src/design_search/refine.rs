@@ -1,4 +1,4 @@
-//! The continuous parameters of a pattern, moved until its cost is least (Nelder and Mead's simplex).
+//! Optimisation of the continuous parameters of a pattern with the simplex of Nelder and Mead.
 
 use argmin::core::{CostFunction, Executor};
 use argmin::solver::neldermead::NelderMead;
@@ -9,30 +9,32 @@ use super::space::Space;
 
 /// First step of a parameter, as a share of its range.
 const FIRST_STEP: f64 = 0.2;
-/// Cost of a place outside of the ranges, a unit beyond.
-const OUTSIDE: f64 = 50.0;
-/// Cost of what cannot be predicted or printed; finite, as the optimiser needs it.
-const REFUSED: f64 = 1e4;
-/// Scatter of the simplex's costs at which it is done: a hundredth of a probability.
-const ENOUGH: f64 = 0.01;
+/// Cost per unit of distance beyond the ranges.
+const OUTSIDE_COST: f64 = 50.0;
+/// Cost of a place that cannot be predicted or printed; finite, as the optimiser requires.
+const INVALID_COST: f64 = 1e4;
+/// Standard deviation of the costs of the simplex at which the optimisation ends: a hundredth of a
+/// probability.
+const COST_TOLERANCE: f64 = 0.01;
 
-/// What is made small.
+/// The quantity to minimise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Aim {
-    /// The improbability, with standard deviations that are only guessed: one curve a step.
+    /// Minus the logarithm of the probability, with guessed standard deviations: one curve per
+    /// step.
     Guessed,
-    /// The improbability: a dozen curves a step.
+    /// Minus the logarithm of the probability: a dozen curves per step.
     Probable,
-    /// How far the best guess misses the targets, whatever the uncertainty.
+    /// The miss of the best estimate, without its uncertainty.
     Nearest,
 }
 
-/// A material and a pattern at a place.
+/// A material, a pattern, and values of the continuous parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     pub(super) material: usize,
     pub(super) pins: Vec<usize>,
-    /// Continuous parameters, each from 0 to 1 within its range.
+    /// Continuous parameters, each scaled from 0 to 1 over its range.
     pub(super) at: Vec<f64>,
 }
 
@@ -50,11 +52,11 @@ impl CostFunction for Cost<'_> {
     fn cost(&self, at: &Vec<f64>) -> Result<f64, argmin::core::Error> {
         let outside: f64 = at.iter().map(|x| (x - x.clamp(0.0, 1.0)).abs()).sum();
         let inside = cost(self.trial, self.space, &Place { at: at.clone(), ..self.place.clone() }, self.aim);
-        Ok(inside.unwrap_or(REFUSED) + OUTSIDE * outside)
+        Ok(inside.unwrap_or(INVALID_COST) + OUTSIDE_COST * outside)
     }
 }
 
-/// The cost at a place; `None` if it cannot be predicted, printed, or breaks a limit.
+/// Returns the cost of a place; `None` if it cannot be predicted or printed, or violates a limit.
 pub(super) fn cost(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim) -> Option<f64> {
     let configuration = space.configuration(place.material, &place.pins, &place.at);
     if !trial.keeps_limits(&configuration) {
@@ -68,7 +70,8 @@ pub(super) fn cost(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim) ->
     cost.is_finite().then_some(cost)
 }
 
-/// The place with its continuous parameters moved to where `aim` is least; itself where nothing varies.
+/// Returns the place with the continuous parameters that minimise `aim`; unchanged without
+/// continuous parameters.
 pub(super) fn refined(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim, steps: u64) -> Place {
     let start = &place.at;
     if start.is_empty() {
@@ -77,11 +80,11 @@ pub(super) fn refined(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim,
     let mut simplex = vec![start.clone()];
     for i in 0..start.len() {
         let mut vertex = start.clone();
-        // Towards the middle, so that it stays inside.
+        // Towards the middle of the range, so that the vertex is inside.
         vertex[i] += if vertex[i] < 0.5 { FIRST_STEP } else { -FIRST_STEP };
         simplex.push(vertex);
     }
-    let Ok(solver) = NelderMead::new(simplex).with_sd_tolerance(ENOUGH) else { return place.clone() };
+    let Ok(solver) = NelderMead::new(simplex).with_sd_tolerance(COST_TOLERANCE) else { return place.clone() };
     let best = Executor::new(Cost { trial, space, place, aim }, solver)
         .configure(|state| state.max_iters(steps))
         .timer(false)

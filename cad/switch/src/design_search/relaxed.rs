@@ -1,5 +1,5 @@
-//! The nearest design that can be printed, where none can within the request: sizes become wishes, then pins are let loose, then
-//! all parameters.
+//! The nearest design that can be printed, for a request that no printable design satisfies. Limits
+//! of size become soft first; then the number of pins is free, and finally all parameters are.
 
 use super::blocked::{self, Blocked, Change};
 use super::candidate::Trial;
@@ -13,12 +13,13 @@ use crate::request::{Parameter, Request, Varied};
 /// Patterns whose parameters are searched.
 const STARTS: usize = 4;
 
-/// The nearest design and why it is not within `asked`; `None` if nothing at all can be printed from `base`.
-pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Configuration, Blocked)> {
-    let within = Space::new(base, asked.request);
-    let (refused, why) = refusal(asked, &within);
-    relaxations(asked.request, base).iter().find_map(|request| {
-        let trial = asked.with_soft_sizes(request);
+/// Returns the nearest design, and the reason why the request excludes it; `None` if no
+/// configuration near `base` can be printed.
+pub(super) fn nearest(original: &Trial<'_>, base: &Configuration) -> Option<(Configuration, Blocked)> {
+    let within = Space::new(base, original.request);
+    let (refused, why) = refusal(original, &within);
+    relaxations(original.request, base).iter().find_map(|request| {
+        let trial = original.with_soft_sizes(request);
         let space = Space::new(base, request);
         let mut places = enumerate(&trial, &space, &Silent).places;
         places.retain(|(_, p)| trial.keeps_limits(&space.configuration(p.material, &p.pins, &p.at)));
@@ -32,20 +33,21 @@ pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Config
         .flatten()
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
         let mut blocked = blocked::blocked(&trial, &within, &nearest, None);
-        blocked.limit = asked.broken_limit(&nearest).unwrap_or_else(|| why.clone());
+        blocked.limit = original.broken_limit(&nearest).unwrap_or_else(|| why.clone());
         if blocked.missed.is_empty() {
-            blocked.together = left(asked.request, &refused, &nearest);
+            blocked.together = excluded_changes(original.request, &refused, &nearest);
         }
         Some((nearest, blocked))
     })
 }
 
-/// What refuses the request where its search begins: the limit or the rule, with field, value and bound.
-fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
+/// Returns the configuration at the start of the search, and the limit or the rule that excludes
+/// it, with field, value and bound.
+fn refusal(original: &Trial<'_>, space: &Space) -> (Configuration, String) {
     let base = space.base();
     let patterns = space.patterns(0, &base, 1).taken;
     let Some(pins) = patterns.first() else {
-        let (fewest, most) = asked.request.limits.pins.unwrap_or_default();
+        let (fewest, most) = original.request.limits.pins.unwrap_or_default();
         let why = format!(
             "limits.pins = {fewest}..{most}: fewer grooves lie under the tendon; request for fewer pins (--pins) or raise \
              layout.wrap_angle_deg"
@@ -53,9 +55,9 @@ fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
         return (space.materials[0].clone(), why);
     };
     let c = space.configuration(0, pins, &base);
-    let why = match asked.broken_limit(&c) {
+    let why = match original.broken_limit(&c) {
         Some(limit) => limit,
-        None if asked.part(&c).is_none() => format!(
+        None if original.part(&c).is_none() => format!(
             "layout.pins = {:?}, which vary.pattern = false (--keep-pins) keeps: the tendon must lie on all of its pins, at \
              least 1; let pins vary, or give others",
             c.layout.pins
@@ -65,7 +67,7 @@ fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
     (c, why)
 }
 
-/// Asks that allow more and more: any size is a requirement in all of them.
+/// Returns increasingly permissive requests. All of them are used with soft limits of size.
 fn relaxations(request: &Request, base: &Configuration) -> [Request; 3] {
     let mut any_pins = request.clone();
     any_pins.vary.pattern = true;
@@ -73,18 +75,18 @@ fn relaxations(request: &Request, base: &Configuration) -> [Request; 3] {
     let mut anything = any_pins.clone();
     anything.materials.pin_diameter_mm.clear();
     anything.materials.hardness_shore_a.clear();
-    anything.vary.parameters = Parameter::ALL.iter().map(|p| usual(*p, base)).collect();
+    anything.vary.parameters = Parameter::ALL.iter().map(|p| extended_range(*p, base)).collect();
     [request.clone(), any_pins, anything]
 }
 
-/// The default range of a parameter, widened to where it is.
-pub(super) fn usual(parameter: Parameter, at: &Configuration) -> Varied {
+/// Returns the default range of a parameter, extended to its present value.
+pub(super) fn extended_range(parameter: Parameter, at: &Configuration) -> Varied {
     let ((low, high), here) = (parameter.default_range(), parameter.value(at));
     Varied { parameter, from: low.min(here), to: high.max(here) }
 }
 
-/// Parameters of `to` that the request does not allow.
-fn left(request: &Request, from: &Configuration, to: &Configuration) -> Vec<Change> {
+/// Returns the changes of parameters in `to` that the request does not allow.
+fn excluded_changes(request: &Request, from: &Configuration, to: &Configuration) -> Vec<Change> {
     let allows = |p: Parameter| match request.vary.parameters.iter().find(|v| v.parameter == p) {
         Some(v) => (v.from - 1e-9..=v.to + 1e-9).contains(&p.value(to)),
         None => (p.value(from) - p.value(to)).abs() < 1e-6,

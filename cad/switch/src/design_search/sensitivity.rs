@@ -1,4 +1,4 @@
-//! What a small change of each parameter does to a proposal.
+//! Sensitivity of a proposal to each parameter.
 
 use serde::Serialize;
 
@@ -6,7 +6,8 @@ use super::candidate::Trial;
 use crate::config::Configuration;
 use crate::request::{Parameter, Quantity};
 
-/// Relative step: beyond the mesh of the physics, within its bends.
+/// Relative step: large enough to make the mesh of the physics insignificant, and small enough for
+/// an almost linear curve.
 const STEP: f64 = 0.02;
 
 /// Derivatives with respect to one parameter, by central differences.
@@ -14,7 +15,7 @@ const STEP: f64 = 0.02;
 pub struct Sensitivity {
     /// The parameter.
     pub parameter: Parameter,
-    /// Its value.
+    /// Value of the parameter.
     pub value: f64,
     /// Change of the friction at the heaviest load, N per unit of the parameter.
     pub friction_n_per_unit: f64,
@@ -24,7 +25,8 @@ pub struct Sensitivity {
     pub targets_per_unit: Vec<f64>,
 }
 
-/// The table of `configuration`; a parameter whose change cannot be predicted is left out.
+/// Returns the sensitivities of `configuration`, without parameters whose change cannot be
+/// predicted.
 pub(super) fn sensitivities(trial: &Trial<'_>, configuration: &Configuration) -> Vec<Sensitivity> {
     Parameter::ALL.iter().filter_map(|p| sensitivity(trial, configuration, *p)).collect()
 }
@@ -44,7 +46,8 @@ fn sensitivity(
         let of = |quantity| curve.value(quantity, trial.range_n);
         Some((of(Quantity::MaxFriction), of(Quantity::Threshold), trial.values(&curve, 1.0)))
     };
-    // Where one side cannot be predicted (a pin would leave the wrap), the difference is taken to the other alone.
+    // If one side cannot be predicted, since a pin would leave the wrap, a one-sided difference is
+    // used.
     let (below, above) = (at(value - step), at(value + step));
     let sides = if below.is_some() && above.is_some() { 2.0 } else { 1.0 };
     let (low, high) = (below.or_else(|| at(value))?, above.or_else(|| at(value))?);

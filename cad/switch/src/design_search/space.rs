@@ -1,4 +1,4 @@
-//! The space that is searched: materials at hand, patterns of grooves, and continuous parameters between their ends.
+//! The search space: available materials, patterns of grooves, and ranges of continuous parameters.
 
 use pinswitch_friction::layout_search::{MAX_GROOVES, patterns};
 
@@ -6,7 +6,7 @@ use crate::config::Configuration;
 use crate::design::contact_of;
 use crate::request::{Parameter, Request, Varied};
 
-/// A base configuration and what may change on it.
+/// A base configuration with the parameters that may vary.
 pub(super) struct Space {
     /// The base with each combination of materials.
     pub(super) materials: Vec<Configuration>,
@@ -38,7 +38,7 @@ impl Space {
         Self { materials, varied: request.vary.parameters.clone(), pins, vary_pattern: request.vary.pattern }
     }
 
-    /// Where the base lies, each parameter from 0 to 1 within its range.
+    /// Returns the position of the base, each parameter scaled from 0 to 1 over its range.
     pub(super) fn base(&self) -> Vec<f64> {
         let at = |v: &Varied| {
             let value = v.parameter.value(&self.materials[0]);
@@ -47,13 +47,13 @@ impl Space {
         self.varied.iter().map(at).collect()
     }
 
-    /// Point `index` of a Halton sequence, which fills the ranges evenly.
+    /// Returns point `index` of a Halton sequence, which covers the ranges evenly.
     pub(super) fn spread_point(&self, index: usize) -> Vec<f64> {
         const PRIMES: [usize; 7] = [2, 3, 5, 7, 11, 13, 17];
         self.varied.iter().zip(PRIMES).map(|(_, prime)| radical_inverse(index, prime)).collect()
     }
 
-    /// The configuration at a place, its parameters rounded to what can be made.
+    /// Returns the configuration at a place, with parameters rounded to values that can be made.
     pub(super) fn configuration(&self, material: usize, pins: &[usize], at: &[f64]) -> Configuration {
         let mut c = self.materials[material].clone();
         c.layout.pins = pins.to_vec();
@@ -64,7 +64,8 @@ impl Space {
         c
     }
 
-    /// Patterns to try at a place, mirror images once: those within the wrap, `most` at the most.
+    /// Returns the patterns within the wrap to evaluate at a place, at most `most`. Mirror images
+    /// occur once.
     pub(super) fn patterns(&self, material: usize, at: &[f64], most: usize) -> Patterns {
         let own = &self.materials[material].layout.pins;
         if !self.vary_pattern {
@@ -73,15 +74,16 @@ impl Space {
         let c = self.configuration(material, own, at);
         let half_rad = c.layout.wrap_angle_deg.to_radians() / 2.0;
         let pitch_rad = c.segment.span_deg.to_radians() / c.segment.grooves as f64;
-        // The base's own grooves, in its numbers: where the wrap outgrows them, `configuration` numbers the pins anew.
+        // Grooves are numbered as in the base. If the wrap needs more grooves, `configuration`
+        // renumbers the pins.
         let count = self.materials[material].segment.grooves;
         let middle = (count as f64 - 1.0) / 2.0;
         let mut grooves: Vec<(usize, f64)> = (0..count)
             .map(|i| (i + 1, (i as f64 - middle) * pitch_rad))
-            // A pin outside the wrap carries nothing: patterns with one are no better than those without.
+            // A pin outside the wrap carries no load, so patterns with such a pin are redundant.
             .filter(|(_, angle)| angle.abs() <= half_rad)
             .collect();
-        // More grooves than can be enumerated: every second one is left out until they can.
+        // Every second groove is omitted until the patterns can be enumerated.
         while grooves.len() > MAX_GROOVES {
             grooves = grooves.into_iter().step_by(2).collect();
         }
@@ -91,13 +93,14 @@ impl Space {
     }
 }
 
-/// What is tried of all that there is.
+/// The selected patterns, and the number of all patterns.
 pub(super) struct Patterns {
     pub(super) all: usize,
     pub(super) taken: Vec<Vec<usize>>,
 }
 
-/// No more than `most`: the even ones, and of the others every so many.
+/// Returns at most `most` patterns: the even ones first, then an evenly spaced selection of the
+/// others.
 fn thinned(all: Vec<Vec<usize>>, most: usize) -> Vec<Vec<usize>> {
     if all.len() <= most {
         return all;
@@ -133,7 +136,7 @@ fn each_with<T>(
         .collect()
 }
 
-/// Digits of `index` in `base`, mirrored at the point.
+/// Returns the digits of `index` in `base`, mirrored at the radix point.
 fn radical_inverse(mut index: usize, base: usize) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0 / base as f64);
     while index > 0 {
@@ -144,7 +147,8 @@ fn radical_inverse(mut index: usize, base: usize) -> f64 {
     value
 }
 
-/// Whether `configuration` can be predicted at all: a hard range may hold values that no contact takes.
+/// Returns whether `configuration` can be predicted. The range that a configuration accepts may
+/// contain values without a contact.
 pub(super) fn is_predictable(configuration: &Configuration) -> bool {
     contact_of(configuration.clone()).is_ok()
 }

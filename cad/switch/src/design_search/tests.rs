@@ -1,4 +1,4 @@
-//! Searches of small requests, whole.
+//! Complete searches for small requests.
 
 use super::*;
 use crate::request::{Parameter, Target, Varied, Vary};
@@ -22,7 +22,7 @@ fn found(request: &Request, options: Options) -> Found {
 }
 
 #[test]
-fn proposals_meet_the_ask_and_differ_in_kind() {
+fn proposals_meet_the_request_and_differ() {
     let mut request = request(vec![
         (Quantity::Threshold, Requirement::About { value: 24.0, within: 0.1 }),
         (Quantity::MaxFriction, Requirement::AtMost(9.0)),
@@ -44,7 +44,7 @@ fn proposals_meet_the_ask_and_differ_in_kind() {
 }
 
 #[test]
-fn the_same_ask_has_the_same_answer() {
+fn equal_requests_give_equal_proposals() {
     let mut request = request(vec![(Quantity::MaxFriction, Requirement::AtMost(8.0))]);
     request.limits.pins = Some((2, 3));
     let fewer = Options { starts: 1, draws: 50, ..few(2) };
@@ -53,7 +53,7 @@ fn the_same_ask_has_the_same_answer() {
 }
 
 #[test]
-fn a_frozen_part_is_judged_as_it_is() {
+fn a_fixed_part_is_evaluated_unchanged() {
     let mut request = request(vec![(Quantity::Threshold, Requirement::AtLeast(5.0))]);
     request.vary = Vary { pattern: false, parameters: Vec::new() };
     let mut configuration = Configuration::default();
@@ -65,8 +65,8 @@ fn a_frozen_part_is_judged_as_it_is() {
 }
 
 #[test]
-fn an_impossible_ask_names_what_blocks_it_and_what_would_move_it() {
-    // A late threshold takes a thin layer or hard silicone; thickness may hardly vary.
+fn an_impossible_request_reports_its_limit() {
+    // A high threshold needs a thin layer or hard silicone, and the thickness can hardly vary.
     let mut request = request(vec![(Quantity::Threshold, Requirement::Between(34.0, 40.0))]);
     request.limits.pins = Some((3, 3));
     request.vary.parameters = vec![Varied { parameter: Parameter::LayerMm, from: 1.9, to: 2.1 }];
@@ -77,7 +77,7 @@ fn an_impossible_ask_names_what_blocks_it_and_what_would_move_it() {
     assert!(blocked.missed[0].value < 34.0);
     let first = &blocked.moves[0];
     assert!(first.meets, "{blocked:?}");
-    // What is advised is true: with that value alone the request is met.
+    // The advice is correct: the change alone meets the request.
     let mut moved = found.proposals[0].configuration.clone();
     first.parameter.set(&mut moved, first.to);
     request.vary = Vary { pattern: false, parameters: Vec::new() };
@@ -87,7 +87,7 @@ fn an_impossible_ask_names_what_blocks_it_and_what_would_move_it() {
 }
 
 #[test]
-fn stated_probabilities_hold_for_other_draws() {
+fn probabilities_agree_across_seeds() {
     let mut request = request(vec![(Quantity::MaxFriction, Requirement::Between(6.0, 9.0))]);
     request.limits.pins = Some((3, 4));
     let options = Options { draws: 500, ..few(1) };

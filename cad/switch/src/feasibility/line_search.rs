@@ -6,7 +6,7 @@ use crate::config::Configuration;
 use crate::config::parameter::{Parameter, number};
 use crate::design::rules::Direction;
 
-/// Steps per unit in which numbers are shown: searched are the values that a message can name.
+/// Steps per unit of a number. The search considers only values that a message can show.
 const STEPS_PER_UNIT: f64 = 1e3;
 /// Rounding error of a number, in steps: 0.7 computed as 0.700...1 is still 0.7.
 const STEP_ROUNDING: f64 = 1e-6;
@@ -27,7 +27,7 @@ impl Effort {
     pub(crate) const THOROUGH: Self = Self { probes: 32, resolution: 1, is_denser_nearby: false };
     /// For constraints that build parts.
     pub(crate) const MODERATE: Self = Self { probes: 6, resolution: 1, is_denser_nearby: true };
-    /// For constraints that build parts, where a value near the nearest one will do.
+    /// For constraints that build parts, if a value close to the nearest one is sufficient.
     pub(crate) const QUICK: Self = Self { probes: 6, resolution: 20, is_denser_nearby: true };
     /// For many parameters at once.
     pub(crate) const COARSE: Self = Self { probes: 4, resolution: 100, is_denser_nearby: true };
@@ -83,9 +83,9 @@ pub(crate) struct Line {
 
 #[derive(Clone, Debug)]
 enum LineValues {
-    /// The multiples of the shown step from `from` to `to`, and `end` behind them where it is no multiple.
+    /// Multiples of the shown step from `from` to `to`, followed by `end` if it is not a multiple.
     Grid { from: i64, to: i64, is_whole: bool, default: Option<i64>, end: Option<Value> },
-    /// These values, the nearest first.
+    /// Listed values, the nearest first.
     Listed(Vec<Value>),
 }
 
@@ -232,14 +232,14 @@ impl Line {
     }
 }
 
-/// The value of a step, as it is shown.
+/// Returns the value of a step.
 #[allow(clippy::cast_precision_loss)]
 fn grid_value(step: i64, is_whole: bool) -> Value {
     if is_whole { Value::from(step) } else { Value::from(step as f64 / STEPS_PER_UNIT) }
 }
 
-/// Lists of groove numbers that differ little: without repeated items, items outside 1 to `grooves` moved to the nearest
-/// free groove; and the same without these.
+/// Returns two lists of groove numbers similar to `items`, without repeated items. The first moves
+/// items outside 1 to `grooves` to the nearest free groove, and the second removes them.
 fn repaired_lists(items: &Array, grooves: usize) -> [Value; 2] {
     let most = i64::try_from(grooves).unwrap_or(i64::MAX);
     let mut kept: Vec<i64> = Vec::new();
@@ -313,7 +313,7 @@ mod tests {
     }
 
     proptest! {
-        /// The step that is found satisfies the constraint, and the one before it does not.
+        /// The resulting step satisfies the constraint, and the step before it does not.
         #[test]
         fn a_step_function_is_solved(from in -1000i64..1000, length in 1i64..5000, share in 0.0..1.0f64, up in any::<bool>()) {
             let sign = if up { 1 } else { -1 };

@@ -125,7 +125,7 @@ pub fn explained(error: BuildError, configuration: &Configuration) -> BuildError
     let problem = Problem::new(configuration, &error);
     let found = search::proposals(&problem);
     let Some(first) = found.first() else { return error };
-    // A part that does not build for a reason that no rule knows: the first change names the field.
+    // No rule covers the reason why the part does not build, so the first change gives the field.
     let subject = match problem.subject.as_str() {
         "" => {
             proposal::changes(configuration, first, "").first().map(|c| c.field.clone()).unwrap_or_default()
@@ -160,8 +160,8 @@ pub(crate) struct Advice {
     pub(crate) is_small: bool,
 }
 
-/// Returns the nearest value along the first of `directions` with which a configuration `fits`: the first that is a small
-/// change, if there is one.
+/// Returns the nearest value with which a configuration `fits`, along the first of `directions` for
+/// which a small change is sufficient, or else along the first with any such value.
 pub(crate) fn advice(
     c: &Configuration,
     directions: &[Direction],

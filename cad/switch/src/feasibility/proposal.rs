@@ -1,4 +1,4 @@
-//! Proposals: changes of parameters, in words and as values.
+//! Proposals: changes of parameters, as text and as values.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::distance::differing;
 use crate::config::parameter::Parameter;
 use crate::config::{Change, Configuration, shown};
 
-/// Most changes of one proposal that are written out: more would not be read.
+/// Largest number of changes of a proposal in a message: users would not read more.
 const MAX_SHOWN: usize = 6;
 
 /// The change of one parameter.
@@ -18,7 +18,7 @@ pub struct ParameterChange {
     pub from: String,
     /// Proposed value as TOML.
     pub to: String,
-    /// What is wrong without this change.
+    /// The problem that this change solves.
     pub reason: String,
 }
 

@@ -7,17 +7,17 @@ use crate::config::Configuration;
 use crate::config::parameter::{Parameter, number};
 use crate::design::{Dimensions, is_accepted};
 
-/// Most alternatives of a message: more would not be read.
+/// Largest number of alternatives in a message: users would not read more.
 const MAX_ALTERNATIVES: usize = 4;
-/// Candidates of one line or strategy that are built, before it is given up.
+/// Largest number of candidates of one line or strategy that are built.
 const MAX_BUILDS: usize = 6;
 /// Lines whose pairs are searched; the first are the most natural.
 const MAX_PAIRED_LINES: usize = 12;
-/// Pairs that satisfy the rules, the nearest first, out of which one is sought that is free of obstacles.
+/// Largest number of pairs that satisfy the rules and are checked for obstacles, the nearest first.
 const MAX_CHECKED_PAIRS: usize = 16;
 /// Ratio of two numbers up to which a change is small.
 const SMALL_RATIO: f64 = 2.0;
-/// Screws without which a switch is not assembled.
+/// Least number of screws to assemble a switch.
 const LEAST_SCREWS: usize = 2;
 
 /// Returns feasible configurations near the start of `problem`, each verified by building it: all alternatives that change
@@ -68,7 +68,8 @@ fn nearest(problem: &Problem<'_>, line: &Line) -> Option<Configuration> {
     if !Dimensions::new(nearest.clone()).lacks_recesses() {
         return Some(nearest);
     }
-    // Better is a value with room for all hardware, if it is not far: without, the set lacks its nut traps.
+    // Prefers a value with space for all hardware, if the change is small. Otherwise the set would
+    // have no nut traps.
     let has_recesses = |c: &Configuration| !Dimensions::new(c.clone()).lacks_recesses() && problem.admits(c);
     let complete = line.nearest(problem.start, &has_recesses, effort);
     Some(complete.filter(|c| is_small_change(problem.start, c)).unwrap_or(nearest))
@@ -83,7 +84,8 @@ fn rank(problem: &Problem<'_>, line: &Line) -> usize {
     1 + usize::from(problem.start.shown(line.field()) == default.shown(line.field()))
 }
 
-/// The first configuration of a search that builds. Each one that does not makes the search stricter.
+/// Returns the first configuration of a search that builds. Each one that does not build adds a
+/// constraint to the search.
 fn verified(
     problem: &Problem<'_>,
     mut find: impl FnMut(&Problem<'_>) -> Option<Configuration>,
@@ -110,9 +112,9 @@ fn combined(problem: &Problem<'_>) -> Option<Configuration> {
     }
 }
 
-/// The configuration with as few parameters returned to their defaults as suffice, each no further than it must. Starts
-/// from the default configuration, which is feasible, and takes over the values of the start, in blocks that are halved
-/// where they are infeasible.
+/// Returns the configuration with the fewest parameters changed towards their defaults, each as
+/// little as possible. Starts from the default configuration, which is feasible, and restores the
+/// values of the start in blocks, which are halved where they are infeasible.
 fn restored(problem: &Problem<'_>) -> Option<Configuration> {
     let mut c = problem.default();
     if !problem.admits(&c) {
@@ -153,8 +155,9 @@ fn take_over(problem: &Problem<'_>, c: &mut Configuration, parameters: &[&'stati
     }
 }
 
-/// The nearest configuration that changes two parameters along the lines of the broken rules, or of the parameters that
-/// `restored` changed. Only the rules guide the search: pairs are too many to build parts for each.
+/// Returns the nearest configuration that changes two parameters along the lines of the broken
+/// rules, or of the parameters that `restored` changed. The search uses only the rules, since there
+/// are too many pairs to build parts for each.
 fn paired(problem: &Problem<'_>, restored: Option<&Configuration>) -> Option<Configuration> {
     let start = problem.start;
     let changed = restored.map_or_else(Vec::new, |c| differing(start, c).collect());
@@ -175,14 +178,15 @@ fn paired(problem: &Problem<'_>, restored: Option<&Configuration>) -> Option<Con
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (_, pair, [first, second]) =
         pairs.into_iter().take(MAX_CHECKED_PAIRS).find(|(_, c, _)| problem.admits(c))?;
-    // Each change as small as the other allows.
+    // Minimises each change while the other is fixed.
     let refined = [first, second, first]
         .into_iter()
         .fold(pair.clone(), |c, line| line.nearest(&c, &satisfies_rules, Effort::THOROUGH).unwrap_or(c));
     Some(if problem.admits(&refined) { refined } else { pair })
 }
 
-/// Whether all changed numbers are within a factor of two, and no screw is lost that the assembly needs.
+/// Returns whether all changed numbers are within a factor of two, and enough screws remain for the
+/// assembly.
 pub(crate) fn is_small_change(start: &Configuration, c: &Configuration) -> bool {
     let is_small = |p: &'static Parameter<Configuration>| match (number(&(p.get)(start)), number(&(p.get)(c)))
     {

@@ -33,7 +33,7 @@ fn alternatives_of(error: &Diagnostic) -> Vec<Vec<String>> {
         return Vec::new();
     }
     let mut alternatives = vec![Vec::new()];
-    // A list has commas of its own, but none before a verb.
+    // A list contains commas, but none before a verb.
     let marked = help.replace(", or ", "|").replace(", and ", "&");
     let marked = ["lower ", "raise ", "set "]
         .into_iter()
@@ -59,7 +59,8 @@ fn with_changes(c: &Configuration, error: &Diagnostic) -> Configuration {
     changed(c, &set.collect::<Vec<_>>())
 }
 
-/// What is wrong with the proposals for a configuration that breaks rules; whether they build is tested in tests/slow.
+/// Returns a description of wrong proposals for a configuration that breaks rules. Tests in
+/// tests/slow build them.
 fn fault_of(c: &Configuration) -> Option<String> {
     let error = design(c.clone()).err()?;
     let text = error.to_string();
@@ -154,7 +155,7 @@ fn help_starts_with_the_field_to_blame() {
     }
 }
 
-/// With every proposed value a set can be made: no other error, and no note that something was left out.
+/// A set can be made with every proposed value, without other errors or notes of omitted features.
 #[test]
 fn proposals_about_hardware_build() {
     for assignments in [
@@ -189,7 +190,7 @@ fn proposals_about_hardware_build() {
     }
 }
 
-/// Two rules that no single value satisfies.
+/// No single value satisfies both rules.
 #[test]
 fn several_broken_rules_are_solved_together() {
     let c = with_all(&["layout.pins=[5, 8, 11]", "segment.end_margin_mm=10", "friction.load_min_n=1000"]);
@@ -202,7 +203,7 @@ fn several_broken_rules_are_solved_together() {
 
 #[test]
 fn parts_that_do_not_build_have_proposals() {
-    // A contour that crosses, and offsets that leave nothing of an edge: no rule knows these.
+    // No rule covers crossing contours, or offsets that remove an edge.
     let mut followed = 0;
     for path in std::fs::read_dir("../../tests/corpus").unwrap().map(|entry| entry.unwrap().path()) {
         if path.extension().is_none_or(|extension| extension != "toml") {

@@ -17,7 +17,7 @@ pub type Make = fn(&Built, &Prediction, &Manifest) -> Result<Vec<OutputFile>, Se
 /// The sets that include a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inclusion {
-    /// Every set. The format has no name on the command line.
+    /// Every set. The format cannot be selected on the command line.
     Always,
     /// Sets without named formats.
     Default,

@@ -39,7 +39,7 @@ pub(super) enum Zone {
 pub(super) struct Engraving {
     /// Rings at the top, which are holes in the cap.
     pub(super) rings: Vec<RingId>,
-    /// What does not fit.
+    /// Features that do not fit.
     pub(super) left_out: Vec<LeftOut>,
     /// Engraved lines.
     pub(super) lines: Vec<String>,

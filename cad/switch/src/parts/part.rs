@@ -140,7 +140,8 @@ impl Part {
         Self { solid, drawn: None, thin: OnceLock::new(), ..self.clone() }
     }
 
-    /// Returns what a valid mesh of the part has: one body, and the exact volume within the bound of the chord tolerance.
+    /// Returns the expected properties of a valid mesh of the part: one body, and the exact volume
+    /// within the bound of the chord tolerance.
     pub fn expectation(&self, design: &Design) -> Expectation {
         let bound = self.solid.volume_bound_mm3(design.tolerance());
         Expectation {

@@ -68,7 +68,8 @@ impl Part {
         ))
     }
 
-    /// Returns the changes after which the part has no thin place: one value, or several together; finer lines without any.
+    /// Returns the changes that remove all thin places of the part: one value, or several together;
+    /// finer lines if neither exists.
     fn remedy_for_thin_places(&self, design: &Design, thinnest_mm: f64) -> String {
         let places = |c: &Configuration| -> Option<Vec<ThinPlace>> {
             let design = Design::new(c.clone()).ok()?;
@@ -102,7 +103,7 @@ impl Part {
         format!("print lines of at most {line_mm:.2} mm (print.line_mm), or accept the thin wall")
     }
 
-    /// What may make a thin wall of this part thicker, the most natural first.
+    /// Directions that may thicken a thin wall of this part, the most natural first.
     fn thickening(&self) -> &'static [Direction] {
         const MARGIN: Direction = Raise("segment.end_margin_mm");
         match (self.role, self.name.as_str()) {
@@ -191,7 +192,7 @@ mod tests {
             &["mount.kind=rig", "mount.rim_mm=1", "print.line_mm=0.6"],
         ] {
             let warnings = warned(set);
-            assert!(!warnings.is_empty(), "{set:?} has no thin wall");
+            assert!(!warnings.is_empty(), "no thin wall with {set:?}");
             for (part, warning) in warnings {
                 let remedy = warning.rsplit(": ").next().unwrap();
                 if remedy.starts_with("print lines") {

@@ -1,4 +1,5 @@
-//! Requests for a design: targets of a switch, limits, materials at hand, and parameters that may vary.
+//! Requests for a design: targets of a switch, limits, available materials, and variable
+//! parameters.
 //!
 //! `cad/doc/design.md` explains every field. [`Request::read`] reads a file, [`parse_requirement`] a requirement from the
 //! command line.
@@ -19,7 +20,7 @@ pub use phrase::{FORMS, parse_requirement, parse_share};
 pub use target::{Quantity, Requirement, Target};
 pub use tolerance::{SOURCES, Tolerances};
 
-/// `within` of an `about` that does not give it.
+/// Default `within` of an `about`.
 pub const DEFAULT_WITHIN: f64 = 0.10;
 
 /// Smallest and largest size of a switch that can be requested, mm.
@@ -31,7 +32,7 @@ const LARGEST_DEVIATION: f64 = 20.0;
 /// Loads that differ by less than this share are equal.
 const SAME_LOAD: f64 = 1e-6;
 
-/// Targets, limits, what may vary, materials at hand, and manufacturing tolerances.
+/// Targets, limits, variable parameters, available materials, and manufacturing tolerances.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Request {
     /// Targets of the curve, all to be met at once.
@@ -40,9 +41,9 @@ pub struct Request {
     pub load_range_n: Option<(f64, f64)>,
     /// Limits of the part.
     pub limits: Limits,
-    /// What the search may change.
+    /// Parameters that the search may vary.
     pub vary: Vary,
-    /// Materials at hand.
+    /// Available materials.
     pub materials: Materials,
     /// Deviations of made parts from their configuration.
     pub tolerances: Tolerances,
@@ -62,7 +63,7 @@ pub struct Limits {
     pub preset: Option<String>,
 }
 
-/// What the search may change.
+/// Parameters that the search may vary.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Vary {
     /// Whether the occupied grooves may change.
@@ -100,7 +101,7 @@ impl Default for Vary {
     }
 }
 
-/// Materials at hand. An empty list stands for the material of the configuration.
+/// Available materials. An empty list means the material of the configuration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Materials {
@@ -112,7 +113,7 @@ pub struct Materials {
     pub tendon: Vec<Tendon>,
 }
 
-/// A tendon at hand.
+/// An available tendon.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tendon {

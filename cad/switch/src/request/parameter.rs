@@ -20,7 +20,8 @@ pub enum Parameter {
     RadiusMm,
     /// Width of the shell, `shell.width_mm`.
     WidthMm,
-    /// Wrap angle of the tendon, `layout.wrap_angle_deg`; a sector that is too short for it gets more grooves.
+    /// Wrap angle of the tendon, `layout.wrap_angle_deg`. Grooves are added to a sector that is too
+    /// short for it.
     WrapDeg,
 }
 

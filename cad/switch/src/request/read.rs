@@ -14,7 +14,7 @@ use super::{
 };
 use crate::config::{Diagnostic, Location, ValueError};
 
-/// The file as it is written.
+/// The unvalidated content of a file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -91,7 +91,8 @@ impl Request {
     }
 }
 
-/// The bytes of the field at a path such as `ask.friction[0]`, or of the innermost table on the path that the text has.
+/// Returns the byte range of the field at a path, such as `ask.friction[0]`, or of the innermost
+/// table on that path that the text contains.
 fn span_of(path: &str, text: &str) -> Range<usize> {
     let span = text.parse::<Document<String>>().ok().and_then(|document| {
         let mut item = document.as_item().clone();

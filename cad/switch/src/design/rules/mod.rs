@@ -39,14 +39,14 @@ pub enum Assessment {
     Satisfied(String),
     /// The rule is broken.
     Broken {
-        /// What is wrong, with the bound.
+        /// The problem, with the bound.
         problem: String,
-        /// What to change.
+        /// The change that satisfies the rule.
         remedy: Remedy,
     },
 }
 
-/// What to change where a rule is broken.
+/// The remedy for a broken rule.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remedy {
     /// An instruction.
@@ -103,7 +103,7 @@ pub struct Check {
     /// The rule with the numbers of this set.
     #[serde(rename = "words")]
     pub statement: String,
-    /// What to change where the rule is broken.
+    /// The change that satisfies a broken rule.
     pub remedy: String,
 }
 
@@ -112,7 +112,7 @@ pub struct Check {
 pub(crate) struct Violation {
     /// The field to blame: that of the rule, unless it has its default and another one is a likely cause.
     pub(crate) field: &'static str,
-    /// What is wrong, with the bound.
+    /// The problem, with the bound.
     pub(crate) problem: String,
     /// Directions in which to look for a value that satisfies the rule.
     pub(crate) directions: &'static [Direction],
@@ -173,7 +173,7 @@ pub(super) fn are_satisfied(dimensions: &Dimensions) -> bool {
     errors().all(|rule| !matches!((rule.assess)(&inspection), Assessment::Broken { .. }))
 }
 
-/// Returns the warnings, each with what to change.
+/// Returns the warnings, each with its remedy.
 pub(super) fn warnings(dimensions: &Dimensions) -> Vec<String> {
     let inspection = Inspection::of_dimensions(dimensions);
     rules()
@@ -237,7 +237,7 @@ mod tests {
         for rule in rules() {
             assert!(exists(rule.field), "{}", rule.field);
         }
-        // Directions of rules that broken configurations bring up.
+        // Directions of the rules that these configurations break.
         let mut directions = 0;
         for parameter in Configuration::PARAMETERS {
             for end in (parameter.ends)().into_iter().flatten() {

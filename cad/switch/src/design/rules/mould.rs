@@ -164,7 +164,7 @@ fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// Whether a tray is made, which has a basin only if it is overfilled.
+/// Returns whether the set has a tray. A tray has a basin only if it is overfilled.
 fn has_tray(i: &Inspection<'_>) -> bool {
     let c = i.configuration();
     c.mould.kind == MouldKind::OnePiece && c.layout.substrate == Substrate::Silicone

@@ -150,7 +150,7 @@ fn bores_clear_support(i: &Inspection<'_>) -> Assessment {
     let Some(mounting) = i.mounting().filter(|_| c.mount.kind == MountKind::FingerLink) else {
         return Assessment::NotApplicable;
     };
-    let clear = |hole: &Hole| i.beside_support_mm(hole.centre) >= hole.radius_mm + HOLE_WALL_MM;
+    let clear = |hole: &Hole| i.distance_to_support_mm(hole.centre) >= hole.radius_mm + HOLE_WALL_MM;
     require(mounting.holes.iter().all(clear), || {
         (
             format!("the left support covers a bore (at least {HOLE_WALL_MM} mm between them needed)"),
@@ -187,7 +187,7 @@ fn heads_within_plate(i: &Inspection<'_>) -> Assessment {
     let fastening = i.fastening();
     let stop = mounting.sheath.map(|_| ("the screws of the sheath stop", stop_recess().depth_mm));
     let axle = mounting.axle.map(|_| ("the bolt of the axle", axle_recess().depth_mm));
-    let heads = fastening.thread.filter(|_| i.lies_on_a_table() && c.fasteners.count > 0);
+    let heads = fastening.thread.filter(|_| i.rests_on_a_table() && c.fasteners.count > 0);
     let heads = heads.map(|t| ("the screws", (t.head_mm[1] + HEAD_BELOW_MM).max(c.fasteners.head_recess_mm)));
     let deepest = [stop, axle, heads].into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1));
     let Some((whose, depth)) = deepest else { return Assessment::NotApplicable };

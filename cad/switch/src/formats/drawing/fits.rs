@@ -12,7 +12,7 @@ use pinswitch_solid::profile::{Point2, polar};
 const CLOSE: &str = "+0.1/0";
 /// For parts that may have play.
 const WIDE: &str = "+0.2/0";
-/// For what goes into a [`WIDE`] hole.
+/// For parts that go into a [`WIDE`] hole.
 const NARROW: &str = "0/-0.2";
 /// Name of the part that measures the machine: its slots and grooves have no tolerance.
 const COUPON: &str = "coupon";

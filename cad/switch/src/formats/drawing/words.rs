@@ -26,7 +26,7 @@ pub(super) const fn general_tolerance(material: Material) -> &'static str {
     }
 }
 
-/// The note about what is engraved in a part.
+/// Returns the note about the engravings of a part.
 pub(super) fn engraving(design: &Design, part: &Part) -> Option<String> {
     if !lettering(&part.solid).contains(&true) {
         return None;
@@ -51,7 +51,7 @@ pub(super) fn notes(design: &Design, part: &Part) -> Vec<String> {
     notes
 }
 
-/// The meaning of the marks of a part, and what was left out of it.
+/// The meaning of the marks of a part, and the omitted features.
 pub(super) fn legend(design: &Design, part: &Part) -> Vec<String> {
     let mut notes = Vec::new();
     if part.engraved.iter().any(|line| line.contains(&design.label())) {

@@ -20,7 +20,7 @@ use pinswitch_solid::profile::polar;
 /// Number of loads of pins and tendon.
 const STATES: usize = 25;
 
-/// The lightest load as a share of the heaviest: an unloaded tendon has no shape.
+/// Lightest load as a share of the heaviest. Without load, the shape of the tendon is undefined.
 const MIN_SHARE: f64 = 1e-3;
 
 /// The data of the page.

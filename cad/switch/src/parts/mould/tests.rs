@@ -108,7 +108,7 @@ fn draft_changes_the_basin_only() {
     assert!(cavity_mm3(&upright).1 < cavity_mm3(&leaning).1);
     assert_eq!(predicted_curve(&upright), predicted_curve(&leaning));
     assert_eq!(upright.warnings(), leaning.warnings());
-    // Without a basin, draft has no effect, and a warning says so.
+    // Without a basin, a warning reports that draft is ineffective.
     let flush = with(&["mould.draft_deg=3", "mould.overfill_mm=0"]);
     assert!(
         flush.warnings().iter().any(|w| w.contains("mould.draft_deg = 3 leans no wall")),

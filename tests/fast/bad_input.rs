@@ -137,9 +137,9 @@ fn invalid_arguments_are_refused() {
     assert!(code == Some(2) && output.contains("cannot be used with '--effects <FILE>'"), "{output}");
 }
 
-/// The work cannot be done, though the configuration is valid: exit code 1.
+/// A valid configuration whose set cannot be written gives exit code 1.
 #[test]
-fn a_file_in_place_of_the_folder_stays() {
+fn obstructing_files_are_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("taken"), "mine").unwrap();
     let (code, output) = ended(folder.path(), &["generate", "three-double", "--out", "taken"]);
@@ -148,7 +148,7 @@ fn a_file_in_place_of_the_folder_stays() {
 }
 
 #[test]
-fn a_missing_file_has_a_starter() {
+fn missing_files_suggest_a_starter() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
         ("power", "tip: `pinswitch init plan --out plan.toml` writes one to start from"),
@@ -188,24 +188,25 @@ fn unwritable_errors_keep_their_exit_code() {
     assert_eq!(command.status().unwrap().code(), Some(0));
 }
 
-/// `--fix` builds the nearest feasible configuration, reports what it changed, and keeps the rest of the file.
+/// `--fix` builds the nearest feasible configuration, reports what it changed, and keeps the rest
+/// of the file.
 #[test]
 fn fix_builds_the_nearest_configuration() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("mine.toml"), "# mine\n[segment]\ngrooves = 40 # many\n").unwrap();
-    let (code, said) =
+    let (code, output) =
         ended(folder.path(), &["generate", "mine.toml", "--format", "stl", "--out", "refused"]);
-    assert!(code == Some(2) && !folder.path().join("refused").join("manifest.json").exists(), "{said}");
-    let (code, said) =
+    assert!(code == Some(2) && !folder.path().join("refused").join("manifest.json").exists(), "{output}");
+    let (code, output) =
         ended(folder.path(), &["generate", "mine.toml", "--fix", "--format", "stl", "--out", "fixed"]);
-    assert!(code == Some(0) && said.contains("segment.grooves: 40 -> 20: grooves overlap"), "{said}");
+    assert!(code == Some(0) && output.contains("segment.grooves: 40 -> 20: grooves overlap"), "{output}");
     let fixed = folder.path().join("fixed").join("fixed.toml");
     let text = std::fs::read_to_string(&fixed).unwrap();
     assert!(text.contains("# mine") && text.contains("grooves = 20 # many"), "{text}");
     // The fixed configuration makes the same parts, and has nothing left to fix.
     let again = ["generate", "fixed/fixed.toml", "--fix", "--format", "stl", "--out", "again"];
-    let (code, said) = ended(folder.path(), &again);
-    assert!(code == Some(0) && said.contains("nothing to fix"), "{said}");
+    let (code, output) = ended(folder.path(), &again);
+    assert!(code == Some(0) && output.contains("nothing to fix"), "{output}");
     let shell = |set: &str| std::fs::read(folder.path().join(set).join("shell.stl")).unwrap();
     assert_eq!(shell("fixed"), shell("again"));
 }

@@ -9,12 +9,13 @@ use crate::harness::{REFUSED, SWEEP, VARIANTS, differences, done, ended, hashes,
 use pinswitch_batch::{Schema, Sweep, SweepSource, read_rows};
 
 #[test]
-fn a_batch_has_parts_table_and_page() {
+fn batches_have_parts_table_and_page() {
     let folder = with_sweep(SWEEP);
-    let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
-    assert!(said.contains("b: 12 variants made, 12 refused, 0 failed"), "{said}");
-    // Two pin layouts, two tendon lengths, three widths: shells and supports with labels, one coupon, one ring per width.
-    assert!(said.contains("48 part files, 28 of them distinct"), "{said}");
+    let output = done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert!(output.contains("b: 12 variants made, 12 refused, 0 failed"), "{output}");
+    // Two pin layouts, two tendon lengths, three widths: shells and supports with labels, one
+    // coupon, one ring per width.
+    assert!(output.contains("48 part files, 28 of them distinct"), "{output}");
     let b = folder.path().join("b");
     let rows = table(&b);
     assert_eq!(rows.len(), VARIANTS);
@@ -51,7 +52,7 @@ fn a_batch_has_parts_table_and_page() {
     );
 }
 
-/// Checks the manifest's hashes and contents of all files, and that parts are hard links.
+/// Asserts that the manifest has the hash of every file, and that parts are hard links.
 fn check_variant(of: &Path, row: &BTreeMap<String, String>) {
     use std::os::unix::fs::MetadataExt;
     let manifest: serde_json::Value =
@@ -83,7 +84,7 @@ fn check_variant(of: &Path, row: &BTreeMap<String, String>) {
 }
 
 #[test]
-fn parquet_and_csv_hold_the_same() {
+fn parquet_and_csv_are_equal() {
     let folder = with_sweep(SWEEP);
     done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     let source = SweepSource::read(&folder.path().join("sweep.toml")).unwrap();
@@ -102,8 +103,8 @@ fn parquet_and_csv_hold_the_same() {
 #[test]
 fn dry_runs_write_nothing() {
     let folder = with_sweep(SWEEP);
-    let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b", "--dry-run"]);
-    let lines: Vec<_> = said.lines().collect();
+    let output = done(folder.path(), &["batch", "sweep.toml", "--out", "b", "--dry-run"]);
+    let lines: Vec<_> = output.lines().collect();
     assert_eq!(
         lines[..2],
         [
@@ -111,8 +112,8 @@ fn dry_runs_write_nothing() {
             "refused: 12"
         ]
     );
-    assert!(lines[2].starts_with("  12 for segment.grooves, such as grooves60_width13"), "{said}");
-    assert!(said.contains("made: 12\ntime: about ") && said.contains("\nsize: about "), "{said}");
+    assert!(lines[2].starts_with("  12 for segment.grooves, such as grooves60_width13"), "{output}");
+    assert!(output.contains("made: 12\ntime: about ") && output.contains("\nsize: about "), "{output}");
     assert!(!folder.path().join("b").exists());
     let estimate: serde_json::Value =
         serde_json::from_str(&done(folder.path(), &["batch", "sweep.toml", "--dry-run", "--json"])).unwrap();
@@ -151,11 +152,11 @@ fn merged_shards_equal_one_run() {
     for shard in ["2/3", "1/3"] {
         done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", shard]);
     }
-    let (code, said) = ended(path, &["merge", "shards"]);
+    let (code, output) = ended(path, &["merge", "shards"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("variants 17 to 24 of 24 are in no finished shard\n  help: run --shard 3/3"),
-        "{said}"
+        output.contains("variants 17 to 24 of 24 are in no finished shard\n  help: run --shard 3/3"),
+        "{output}"
     );
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "3/3"]);
     done(path, &["merge", "shards"]);
@@ -165,10 +166,10 @@ fn merged_shards_equal_one_run() {
     assert_eq!(differences(&whole, &merged), Vec::<String>::new());
 
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "1/2"]);
-    let (code, said) = ended(path, &["merge", "shards"]);
+    let (code, output) = ended(path, &["merge", "shards"]);
     assert!(
-        code == Some(2) && said.contains("are both in shard 1/3 of shards and in shard 1/2 of shards"),
-        "{said}"
+        code == Some(2) && output.contains("are both in shard 1/3 of shards and in shard 1/2 of shards"),
+        "{output}"
     );
 
     // Shards of different sizes in two folders, merged into a third one.
@@ -184,8 +185,8 @@ fn merged_shards_equal_one_run() {
         assert_eq!(joined[product], whole[product], "{product}");
     }
     std::fs::write(path.join("b/shards/4-of-4/variants.parquet"), "PAR1").unwrap();
-    let (code, said) = ended(path, &["merge", "a", "b", "--out", "c"]);
-    assert!(code == Some(2) && said.contains("shard 4/4 of b: "), "{said}");
+    let (code, output) = ended(path, &["merge", "a", "b", "--out", "c"]);
+    assert!(code == Some(2) && output.contains("shard 4/4 of b: "), "{output}");
 }
 
 #[test]
@@ -234,17 +235,17 @@ fn failed_variants_are_recorded() {
     let obstacle = path.join("b/variants").join(&victim);
     std::fs::remove_dir_all(&obstacle).unwrap();
     std::fs::write(&obstacle, "a file where a folder must be").unwrap();
-    let (code, said) = ended(path, &["batch", "sweep.toml", "--out", "b"]);
-    assert!(code == Some(1) && said.contains("11 variants made, 12 refused, 1 failed"), "{said}");
+    let (code, output) = ended(path, &["batch", "sweep.toml", "--out", "b"]);
+    assert!(code == Some(1) && output.contains("11 variants made, 12 refused, 1 failed"), "{output}");
     let row = table(&path.join("b")).swap_remove(3);
     assert_eq!(row["status"], "failed");
     assert!(row["reason"].contains(&victim), "{row:?}");
-    let (code, said) = ended(path, &["batch", "sweep.toml", "--out", "b", "--fail-fast"]);
+    let (code, output) = ended(path, &["batch", "sweep.toml", "--out", "b", "--fail-fast"]);
     assert!(
         code == Some(1)
-            && said.contains(&format!("variant {victim} failed: "))
-            && said.contains("omit --fail-fast to make the other variants"),
-        "{said}"
+            && output.contains(&format!("variant {victim} failed: "))
+            && output.contains("omit --fail-fast to make the other variants"),
+        "{output}"
     );
     std::fs::remove_file(&obstacle).unwrap();
     done(path, &["batch", "sweep.toml", "--out", "b"]);
@@ -271,12 +272,15 @@ fn ctrl_c_finishes_started_variants() {
     }
     let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(interrupted.success());
-    let mut said = String::new();
-    std::io::Read::read_to_string(child.stderr.as_mut().unwrap(), &mut said).unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
-    assert!(said.contains("error: stopped: ") && said.contains(" of 400 variants are finished"), "{said}");
-    // There is no progress bar in a pipe.
-    assert!(!said.contains('\r') && !said.contains('\u{1b}'), "{said:?}");
+    let mut output = String::new();
+    std::io::Read::read_to_string(child.stderr.as_mut().unwrap(), &mut output).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(1), "{output}");
+    assert!(
+        output.contains("error: stopped: ") && output.contains(" of 400 variants are finished"),
+        "{output}"
+    );
+    // A pipe gets no progress bar.
+    assert!(!output.contains('\r') && !output.contains('\u{1b}'), "{output:?}");
     for variant in std::fs::read_dir(&variants).unwrap() {
         assert!(variant.unwrap().path().join("manifest.json").exists());
     }

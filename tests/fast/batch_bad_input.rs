@@ -1,4 +1,5 @@
-//! Sweeps and destinations that cannot be used: one clear error each, exit code 2 or 1, and nothing is lost.
+//! Sweeps and destinations that cannot be used: one clear error each, exit code 2 or 1, and nothing
+//! is lost.
 
 use std::path::Path;
 use std::process::Command;
@@ -108,11 +109,11 @@ fn large_sweeps_need_confirmation() {
 #[test]
 fn invalid_shards_are_refused() {
     let folder = with_sweep(SWEEP);
-    let (code, said) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
+    let (code, output) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
     assert!(
         code == Some(2)
-            && said.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
-        "{said}"
+            && output.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
+        "{output}"
     );
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
     assert!(
@@ -199,10 +200,10 @@ fn dry_runs_report_obstructed_variants() {
     assert_eq!(dry().0, Some(0));
     std::fs::remove_file(made.join("manifest.json")).unwrap();
     std::fs::create_dir(made.join("manifest.json")).unwrap();
-    let (code, said) = dry();
+    let (code, message) = dry();
     assert!(
-        code == Some(1) && said.contains("manifest.json: blocks the output: its variant would fail"),
-        "{said}"
+        code == Some(1) && message.contains("manifest.json: blocks the output: its variant would fail"),
+        "{message}"
     );
     assert_eq!(ended(path, &["batch", "sweep.toml", "--out", "b"]).0, Some(1));
     std::fs::remove_dir_all(&made).unwrap();
@@ -212,7 +213,7 @@ fn dry_runs_report_obstructed_variants() {
 }
 
 #[test]
-fn rows_are_counted_before_they_are_read() {
+fn rows_are_counted_before_reading() {
     let folder = with_sweep("[rows]\nfile = \"rows.csv\"\n");
     // Every row is invalid: the error of a row would show that it was read.
     let rows = format!("shell.width_mm\n{}", "wide\n".repeat(200_000));
@@ -244,7 +245,7 @@ fn runs_resume_after_a_full_disk() {
         run.is_ok_and(|o| o.status.success())
     };
     if !mount("size=1m") {
-        crate::harness::say_skipped("only an administrator can mount a small disk");
+        crate::harness::report_skipped("only an administrator can mount a small disk");
         return;
     }
     let outcome = std::panic::catch_unwind(|| {

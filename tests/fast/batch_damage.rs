@@ -1,5 +1,5 @@
-//! Batches with damaged, edited or deleted files: a resumed run makes them again, a merge reports them; and sweeps that are
-//! refused before they are expanded, in a dry run as in a run.
+//! Batches with damaged, edited or deleted files: a resumed run makes them again, a merge reports
+//! them; and sweeps that are refused before they are expanded, in a dry run as in a run.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,7 +14,7 @@ fn flip(path: &Path, random: &mut ChaCha8Rng) {
     let mut bytes = std::fs::read(path).unwrap();
     let bit = random.random_range(0..8 * bytes.len());
     bytes[bit / 8] ^= 1 << (bit % 8);
-    // A new file: parts are links to one.
+    // Creates a new file, since the parts of several variants are links to one file.
     std::fs::remove_file(path).unwrap();
     std::fs::write(path, bytes).unwrap();
 }
@@ -89,16 +89,16 @@ fn merges_report_damaged_files() {
     };
     let refused = |what: &str, name: &str, words: &[&str]| {
         let before = hashes(&path.join(name));
-        let (code, said) = ended(path, &["-q", "merge", name]);
-        assert_eq!(code, Some(2), "{what}: {said}");
+        let (code, output) = ended(path, &["-q", "merge", name]);
+        assert_eq!(code, Some(2), "{what}: {output}");
         assert!(
-            said.starts_with("error: ")
-                && said.len() < 600
-                && said.lines().skip(1).all(|l| l.starts_with("  help: ")),
-            "{what}: {said}"
+            output.starts_with("error: ")
+                && output.len() < 600
+                && output.lines().skip(1).all(|l| l.starts_with("  help: ")),
+            "{what}: {output}"
         );
         for word in words {
-            assert!(said.contains(word), "{what}: {word}: {said}");
+            assert!(output.contains(word), "{what}: {word}: {output}");
         }
         assert_eq!(hashes(&path.join(name)), before, "{what}: something was written");
     };
@@ -191,9 +191,12 @@ fn large_sweeps_are_refused_unexpanded() {
             let mut run = Command::new("sh");
             run.args(["-c", &command, env!("CARGO_BIN_EXE_pinswitch")]).current_dir(folder.path());
             let output = run.output().unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert_eq!(output.status.code(), Some(2), "{said}");
-            assert!(said.contains(" variants are more than 10000\n  help: allow them with --yes"), "{said}");
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{message}");
+            assert!(
+                message.contains(" variants are more than 10000\n  help: allow them with --yes"),
+                "{message}"
+            );
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -1,12 +1,13 @@
-//! The binary end to end: the commands of README, the content of the files, and the same bytes from every run.
+//! The binary end to end: the commands of README, the content of the files, and the same bytes from
+//! every run.
 
 use crate::harness::{done, ended, files, json, pinswitch, printed, repository, sha256};
 use serde_json::Value;
 
 #[test]
-fn the_first_command_makes_a_valid_set() {
+fn first_command_makes_a_valid_set() {
     let folder = tempfile::tempdir().unwrap();
-    // As in a clone, where the template is a file.
+    // In a clone, the template is a file.
     let template = repository("templates/three-double.toml");
     done(folder.path(), &["generate", template.to_str().unwrap()]);
     let set = folder.path().join("out/three-double");
@@ -65,8 +66,8 @@ fn every_run_writes_the_same_bytes() {
     assert_eq!(files(&folder.path().join("a")), files(&folder.path().join("b")));
 }
 
-/// The seven measured conditions, with the friction of the paper's model and the measured friction, in newtons
-/// (model/doc/friction-laws.md).
+/// The seven measured conditions, with the friction of the paper's model and the measured friction,
+/// in newtons (model/doc/friction-laws.md).
 const CONDITIONS: [(&str, &str, f64); 7] = [
     ("six-single", "4.07", 5.097),
     ("three-double", "10.01", 9.667),

@@ -1,12 +1,12 @@
-//! Every file of `tests/corpus/READER` is given to its reader: what once broke stays mended, and the seeds of the fuzz
-//! targets stay what they are.
+//! Reads every file of `tests/corpus/READER`, so that fixed faults stay fixed and the seeds of the
+//! fuzz targets keep their outcomes.
 
 use std::path::PathBuf;
 
 use crate::harness::repository;
 use crate::readers::{READERS, Reading, finished_shard_table, judge};
 
-/// Every file of a folder.
+/// Returns the paths of a folder, sorted.
 fn files(folder: &std::path::Path) -> Vec<PathBuf> {
     let mut all: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     all.sort();
@@ -31,7 +31,7 @@ fn corpus_files_behave_as_named() {
                 other => faults.push(format!("{}/{name}: {other:?}", reader.name)),
             }
         }
-        // A fuzzer that starts without anything that is accepted finds little.
+        // A fuzzer finds little unless its seeds cover both outcomes.
         if accepted == 0 || refused == 0 {
             faults.push(format!("{}: {accepted} accepted, {refused} refused", reader.name));
         }
@@ -48,7 +48,10 @@ fn readers_fuzz_targets_and_corpus_agree() {
     let manifest = std::fs::read_to_string(repository("fuzz/Cargo.toml")).unwrap();
     for reader in &READERS {
         let name = reader.name;
-        assert!(manifest.contains(&format!("path = \"targets/{name}.rs\"")), "{name} is no target");
+        assert!(
+            manifest.contains(&format!("path = \"targets/{name}.rs\"")),
+            "fuzz/Cargo.toml has no target {name}"
+        );
         let target = std::fs::read_to_string(repository(&format!("fuzz/targets/{name}.rs"))).unwrap();
         assert!(target.contains(&format!("target!(\"{name}\")")), "{name}");
     }
@@ -56,7 +59,7 @@ fn readers_fuzz_targets_and_corpus_agree() {
 
 #[test]
 fn shipped_files_are_accepted() {
-    // The folder is a crate, too.
+    // The folder is also a crate, so its Cargo.toml is not a configuration.
     let is_configuration =
         |path: &&PathBuf| path.extension().is_some_and(|e| e == "toml") && !path.ends_with("Cargo.toml");
     for path in files(&repository("templates")).iter().filter(is_configuration) {

@@ -1,10 +1,12 @@
-//! Citations and links: every path to a document resolves, every effect has its section, and README lists every command.
+//! Citations and links: every path to a document resolves, every effect has its section, and README
+//! lists every command.
 
 use std::path::{Path, PathBuf};
 
 use crate::harness::{binary, repository};
 
-/// Collects the texts of this repository that may cite a document, without generated and foreign ones.
+/// Collects the texts of this repository that may cite a document, without generated and foreign
+/// ones.
 fn texts(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -49,8 +51,8 @@ fn cited_documents_exist() {
     assert!(citations > 50, "only {citations} citations were found");
 }
 
-/// Returns the anchors of the headings of a document as renderers of Markdown make them: lower case, spaces as hyphens, and
-/// no other punctuation than hyphens and underscores.
+/// Returns the anchors of the headings of a document as renderers of Markdown make them: lower
+/// case, spaces as hyphens, and no other punctuation than hyphens and underscores.
 fn anchors(text: &str) -> Vec<String> {
     let anchor = |heading: &str| -> String {
         let kept = heading.to_lowercase().replace(' ', "-");
@@ -89,7 +91,7 @@ fn links_between_documents_resolve() {
 fn every_effect_has_its_section() {
     let catalogue = std::fs::read_to_string(repository("model/doc/effect-catalogue.md")).unwrap();
     for effect in pinswitch_calibration::effects::CATALOGUE {
-        assert!(catalogue.contains(&format!("### `{}`\n", effect.id())), "{} has no section", effect.id());
+        assert!(catalogue.contains(&format!("### `{}`\n", effect.id())), "no section for {}", effect.id());
     }
 }
 

@@ -11,7 +11,7 @@ use crate::harness::repository;
 /// counted as scatter of the series, and its trend with the logarithm of speed as unattributed
 /// structure.
 #[test]
-fn an_effect_is_found_in_few_series() {
+fn effects_are_detected_in_few_series() {
     let file = repository("tests/corpus/plateaus/accepted-few-series.csv");
     let table = PlateauTable::read(std::fs::File::open(file).unwrap(), "few-series.csv").unwrap();
     let report = calibrate(&table.rows, Levels::default()).unwrap().report;
@@ -19,6 +19,6 @@ fn an_effect_is_found_in_few_series() {
     assert_eq!((report.verdict, effect.id.as_str()), (Verdict::Attributed, "rate_dependence"));
     let [low, high] = effect.parameters["k"].ci95;
     assert!(low < 0.3 && 0.3 < high, "{low} {high}");
-    // The folds of the expected error have even fewer series, and still find it.
+    // The folds of the expected error have even fewer series, and still detect it.
     assert!(report.promise_n.unwrap() < 0.6 * report.promise_baseline_n.unwrap(), "{:?}", report.promise_n);
 }

@@ -1,4 +1,4 @@
-//! What a switch buys a finger: the shares against the curve they come from, over the joint, and the files.
+//! `finger`: the shares compared with their curve, over the joint angle, and the files.
 
 use crate::harness::{done, json, pinswitch};
 use serde_json::Value;
@@ -7,7 +7,7 @@ fn column(curve: &Value, key: &str) -> Vec<f64> {
     curve[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
 
-/// Value, lower and upper edge of a share.
+/// Returns the value, the lower and the upper bound of a share.
 fn share(point: &Value, key: &str) -> [f64; 3] {
     ["value", "low", "high"].map(|part| point[key][part].as_f64().unwrap())
 }
@@ -62,7 +62,7 @@ fn the_wrap_follows_the_joint() {
             }
         }
     }
-    // Bare silicone obeys the capstan: its exponent is in proportion to the wrap.
+    // Bare silicone follows the capstan equation: its exponent is proportional to the wrap angle.
     let points = report["layouts"][0]["over_joint"][1]["points"].as_array().unwrap();
     let mu = |point: &Value| {
         (share(point, "force_difference")[0] / 2.0).asinh() / point["wrap_deg"].as_f64().unwrap().to_radians()

@@ -1,5 +1,5 @@
-//! Fit, proved by geometry: pins in their slots and grooves over their whole travel, no parts that overlap, holes on
-//! one axis, and a mould whose cavity is the layer.
+//! Geometric tests of the fit: pins stay in their slots and grooves over their whole travel, parts
+//! do not overlap, holes are coaxial, and the cavity of the mould equals the layer.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -47,7 +47,7 @@ fn combined(a: &Polygons, b: &Polygons, rule: OverlayRule) -> Vec<Polygons> {
     a.overlay(b, rule, FillRule::NonZero)
 }
 
-/// The section of a part at a height of the assembly.
+/// Returns the section of a part at a height of the assembly.
 fn section(part: &Part, z_mm: f64) -> Vec<Contour> {
     let pose = part.pose.unwrap();
     if pose.flipped {
@@ -57,14 +57,14 @@ fn section(part: &Part, z_mm: f64) -> Vec<Contour> {
     }
 }
 
-/// Heights of a part in the assembly at which its section may change.
+/// Returns the heights in the assembly at which the section of a part may change.
 fn heights(part: &Part) -> Vec<f64> {
     let pose = part.pose.unwrap();
     let place = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
     part.solid.heights_mm().into_iter().map(place).collect()
 }
 
-/// Largest area that two bodies share in any section.
+/// Returns the largest area that two bodies share in any section, mm².
 fn shared_mm2(a: &Part, b: &Part) -> f64 {
     let mut all = [heights(a), heights(b)].concat();
     all.sort_by(f64::total_cmp);
@@ -78,7 +78,7 @@ fn shared_mm2(a: &Part, b: &Part) -> f64 {
 
 fn assembly(design: &Design) -> Vec<Part> {
     let mut parts = printed(design).unwrap();
-    // Layer and proxy fill the same place: one at a time.
+    // Layer and proxy occupy the same space, so the assembly contains one of them.
     parts.retain(|p| p.pose.is_some() && p.name != "proxy");
     [parts, reference_bodies(design).unwrap()].concat()
 }
@@ -91,7 +91,8 @@ fn assembled_parts_do_not_overlap() {
         for (i, a) in parts.iter().enumerate() {
             for b in &parts[i + 1..] {
                 let shared = shared_mm2(a, b);
-                // Faces that touch are flattened apart from each other: a sliver of the tolerance along the arc.
+                // Touching faces are flattened separately, which leaves slivers within the
+                // tolerance along arcs.
                 assert!(
                     shared < 2.0 * FINE_MM * 40.0,
                     "{variant:?}: {} and {} share {shared} mm2",
@@ -104,7 +105,7 @@ fn assembled_parts_do_not_overlap() {
 }
 
 #[test]
-fn an_overlap_would_be_seen() {
+fn overlaps_are_detected() {
     let design = design(VARIANTS[0]);
     let parts = assembly(&design);
     let find = |name: &str| parts.iter().find(|p| p.name == name).unwrap();
@@ -140,7 +141,8 @@ fn pins_fit_over_full_travel() {
                 }
             }
         }
-        // From resting on the silicone to flush with its surface, and the pin between the slots' floors.
+        // From resting on the silicone to flush with its surface, and the pin between the slots'
+        // floors.
         assert!(slot.outer_mm >= design.contact_radius_mm());
         assert!(slot.inner_mm <= design.contact_radius_mm() - c.pins.diameter_mm / 2.0);
         assert!(reach <= slot.depth_mm && reach >= c.pins.diameter_mm);
@@ -152,7 +154,7 @@ fn pins_fit_over_full_travel() {
     }
 }
 
-/// Centres of the round holes in a section.
+/// Returns the centres of the round holes in a section.
 fn hole_centres(contours: &[Contour]) -> Vec<Point2<f64>> {
     contours
         .iter()
@@ -194,7 +196,7 @@ fn mould_cavity_equals_layer() {
         let layer = silicone_layer(&design).unwrap();
         assert_eq!(layer.material(), Material::Silicone);
         let parts = printed(&design).unwrap();
-        // Heights above the mould's floor: just over it, and just under the layer's width.
+        // Heights just above the mould's floor, and just below the layer's width.
         for height in [0.05, design.layer_width_mm() - 0.05] {
             let walls: Polygons = parts
                 .iter()
@@ -207,7 +209,7 @@ fn mould_cavity_equals_layer() {
             let shape = polygons(&layer.solid.section(1.0));
             let inside = area(&combined(&shape, &walls, OverlayRule::Intersect));
             assert!(inside < 2.0 * FINE_MM * 40.0, "{kind}: walls reach {inside} mm2 into the layer");
-            // What the walls leave of the layer's smooth sector, less the layer, is empty: the ribs are in place.
+            // The layer fills its smooth sector except for the walls, so the ribs are in place.
             let sector = pinswitch_switch::parts::Sector {
                 inner_mm: design.shell_radius_mm(),
                 outer_mm: design.contact_radius_mm(),

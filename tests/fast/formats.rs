@@ -1,4 +1,4 @@
-//! Files of a set other than STL: their content, and that their bytes repeat.
+//! Files of a set other than STL: their content, and equal bytes from every run.
 
 use crate::harness::{done, files};
 use std::collections::BTreeMap;
@@ -73,7 +73,7 @@ fn the_package_contains_parts_and_curve() {
 
 /// Each step of the assembly has its own picture, whatever parts the switch has.
 #[test]
-fn every_step_of_the_guide_has_a_picture() {
+fn every_guide_step_has_a_picture() {
     let rig = [
         "three-double",
         "--set",
@@ -119,7 +119,7 @@ fn step_files_contain_planes_and_cylinders() {
 }
 
 #[test]
-fn the_guide_has_the_numbers_of_its_set() {
+fn the_guide_contains_the_set_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let files =
         generate(folder.path(), &["three-double", "--set", "pins.diameter_mm=0.9", "--format", "guide"]);

@@ -1,13 +1,14 @@
-//! The bytes of every file of many sets, pinned: a change of bytes is seen, and explained in the commit that accepts it.
+//! Pinned hashes of every file of many sets. A commit that changes bytes accepts the new hashes and
+//! explains the change.
 //!
 //! `PINSWITCH_ACCEPT=1 cargo test --test fast golden` writes the new hashes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::harness::{differences, done, hashes, repository, say_skipped};
+use crate::harness::{differences, done, hashes, report_skipped, repository};
 
-/// Templates whose sets are pinned, beside the configurations of `tests/golden`.
+/// Templates whose sets are pinned, in addition to the configurations of `tests/golden`.
 const TEMPLATES: [&str; 8] = [
     "six-single",
     "three-double",
@@ -18,10 +19,10 @@ const TEMPLATES: [&str; 8] = [
     "proxy-three-single",
     "reference",
 ];
-/// Printers under three-double.
+/// Presets of printers, applied to three-double.
 const PRESETS: [&str; 3] = ["printer-fff-0.4", "printer-fff-0.25", "printer-dimension-elite"];
 
-/// The name of each set, and the arguments that make it.
+/// Returns the name of each set, and the arguments that make it.
 fn sets() -> Vec<(String, Vec<String>)> {
     let owned = |all: &[&str]| all.iter().map(|s| (*s).to_owned()).collect();
     let mut sets: Vec<(String, Vec<String>)> = Vec::new();
@@ -40,15 +41,16 @@ fn sets() -> Vec<(String, Vec<String>)> {
 
 fn make(folder: &Path, sets: &[(String, Vec<String>)]) {
     for (name, arguments) in sets {
-        // A manifest says where the configuration lies from its own folder: here always in the same place.
-        let beside = |argument: &String| {
+        // A manifest contains the path from its folder to the configuration. The copy keeps it
+        // constant.
+        let copied = |argument: &String| {
             let path = Path::new(argument);
             if path.is_absolute() {
                 std::fs::copy(path, folder.join(path.file_name().unwrap())).unwrap();
             }
             path.file_name().unwrap().to_string_lossy().into_owned()
         };
-        let arguments: Vec<String> = arguments.iter().map(beside).collect();
+        let arguments: Vec<String> = arguments.iter().map(copied).collect();
         let all: Vec<&str> = arguments.iter().map(String::as_str).collect();
         done(folder, &[&["-q", "generate", "--format", "all", "--out", name], &all[..]].concat());
         arguments.iter().filter(|name| name.ends_with(".toml")).for_each(|name| {
@@ -58,16 +60,16 @@ fn make(folder: &Path, sets: &[(String, Vec<String>)]) {
 }
 
 /// Compares hashes with the pinned ones, or pins them.
-fn compare(pinned: &str, found: &BTreeMap<String, String>) {
+fn compare(pinned: &str, hashes_of_run: &BTreeMap<String, String>) {
     let pinned = repository(pinned);
     if std::env::var_os("PINSWITCH_ACCEPT").is_some() {
-        let lines: String = found.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
+        let lines: String = hashes_of_run.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
         std::fs::write(&pinned, lines).unwrap();
         return;
     }
-    // Sines and cosines come from the platform's library, and may differ in the last digit on another one.
+    // Sines and cosines of the platform's library may differ in the last digit on other platforms.
     if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        say_skipped("the hashes are those of x86-64 Linux");
+        report_skipped("the hashes are for x86-64 Linux");
         return;
     }
     let text = std::fs::read_to_string(&pinned).unwrap();
@@ -76,10 +78,10 @@ fn compare(pinned: &str, found: &BTreeMap<String, String>) {
         .map(|line| line.split_once("  ").unwrap())
         .map(|(hash, name)| (name.to_owned(), hash.to_owned()))
         .collect();
-    let changed = differences(&expected, found);
+    let changed = differences(&expected, hashes_of_run);
     assert!(
         changed.is_empty(),
-        "{} files have changed: if that is wanted, explain it in the commit and run the test with PINSWITCH_ACCEPT=1\n{}",
+        "{} files have changed: if intended, run the test with PINSWITCH_ACCEPT=1 and explain the change in the commit\n{}",
         changed.len(),
         changed.join("\n")
     );
@@ -98,7 +100,7 @@ fn bytes_match_golden_hashes() {
 }
 
 #[test]
-fn every_other_command_writes_its_bytes() {
+fn other_commands_match_golden_hashes() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &str| done(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     let keep = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
@@ -121,6 +123,5 @@ fn every_other_command_writes_its_bytes() {
             );
         }
     }
-    // Where a shard says how it was run.
     compare("tests/golden/commands.sha256", &hashes(folder.path()));
 }

@@ -8,7 +8,7 @@ use pinswitch_friction::Direction;
 use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
 use proptest::prelude::*;
 
-use crate::harness::{beside_repository, ended};
+use crate::harness::{ended, shared_file};
 
 /// Most characters of an error.
 const LONGEST: usize = 600;
@@ -18,7 +18,7 @@ fn written(rows: &[PlateauRow]) -> String {
 }
 
 /// Checks the text of a table; returns the first error of reading it or of its plausibility.
-fn judged(text: &str) -> Result<(), TableError> {
+fn check(text: &str) -> Result<(), TableError> {
     PlateauTable::read(text.as_bytes(), "t.csv")?.require_baseline("t.csv")
 }
 
@@ -31,14 +31,14 @@ fn opposite(direction: Direction) -> Direction {
 
 /// Returns all tables of rigs and machines in the folders next to this repository.
 fn measured() -> Vec<PathBuf> {
-    let mut found: Vec<PathBuf> = ["data/rig", "data/rig2", "data/real"]
+    let mut tables: Vec<PathBuf> = ["data/rig", "data/rig2", "data/real"]
         .iter()
-        .filter_map(|folder| beside_repository(folder))
+        .filter_map(|folder| shared_file(folder))
         .flat_map(|folder| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()))
         .filter(|path| path.extension().is_some_and(|e| e == "csv"))
         .collect();
-    found.sort();
-    found
+    tables.sort();
+    tables
 }
 
 /// Returns the text of a table with two column names swapped.
@@ -67,7 +67,7 @@ const PAIRS: [[&str; 2]; 10] = [
 
 /// Asserts that a table is refused as a whole, with file, column and help.
 fn assert_refused(text: &str, what: &str) {
-    let error = Diagnostic::from(judged(text).expect_err(what));
+    let error = Diagnostic::from(check(text).expect_err(what));
     let location = error.location().expect(what);
     assert!(
         location.file.as_deref() == Some("t.csv")
@@ -138,7 +138,7 @@ fn without_masses(text: &str) -> String {
 fn swapped_columns_are_named() {
     let text = written(&simulate(&Plan::randomised()).rows);
     for [first, second] in PAIRS {
-        match judged(&exchanged(&text, first, second)) {
+        match check(&exchanged(&text, first, second)) {
             Err(TableError::SwappedColumns { first: a, second: b, .. }) => {
                 assert!([[a, b], [b, a]].contains(&[first, second]), "{first} and {second}: {a} and {b}");
             }
@@ -153,12 +153,12 @@ fn a_refused_table_writes_nothing() {
     let mut rows = simulate(&Plan::randomised()).rows;
     rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
     std::fs::write(folder.path().join("turned.csv"), written(&rows)).unwrap();
-    let (code, said) = ended(folder.path(), &["-q", "calibrate", "turned.csv", "--out", "out"]);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, output) = ended(folder.path(), &["-q", "calibrate", "turned.csv", "--out", "out"]);
+    assert_eq!(code, Some(2), "{output}");
     let words =
         "turned.csv: direction: the concentric readings are below the eccentric ones in 7 of 7 condition(s)";
-    assert!(said.contains(words), "{said}");
-    assert!(said.chars().count() < LONGEST && !folder.path().join("out").exists(), "{said}");
+    assert!(output.contains(words), "{output}");
+    assert!(output.chars().count() < LONGEST && !folder.path().join("out").exists(), "{output}");
 }
 
 /// Covers every kind of rig of the study, including effects and disturbances.
@@ -167,16 +167,16 @@ fn study_tables_are_plausible() {
     for case in study_cases() {
         for seed in [901, 902] {
             let rows = simulate(&plan_of(&case, seed)).rows;
-            judged(&written(&rows)).unwrap_or_else(|e| panic!("{} {seed}: {e}", case.name));
+            check(&written(&rows)).unwrap_or_else(|e| panic!("{} {seed}: {e}", case.name));
         }
     }
 }
 
-/// A single condition, or up to three series, is left to the fit whatever is wrong with it. Swapped
+/// Errors of a single condition, or of up to three series, are left to the fit. Swapped
 /// directions are the exception: pulled readings are never below released ones, and more than three
 /// such series would invalidate the results of the others.
 #[test]
-fn single_errors_are_left_to_the_fit() {
+fn single_errors_reach_the_fit() {
     let rows = simulate(&Plan::randomised()).rows;
     type Wrong = fn(&mut PlateauRow);
     let wrongs: [Wrong; 4] = [
@@ -188,16 +188,19 @@ fn single_errors_are_left_to_the_fit() {
     for (i, wrong) in wrongs.iter().enumerate() {
         let mut condition = rows.clone();
         condition.iter_mut().filter(|r| r.pins.is_empty()).for_each(wrong);
-        let said = judged(&written(&condition));
-        let is_exchanged = matches!(said, Err(TableError::ExchangedSeries { count: 22, .. }));
-        assert!(if [0, 3].contains(&i) { is_exchanged } else { said.is_ok() }, "condition, {i}: {said:?}");
+        let result = check(&written(&condition));
+        let is_exchanged = matches!(result, Err(TableError::ExchangedSeries { count: 22, .. }));
+        assert!(
+            if [0, 3].contains(&i) { is_exchanged } else { result.is_ok() },
+            "condition, {i}: {result:?}"
+        );
         let mut series = rows.clone();
         series.iter_mut().filter(|r| ["3", "17", "40"].contains(&r.series.as_str())).for_each(wrong);
-        judged(&written(&series)).unwrap_or_else(|e| panic!("series, {i}: {e}"));
+        check(&written(&series)).unwrap_or_else(|e| panic!("series, {i}: {e}"));
     }
 }
 
-/// Found by [`no_simulated_rig_is_refused`]: the loads of each layout hardly vary, while friction
+/// A case of [`no_simulated_rig_is_refused`]: the loads of each layout hardly vary, while friction
 /// differs tenfold between layouts.
 #[test]
 fn different_layouts_are_judged_separately() {
@@ -212,7 +215,7 @@ fn different_layouts_are_judged_separately() {
         repetitions_spread: 0,
         ..plan
     };
-    judged(&written(&simulate(&plan).rows)).unwrap();
+    check(&written(&simulate(&plan).rows)).unwrap();
 }
 
 fn plans() -> impl Strategy<Value = Plan> {
@@ -243,7 +246,7 @@ fn coarse_readings_are_not_copies() {
     for seed in 1..=6 {
         let mut rows = simulate(&Plan { seed, ..Plan::randomised() }).rows;
         rows.iter_mut().for_each(|r| r.force_n = (2.0 * r.force_n).round() / 2.0);
-        judged(&written(&rows)).unwrap_or_else(|e| panic!("{seed}: {e}"));
+        check(&written(&rows)).unwrap_or_else(|e| panic!("{seed}: {e}"));
     }
 }
 
@@ -275,9 +278,9 @@ fn wrong_units_and_series_are_refused() {
     refused("a wrap for each row", &|rows| {
         rows.iter_mut().enumerate().for_each(|(i, r)| r.wrap_angle_deg += 0.001 * i as f64);
     });
-    for kept in [Direction::Eccentric, Direction::Concentric] {
+    for direction in [Direction::Eccentric, Direction::Concentric] {
         refused("one direction under the other's name", &|rows| {
-            rows.retain(|r| r.direction == kept);
+            rows.retain(|r| r.direction == direction);
             rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
         });
     }
@@ -313,7 +316,7 @@ proptest! {
             rows.retain(|r| (r.substrate, &r.pins) == (first.0, &first.1));
             rows.iter_mut().for_each(|r| (r.substrate, r.pins) = (None, Vec::new()));
         }
-        if let Err(error) = judged(&written(&rows)) {
+        if let Err(error) = check(&written(&rows)) {
             prop_assert!(false, "{error}");
         }
     }
@@ -324,6 +327,6 @@ proptest! {
         let mut rows = simulate(&plan).rows;
         rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
         prop_assume!(rows.len() > 30 && plan.weights_g.len() > 3 && plan.wrap_angle_deg > 40.0);
-        prop_assert!(judged(&written(&rows)).is_err());
+        prop_assert!(check(&written(&rows)).is_err());
     }
 }

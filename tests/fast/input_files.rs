@@ -1,4 +1,5 @@
-//! Files of the wrong kind or with invalid content: each gives one short error with help, and exit code 2.
+//! Files of the wrong kind or with invalid content: each gives one short error with help, and exit
+//! code 2.
 
 use crate::harness::{done, ended, files, repository, with_sweep};
 use crate::readers::{LONGEST, RIG};
@@ -36,10 +37,10 @@ fn edited_models_are_refused() {
         ("schema", "\"pinswitch.model/99\""),
         ("covariance", "[[1.0]]"),
     ] {
-        let (code, said) = predict(&edited(key, value));
-        assert_eq!(code, Some(2), "{key} = {value}: {said:.600}");
-        assert!(said.contains("edited.toml:"), "{key} = {value}: {said}");
-        assert!(said.chars().count() <= LONGEST + 20, "{key} = {value}: {said}");
+        let (code, output) = predict(&edited(key, value));
+        assert_eq!(code, Some(2), "{key} = {value}: {output:.600}");
+        assert!(output.contains("edited.toml:"), "{key} = {value}: {output}");
+        assert!(output.chars().count() <= LONGEST + 20, "{key} = {value}: {output}");
     }
 }
 
@@ -64,10 +65,10 @@ fn binary_files_have_their_line() {
         &["batch", "rows.toml", "--dry-run"],
         &["segment", "bad.toml", "--out", "t.csv"],
     ] {
-        let (code, said) = ended(folder.path(), arguments);
+        let (code, output) = ended(folder.path(), arguments);
         assert!(
-            code == Some(2) && said.contains("bad.toml:2: byte 0xff") && said.contains("UTF-8"),
-            "{arguments:?}: {said}"
+            code == Some(2) && output.contains("bad.toml:2: byte 0xff") && output.contains("UTF-8"),
+            "{arguments:?}: {output}"
         );
     }
     for arguments in [
@@ -76,10 +77,10 @@ fn binary_files_have_their_line() {
         &["predict", "--model", "model.toml", "--rows", "folder"],
         &["segment", "run.toml", "--out", "t.csv"],
     ] {
-        let (code, said) = ended(folder.path(), arguments);
+        let (code, output) = ended(folder.path(), arguments);
         assert!(
-            code == Some(2) && said.contains("folder: is a folder\n  help: give a file"),
-            "{arguments:?}: {said}"
+            code == Some(2) && output.contains("folder: is a folder\n  help: give a file"),
+            "{arguments:?}: {output}"
         );
     }
 }
@@ -92,9 +93,13 @@ fn long_values_give_short_errors() {
     let name = format!("[switch]\nname = \"{}\"\n", "x".repeat(300_000));
     for content in [list, text, name] {
         std::fs::write(folder.path().join("my.toml"), &content).unwrap();
-        let (code, said) = ended(folder.path(), &["generate", "my.toml"]);
-        assert_eq!(code, Some(2), "{said:.600}");
-        assert!(said.contains("my.toml:2") && said.chars().count() <= LONGEST, "{} {said:.600}", said.len());
+        let (code, output) = ended(folder.path(), &["generate", "my.toml"]);
+        assert_eq!(code, Some(2), "{output:.600}");
+        assert!(
+            output.contains("my.toml:2") && output.chars().count() <= LONGEST,
+            "{} {output:.600}",
+            output.len()
+        );
     }
 }
 
@@ -105,8 +110,8 @@ fn other_mesh_formats_are_recognised() {
     std::fs::write(folder.path().join("a.stl"), b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap();
     std::fs::write(folder.path().join("a.obj"), "# cube\nv 0 0 0\n".repeat(20)).unwrap();
     for (file, word) in [("a.stl", "gzip"), ("a.obj", "OBJ")] {
-        let (code, said) = ended(folder.path(), &["check", file]);
-        assert!(code == Some(2) && said.contains(word), "{file}: {said}");
+        let (code, output) = ended(folder.path(), &["check", file]);
+        assert!(code == Some(2) && output.contains(word), "{file}: {output}");
     }
     for entry in std::fs::read_dir(folder.path().join("set")).unwrap() {
         let path = entry.unwrap().path();
@@ -116,8 +121,8 @@ fn other_mesh_formats_are_recognised() {
             "pdf" => "PDF",
             _ => continue,
         };
-        let (code, said) = ended(folder.path(), &["check", &path.to_string_lossy()]);
-        assert!(code == Some(2) && said.contains(word), "{}: {said}", path.display());
+        let (code, output) = ended(folder.path(), &["check", &path.to_string_lossy()]);
+        assert!(code == Some(2) && output.contains(word), "{}: {output}", path.display());
     }
 }
 
@@ -142,10 +147,10 @@ fn files_of_other_commands_are_recognised() {
     }
     assert!(given.len() > 6);
     for (file, command) in given {
-        let (code, said) = ended(folder.path(), &["generate", &file]);
+        let (code, output) = ended(folder.path(), &["generate", &file]);
         assert!(
-            code == Some(2) && said.contains(command) && said.contains("not a configuration"),
-            "{file}: {said}"
+            code == Some(2) && output.contains(command) && output.contains("not a configuration"),
+            "{file}: {output}"
         );
     }
 }
@@ -164,9 +169,9 @@ fn sweeps_read_within_their_folder() {
     {
         std::fs::write(below.join("sweep.toml"), sweep.replace("BASE", base)).unwrap();
         for from in [(&below, "sweep.toml"), (&folder.path().to_owned(), "below/sweep.toml")] {
-            let (ended_with, said) = ended(from.0, &["batch", from.1, "--dry-run"]);
-            assert_eq!(ended_with, Some(code), "{base}: {said}");
-            assert!(code == 0 || said.contains("--read-outside"), "{base}: {said}");
+            let (ended_with, output) = ended(from.0, &["batch", from.1, "--dry-run"]);
+            assert_eq!(ended_with, Some(code), "{base}: {output}");
+            assert!(code == 0 || output.contains("--read-outside"), "{base}: {output}");
             assert_eq!(ended(from.0, &["batch", from.1, "--dry-run", "--read-outside"]).0, Some(0), "{base}");
         }
     }

@@ -1,4 +1,5 @@
-//! Backwards from a wanted curve, and what the curve buys: the real binary, its designs fed back through `predict`.
+//! `design`, from targets to configurations: the designs of the binary are predicted again; and
+//! `physics`.
 
 use crate::harness::{done, ended, json, pinswitch, repository};
 use serde_json::Value;
@@ -17,15 +18,15 @@ fn numbers(value: &Value) -> Vec<f64> {
 #[test]
 fn designs_meet_their_targets() {
     let folder = tempfile::tempdir().unwrap();
-    let asked =
+    let request =
         ["design", "--threshold", "24", "--max-friction", "9", "--pins", "3..5", "--out", "found", "--json"];
-    let report = json(folder.path(), &[&asked[..], &SHORT].concat());
+    let report = json(folder.path(), &[&request[..], &SHORT].concat());
     assert_eq!(report["possible"], true);
     assert_eq!(report["ask"]["targets"][1]["wish"]["at_most"], 9.0);
     let proposals = report["proposals"].as_array().unwrap();
     assert!(proposals.len() >= 3);
     for (i, proposal) in proposals.iter().enumerate() {
-        // Predicted again by the law that the search is led by, from the file that it wrote.
+        // `predict` uses the law of the search, on the file that the search wrote.
         let file = format!("found/design-{}.toml", i + 1);
         let curve = json(folder.path(), &["predict", &file, "--law", "physics", "--json"]);
         let (load, d) = (column(&curve, "load_n"), column(&curve, "friction_n"));
@@ -59,8 +60,8 @@ fn designs_meet_their_targets() {
 #[test]
 fn mirror_images_are_proposed_once() {
     let folder = tempfile::tempdir().unwrap();
-    let asked = ["design", "--threshold", "26", "--pins", "3", "--vary", "none", "--best", "8", "--json"];
-    let report = json(folder.path(), &[&asked[..], &SHORT].concat());
+    let request = ["design", "--threshold", "26", "--pins", "3", "--vary", "none", "--best", "8", "--json"];
+    let report = json(folder.path(), &[&request[..], &SHORT].concat());
     let pins: Vec<Vec<f64>> =
         report["proposals"].as_array().unwrap().iter().map(|p| numbers(&p["pins"])).collect();
     assert!(!pins.is_empty());
@@ -73,8 +74,8 @@ fn mirror_images_are_proposed_once() {
 #[test]
 fn impossible_request_exits_with_reason() {
     let folder = tempfile::tempdir().unwrap();
-    let asked = ["design", "--max-friction", "at least 16", "--pins", "3..6", "--out", "found"];
-    let output = pinswitch(folder.path(), &[&asked[..], &SHORT].concat());
+    let request = ["design", "--max-friction", "at least 16", "--pins", "3..6", "--out", "found"];
+    let output = pinswitch(folder.path(), &[&request[..], &SHORT].concat());
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
     for word in
@@ -88,7 +89,7 @@ fn impossible_request_exits_with_reason() {
         (&report["possible"], report["proposals"].as_array().unwrap().len()),
         (&Value::Bool(false), 1)
     );
-    // What is advised is true.
+    // The advised change meets the request.
     let best = &report["blocked"]["moves"][0];
     assert_eq!((&best["parameter"], &best["meets"]), (&Value::from("wrap_deg"), &Value::Bool(true)));
     let allowed = format!("wrap_deg={}..{0}", best["to"]);
@@ -100,12 +101,12 @@ fn impossible_request_exits_with_reason() {
 #[test]
 fn unprintable_request_names_limit() {
     let folder = tempfile::tempdir().unwrap();
-    for (asked, limit, is_moved) in [
+    for (request, limit, is_moved) in [
         (&["design", "--threshold", "20", "--outer-width", "10"][..], "limits.outer_width_mm = 10", true),
         (&["design", "silicone-only", "--keep-pins", "--threshold", "20"], "layout.pins = []", false),
     ] {
         let few = ["--starts", "1", "--best", "1", "--draws", "50", "--vary", "none", "--json"];
-        let output = pinswitch(folder.path(), &[asked, &few[..]].concat());
+        let output = pinswitch(folder.path(), &[request, &few[..]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(1), "{message}");
         assert!(message.contains("blocked by") && message.contains(limit), "{message}");
@@ -115,7 +116,7 @@ fn unprintable_request_names_limit() {
         assert!(report["blocked"]["limit"].as_str().unwrap().contains(limit));
         let moves = report["blocked"]["moves"].as_array().unwrap();
         assert_eq!(moves.iter().any(|m| m["parameter"] == "width_mm"), is_moved, "{moves:?}");
-        // One measure: what a move leaves is stated as what is missed now.
+        // The shortfall after a change has the same measure as the present one.
         for missed in moves.iter().flat_map(|m| m["missed"].as_array().unwrap()) {
             let of = |key: &str| missed[key].as_f64().unwrap();
             assert!((of("by") - (of("value") - of("bound")).abs() / of("bound")).abs() < 1e-9);
@@ -128,10 +129,10 @@ fn shipped_requests_are_answered() {
     let folder = tempfile::tempdir().unwrap();
     for (name, code) in [("gripper", 0), ("small-joint", 0), ("impossible", 1)] {
         let file = repository(&format!("templates/asks/{name}.toml"));
-        let asked =
+        let request =
             ["design", "--ask", &file.to_string_lossy(), "--starts", "3", "--draws", "100", "--best", "2"];
-        let (ended, message) = ended(folder.path(), &asked);
-        assert_eq!(ended, Some(code), "{name}: {message}");
+        let (exit_code, message) = ended(folder.path(), &request);
+        assert_eq!(exit_code, Some(code), "{name}: {message}");
     }
 }
 
@@ -144,19 +145,19 @@ fn design_uses_calibrated_model() {
     );
     done(folder.path(), &["-q", "calibrate", "rig/plateaus.csv", "--out", "calibrated"]);
     let model = ["--model", "calibrated/model.toml"];
-    let asked =
+    let request =
         ["design", "--max-friction", "between 8 and 11", "--pins", "3", "--vary", "none", "--out", "found"];
-    let report = json(folder.path(), &[&asked[..], &model, &["--json"], &SHORT].concat());
+    let report = json(folder.path(), &[&request[..], &model, &["--json"], &SHORT].concat());
     assert_eq!(report["possible"], true);
-    // The curve that `generate` makes of it with the same model.
+    // `generate` computes the same curve with the same model.
     let proposal = &report["proposals"][0];
     let set = json(
         folder.path(),
         &[&["generate", "found/design-1.toml", "--out", "parts", "--json"], &model[..]].concat(),
     );
-    let (told, made) =
+    let (proposed, generated) =
         (proposal["friction_n"].as_f64().unwrap(), set["friction"]["friction_n"].as_f64().unwrap());
-    assert!((told / made - 1.0).abs() < 1e-3, "{told} {made}");
+    assert!((proposed / generated - 1.0).abs() < 1e-3, "{proposed} {generated}");
 }
 
 #[test]

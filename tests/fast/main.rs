@@ -1,7 +1,8 @@
-//! Tests that take seconds: the binary end to end, the bytes that it writes, and the claims of README and the documents.
+//! Tests that take seconds: the binary end to end, the bytes that it writes, and the claims of
+//! README and the documents.
 //!
-//! A new test belongs here unless it takes more than some seconds (`slow`) or needs another program (`programs`).
-//! tests/README.md lists what each file protects.
+//! A new test belongs here unless it takes more than some seconds (`slow`) or needs another program
+//! (`programs`). tests/README.md lists what each file protects.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

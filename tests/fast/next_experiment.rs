@@ -23,9 +23,9 @@ fn proposed_runs_resolve_a_confounded_effect() {
     let plan = json(&path.join("next/experiment.json"));
     assert!(plan["minutes"].as_f64().unwrap() <= 60.0, "{plan}");
     let questions = plan["questions"].as_array().unwrap();
-    let asked = questions.iter().find(|q| q["between"][0] == "rate_dependence").unwrap();
-    assert!(asked["resolved_probability"].as_f64() > Some(0.8), "{asked}");
-    assert!(asked["by_repeating"].as_f64() < Some(0.2), "{asked}");
+    let question = questions.iter().find(|q| q["between"][0] == "rate_dependence").unwrap();
+    assert!(question["resolved_probability"].as_f64() > Some(0.8), "{question}");
+    assert!(question["by_repeating"].as_f64() < Some(0.2), "{question}");
     let sheet = std::fs::read_to_string(path.join("next/run-sheet.html")).unwrap();
     assert!(sheet.contains("mount 1: ") && sheet.contains("rate_dependence or none"));
     // The same model gives the same plan, and the runs can be rehearsed with it.
@@ -34,13 +34,13 @@ fn proposed_runs_resolve_a_confounded_effect() {
     assert_eq!(bytes("next/next-runs.csv"), bytes("again/next-runs.csv"));
     // A load cell that no load fits is not a lack of time.
     std::fs::write(path.join("tiny.toml"), "cell_limit_n = 0.1\n").unwrap();
-    let (code, said) =
+    let (code, output) =
         ended(path, &["-q", "experiment", "calibration", "--rig", "tiny.toml", "--out", "none"]);
     assert!(
-        code == Some(2) && said.contains("tiny.toml: cell_limit_n = 0.1: the load cell would exceed"),
-        "{said}"
+        code == Some(2) && output.contains("tiny.toml: cell_limit_n = 0.1: the load cell would exceed"),
+        "{output}"
     );
-    assert!(!said.contains("minutes") && !path.join("none").exists(), "{said}");
+    assert!(!output.contains("minutes") && !path.join("none").exists(), "{output}");
     let runs = ["--runs", "next/next-runs.csv"];
     done(
         path,
@@ -51,8 +51,8 @@ fn proposed_runs_resolve_a_confounded_effect() {
     done(path, &[&["-q", "simulate"], &runs[..], &truth, &["--seed", "5", "--out", "second"]].concat());
     let both =
         ["-q", "calibrate", "first/plateaus.csv", "second/plateaus.csv", "--plan", "next", "--out", "joined"];
-    let said = printed(path, &both);
-    assert!(said.starts_with("from first/plateaus.csv: inconclusive"), "{said}");
+    let output = printed(path, &both);
+    assert!(output.starts_with("from first/plateaus.csv: inconclusive"), "{output}");
     let report = json(&path.join("joined/report.json"));
     assert_eq!(
         (&report["verdict"], &report["effects"][0]["id"]),
@@ -74,7 +74,7 @@ fn proposed_runs_resolve_a_confounded_effect() {
         answers.iter().all(|q| q["resolved_probability"].as_f64() < Some(0.9) || q["answer"] != "open"),
         "{answers:?}"
     );
-    assert!(said.contains("second/plateaus.csv answers "), "{said}");
+    assert!(output.contains("second/plateaus.csv answers "), "{output}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
     assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; with the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
     // The report lists the runs; a heavier load precedes descending ones in their mount.
@@ -116,8 +116,8 @@ fn invalid_input_gives_one_error() {
         ),
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
-        let (code, said) = ended(path, &arguments);
-        assert!(code == Some(2) && said.contains(words) && said.len() < 600, "{arguments:?}: {said}");
+        let (code, output) = ended(path, &arguments);
+        assert!(code == Some(2) && output.contains(words) && output.len() < 600, "{arguments:?}: {output}");
         assert!(!path.join("next").exists() && !path.join("x").exists(), "{arguments:?}");
     }
 }
@@ -140,7 +140,7 @@ fn asks(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn tables_that_differ_from_the_plan_warn() {
+fn unplanned_tables_give_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::create_dir(path.join("plan")).unwrap();
@@ -154,12 +154,12 @@ fn tables_that_differ_from_the_plan_warn() {
         done(path, &["-q", "simulate", "--runs", "runs.csv", "--out", name]);
     };
     // The plan is checked before the tables; the first table is missing, so nothing is calibrated.
-    let said = |name: &str| {
+    let output = |name: &str| {
         let table = format!("{name}/plateaus.csv");
-        let (code, said) =
+        let (code, output) =
             ended(path, &["-q", "calibrate", "absent.csv", &table, "--plan", "plan", "--out", "x"]);
-        assert_eq!(code, Some(2), "{said}");
-        said
+        assert_eq!(code, Some(2), "{output}");
+        output
     };
     done(path, &["-q", "simulate", "--seed", "2", "--out", "before"]);
     made("whole", &lines[1..]);
@@ -172,7 +172,7 @@ fn tables_that_differ_from_the_plan_warn() {
     let twice = format!("5{}", &lines[1][1..]);
     made("twice", &[lines[1], &twice]);
     made("turned", &[lines[4], lines[1], lines[2], lines[3]]);
-    assert!(!said("whole").contains("runs of plan"), "{}", said("whole"));
+    assert!(!output("whole").contains("runs of plan"), "{}", output("whole"));
     let runs = Path::new("plan/next-runs.csv").display();
     for (name, words) in [
         ("part", format!("part/plateaus.csv: lacks 1 of the 4 runs of {runs}")),
@@ -191,7 +191,7 @@ fn tables_that_differ_from_the_plan_warn() {
             format!("turned/plateaus.csv: the order of the series differs from that of the runs of {runs}"),
         ),
     ] {
-        assert!(said(name).contains(&words), "{name}: {}", said(name));
+        assert!(output(name).contains(&words), "{name}: {}", output(name));
     }
     for (from, to, words) in [
         ("0.9", "1.9", "questions[1].resolved_probability = 1.9: outside 0 to 1"),
@@ -199,13 +199,16 @@ fn tables_that_differ_from_the_plan_warn() {
         ("wear_drift", "gravity", "questions[1].between[1] = \"gravity\": unknown effect"),
     ] {
         std::fs::write(path.join("plan/experiment.json"), asks(from, to)).unwrap();
-        let said = said("whole");
-        assert!(said.contains(words) && said.contains("experiment.json") && said.len() < 600, "{said}");
+        let output = output("whole");
+        assert!(
+            output.contains(words) && output.contains("experiment.json") && output.len() < 600,
+            "{output}"
+        );
     }
     std::fs::write(path.join("plan/experiment.json"), asks("0.7", "0.7")).unwrap();
     std::fs::remove_file(path.join("plan/next-runs.csv")).unwrap();
-    let said = said("whole");
-    assert!(said.contains(&format!("{runs}: file not found")) && !path.join("x").exists(), "{said}");
+    let output = output("whole");
+    assert!(output.contains(&format!("{runs}: file not found")) && !path.join("x").exists(), "{output}");
 }
 
 /// Returns a plan of the randomised protocol with a disturbance that is not an effect.
@@ -217,23 +220,23 @@ fn rig(disturbance: &str) -> String {
 }
 
 #[test]
-fn derived_forms_are_tested_by_other_sessions() {
+fn derived_forms_need_another_session() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let step = "size = 0.15\ntarget = \"friction\"\nkind.step = { at = 0.45, over = 0.0 }";
     std::fs::write(path.join("step.toml"), rig(step)).unwrap();
     done(path, &["-q", "simulate", "step.toml", "--next", "--out", "step"]);
-    let said = printed(path, &["-q", "calibrate", "step/plateaus.csv", "--out", "first"]);
-    assert!(said.contains("resembles a step on friction"), "{said}");
+    let output = printed(path, &["-q", "calibrate", "step/plateaus.csv", "--out", "first"]);
+    assert!(output.contains("resembles a step on friction"), "{output}");
     let form = json(&path.join("first/report.json"))["effects"][0]["form"].clone();
     assert_eq!((&form["shape"], &form["acts_on"]), (&"step".into(), &"friction".into()), "{form}");
     let id = form["id"].as_str().unwrap();
-    // The first question is whether it is seen in another session; the data it was derived from do
-    // not answer it.
+    // The first question is whether another session shows it; the data from which it was derived
+    // cannot answer that.
     done(path, &["-q", "experiment", "first", "--minutes", "240", "--out", "plan"]);
     let plan = json(&path.join("plan/experiment.json"));
-    let asked = plan["questions"].as_array().unwrap().iter().find(|q| q["between"][0] == id);
-    assert!(asked.is_some_and(|q| q["resolved_probability"].as_f64() > Some(0.9)), "{plan}");
+    let question = plan["questions"].as_array().unwrap().iter().find(|q| q["between"][0] == id);
+    assert!(question.is_some_and(|q| q["resolved_probability"].as_f64() > Some(0.9)), "{plan}");
     // The plan contains the form, so that the question is answered without its file.
     assert_eq!(
         std::fs::read(path.join("plan/discovered.toml")).unwrap(),
@@ -249,13 +252,13 @@ fn derived_forms_are_tested_by_other_sessions() {
     // The data from which it was derived do not attribute it, and its file is not overwritten by
     // the calibration that reads it.
     let own = ["-q", "calibrate", "step/plateaus.csv", "--effects", "first/discovered.toml", "--out"];
-    let said = printed(path, &[&own[..], &["own"]].concat());
+    let output = printed(path, &[&own[..], &["own"]].concat());
     assert!(
-        said.starts_with("verdict: unattributed") && said.contains(&format!("test of {id}: drawn")),
-        "{said}"
+        output.starts_with("verdict: unattributed") && output.contains(&format!("test of {id}: drawn")),
+        "{output}"
     );
-    let (code, said) = ended(path, &[&own[..], &["first"]].concat());
-    assert!(code == Some(2) && path.join("first/discovered.toml").exists(), "{said}");
+    let (code, output) = ended(path, &[&own[..], &["first"]].concat());
+    assert!(code == Some(2) && path.join("first/discovered.toml").exists(), "{output}");
     // The step is after three hours, so one hour cannot show it.
     done(path, &["-q", "experiment", "first", "--minutes", "60", "--out", "short"]);
     let short = json(&path.join("short/experiment.json"));
@@ -264,8 +267,8 @@ fn derived_forms_are_tested_by_other_sessions() {
     let discovered = ["--effects", "first/discovered.toml"];
     let confirmed =
         [&["-q", "calibrate", "step/plateaus-next.csv"], &discovered[..], &["--out", "second"]].concat();
-    let said = printed(path, &confirmed);
-    assert!(said.starts_with("verdict: attributed") && said.contains(id), "{said}");
+    let output = printed(path, &confirmed);
+    assert!(output.starts_with("verdict: attributed") && output.contains(id), "{output}");
     let size = json(&path.join("second/report.json"))["effects"][0]["parameters"]["a"].clone();
     assert!((size["value"].as_f64().unwrap() - 0.15).abs() < 0.04, "{size}");
     // On a rig without it, the effect is not attributed, and its size is excluded or open.
@@ -290,15 +293,15 @@ fn unrecorded_loads_of_curves_are_proposed() {
     let is_light = |line: &&str| line.split(',').nth(at).unwrap().parse::<f64>().is_ok_and(|n| n < 26.0);
     let light: Vec<&str> = table.lines().take(1).chain(table.lines().skip(1).filter(is_light)).collect();
     std::fs::write(path.join("light.csv"), light.join("\n")).unwrap();
-    let asked = |table: &str, folder: &str| {
+    let question_of = |table: &str, folder: &str| {
         done(path, &["-q", "calibrate", table, "--out", folder]);
         done(path, &["-q", "experiment", folder, "--minutes", "60", "--out", "plan"]);
         let plan = json(&path.join("plan/experiment.json"));
         let of = |q: &&Value| q["between"][0].as_str().unwrap().starts_with("friction_above_");
         plan["questions"].as_array().unwrap().iter().find(of).cloned()
     };
-    let question = asked("light.csv", "few").unwrap();
+    let question = question_of("light.csv", "few").unwrap();
     let chance = |key: &str| question[key].as_f64().unwrap();
     assert!(chance("resolved_probability") > 0.2 + chance("by_repeating"), "{question}");
-    assert_eq!(asked("whole/plateaus.csv", "all"), None);
+    assert_eq!(question_of("whole/plateaus.csv", "all"), None);
 }

@@ -23,7 +23,7 @@ fn report(folder: &Path, calibrated: &str) -> serde_json::Value {
 }
 
 /// Returns the ids of the effects.
-fn found(report: &serde_json::Value) -> Vec<&str> {
+fn effect_ids(report: &serde_json::Value) -> Vec<&str> {
     report["effects"].as_array().unwrap().iter().filter_map(|e| e["id"].as_str()).collect()
 }
 
@@ -45,7 +45,7 @@ fn a_user_defined_effect_is_found() {
     done(at, &simulate);
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--effects", "mine.toml", "--out", "with"]);
     let with = report(at, "with");
-    assert_eq!((with["verdict"].as_str(), found(&with)), (Some("attributed"), vec!["lubricant_dip"]));
+    assert_eq!((with["verdict"].as_str(), effect_ids(&with)), (Some("attributed"), vec!["lubricant_dip"]));
     let effect = &with["effects"][0];
     for (name, truth) in [("a", 0.3), ("c", 52.0), ("w", 8.0)] {
         let size = effect["parameters"][name]["value"].as_f64().unwrap();
@@ -70,7 +70,7 @@ fn a_user_defined_effect_is_found() {
     // Without the effect in the vocabulary, its residual is reported as unattributed structure.
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--out", "without"]);
     let without = report(at, "without");
-    assert!(!found(&without).contains(&"lubricant_dip"));
+    assert!(!effect_ids(&without).contains(&"lubricant_dip"));
     assert_eq!(without["verdict"].as_str(), Some("unattributed"));
 }
 
@@ -81,7 +81,7 @@ fn an_absent_effect_is_not_reported() {
     done(at, &["-q", "simulate", "plan.toml", "--out", "rig"]);
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--effects", "mine.toml", "--out", "null"]);
     let null = report(at, "null");
-    assert_eq!(found(&null), Vec::<&str>::new());
+    assert_eq!(effect_ids(&null), Vec::<&str>::new());
     let candidates = null["candidates"].as_array().unwrap();
     assert_eq!(candidates.len(), 22);
     assert!(candidates.iter().any(|c| c["id"] == "lubricant_dip"));
@@ -99,7 +99,7 @@ fn formula_of_builtin_becomes_rival() {
     done(at, &["-q", "simulate", "plan.toml", "--effect", "stroke_position=0.2", "--out", "rig"]);
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--effects", "copy.toml", "--out", "both"]);
     let both = report(at, "both");
-    let mut ids = found(&both);
+    let mut ids = effect_ids(&both);
     ids.extend(both["effects"][0]["rivals"].as_array().unwrap().iter().filter_map(|r| r["id"].as_str()));
     ids.sort_unstable();
     assert_eq!(ids, ["mine", "stroke_position"]);
@@ -136,22 +136,22 @@ fn problems_are_located() {
     std::fs::write(at.join("bad.toml"), good.replace("speed_pct - c", "sped_pct - c")).unwrap();
     for command in ["calibrate rig/plateaus.csv --effects bad.toml --out x", "effects --effects bad.toml"] {
         let arguments: Vec<&str> = command.split(' ').collect();
-        let (code, said) = ended(at, &arguments);
-        assert_eq!(code, Some(2), "{said}");
+        let (code, output) = ended(at, &arguments);
+        assert_eq!(code, Some(2), "{output}");
         assert!(
-            said.contains("bad.toml:12:24: unknown variable 'sped_pct'\n")
-                && said.contains("\n  help: did you mean speed_pct?"),
-            "{said}"
+            output.contains("bad.toml:12:24: unknown variable 'sped_pct'\n")
+                && output.contains("\n  help: did you mean speed_pct?"),
+            "{output}"
         );
     }
-    let (code, said) = ended(at, &["effects", "--effects", "mine.toml", "--effects", "mine.toml"]);
-    assert!(code == Some(2) && said.contains("duplicate id 'lubricant_dip'"), "{said}");
+    let (code, output) = ended(at, &["effects", "--effects", "mine.toml", "--effects", "mine.toml"]);
+    assert!(code == Some(2) && output.contains("duplicate id 'lubricant_dip'"), "{output}");
     // The heaviest load of this table exceeds those of the probe rows.
     let log = good.replace("-a * exp(-((speed_pct - c)/w)^2)", "a*c/w*sqrt(1 - previous_load_n/49.4)");
     std::fs::write(at.join("log.toml"), log).unwrap();
-    let (code, said) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
-    assert!(code == Some(2) && said.contains("is not finite at its start value a = "), "{said}");
-    assert!(said.contains(" (row "), "{said}");
+    let (code, output) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
+    assert!(code == Some(2) && output.contains("is not finite at its start value a = "), "{output}");
+    assert!(output.contains(" (row "), "{output}");
     assert!(!at.join("x").exists());
     // Formulas that are valid but do not mean what they seem to.
     for (from, to, words) in [
@@ -161,24 +161,24 @@ fn problems_are_located() {
     ] {
         assert!(good.contains(from), "{from}");
         std::fs::write(at.join("odd.toml"), good.replace(from, to)).unwrap();
-        let (code, said) = ended(at, &["effects", "--effects", "odd.toml"]);
-        assert!(code == Some(2) && said.contains(words) && said.contains("odd.toml:"), "{to}: {said}");
+        let (code, output) = ended(at, &["effects", "--effects", "odd.toml"]);
+        assert!(code == Some(2) && output.contains(words) && output.contains("odd.toml:"), "{to}: {output}");
     }
     for (effect, words) in [
         ("lubricant_dp=0.1,50,5", "did you mean lubricant_dip?"),
         ("coating_stiffening=1,99", "= 99: m must be from 0.9 to 2.1"),
         ("adhesion=-1", "= -1: c must not be negative"),
     ] {
-        let (code, said) =
+        let (code, output) =
             ended(at, &["simulate", "--effects", "mine.toml", "--effect", effect, "--out", "x"]);
-        assert!(code == Some(2) && said.contains(words), "{effect}: {said}");
+        assert!(code == Some(2) && output.contains(words), "{effect}: {output}");
     }
     std::fs::write(at.join("kind.toml"), "[[disturbances]]\nkind = \"resonance\"\nsize = 0.1\n").unwrap();
-    let (code, said) = ended(at, &["simulate", "kind.toml", "--out", "x"]);
-    assert!(code == Some(2) && said.contains("kind.resonance = {"), "{said}");
+    let (code, output) = ended(at, &["simulate", "kind.toml", "--out", "x"]);
+    assert!(code == Some(2) && output.contains("kind.resonance = {"), "{output}");
     // The error names the field that caused it, and no other flag.
-    let (code, said) = ended(at, &["simulate", "--randomised", "--raw", "--out", "raw"]);
-    assert!(code == Some(2) && said.contains("dwells_s") && !said.contains("--effect"), "{said}");
+    let (code, output) = ended(at, &["simulate", "--randomised", "--raw", "--out", "raw"]);
+    assert!(code == Some(2) && output.contains("dwells_s") && !output.contains("--effect"), "{output}");
 }
 
 /// Files written by `init` are accepted unchanged.

@@ -1,7 +1,8 @@
-//! The pictures of README and the documents are what the program draws today.
+//! The pictures of README and the documents match the output of the program.
 //!
-//! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the three photographs of pages need
-//! chromium. Without it the test compares drawings byte for byte, and photographs by the hash of the page they show.
+//! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the three
+//! photographs of pages need chromium. Without it the test compares drawings byte for byte, and
+//! photographs by the hash of the page they show.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +10,7 @@ use std::process::Command;
 use crate::harness::preview::Preview;
 use crate::harness::{browser, done, repository, sha256};
 
-/// A picture in `cad/doc`, and the file of a run that it is.
+/// Pictures in `cad/doc`, and the files of a run that they are copies of.
 const DRAWN: [(&str, &str); 10] = [
     ("exploded.png", "out/three-double/assembly.png"),
     ("plate.png", "out/three-double/plate.png"),
@@ -22,7 +23,7 @@ const DRAWN: [(&str, &str); 10] = [
     ("finger.svg", "finger/finger.svg"),
     ("sweep.svg", "batch/curves.svg"),
 ];
-/// A photograph in `cad/doc`, the page that it shows, and the size of the window.
+/// Photographs in `cad/doc`, the pages that they show, and the sizes of the windows.
 const PHOTOGRAPHED: [(&str, &str, &str); 2] = [
     ("page.png", "out/three-double/report.html", "1200,1225"),
     ("calibration.png", "calibrated/report.html", "985,1167"),
@@ -59,7 +60,7 @@ fn photograph(address: &str, picture: &Path, size: &str) {
 }
 
 #[test]
-fn pictures_are_what_the_program_draws() {
+fn pictures_match_the_output() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &str| done(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     run("-q generate three-double");

@@ -1,16 +1,17 @@
-//! Runs every block of README and of cad/doc/tutorial.md, in order and in one folder, and compares its output.
+//! Runs every block of README and of cad/doc/tutorial.md, in order and in one folder, and compares
+//! its output.
 
 use std::path::Path;
 
 use crate::harness::{binary, repository};
 
-/// A command of README, and the lines that it shows under it; `...` stands for any further lines.
+/// A command of a document and the output below it; a last line `...` matches any further lines.
 struct Shown {
     command: String,
     output: Option<Vec<String>>,
 }
 
-/// The commands of all `sh` and `console` blocks, in order.
+/// Returns the commands of all `sh` and `console` blocks, in order.
 fn commands(readme: &str) -> Vec<Shown> {
     let mut all: Vec<Shown> = Vec::new();
     let mut block = "";
@@ -25,7 +26,7 @@ fn commands(readme: &str) -> Vec<Shown> {
                 }
                 None => {
                     let shown = all.last_mut().and_then(|s| s.output.as_mut());
-                    shown.expect("a command stands first").push(line.to_owned());
+                    shown.expect("a block starts with a command").push(line.to_owned());
                 }
             },
             _ => {}
@@ -34,7 +35,8 @@ fn commands(readme: &str) -> Vec<Shown> {
     all
 }
 
-/// Runs a command in a folder; returns what it prints. The test command is the one that runs this test.
+/// Runs a command in a folder and returns its output. Returns `None` for the test command, which
+/// runs this test.
 fn run(folder: &Path, slicer: Option<&Path>, command: &str) -> Option<String> {
     let command = command.split(" #").next().unwrap_or(command).trim();
     if command.starts_with("cargo test") {
@@ -43,8 +45,7 @@ fn run(folder: &Path, slicer: Option<&Path>, command: &str) -> Option<String> {
         return None;
     }
     let arguments = command.strip_prefix("cargo run -- ").or(command.strip_prefix("pinswitch "));
-    let arguments =
-        arguments.unwrap_or_else(|| panic!("README shows {command:?}, which is no pinswitch command"));
+    let arguments = arguments.unwrap_or_else(|| panic!("{command:?} is not a pinswitch command"));
     let mut program = binary();
     program.args(arguments.split_whitespace()).current_dir(folder);
     if let Some(slicer) = slicer {
@@ -59,19 +60,21 @@ fn readme_blocks_match_their_output() {
     follow("README.md", 15, None);
 }
 
-/// A substitute for the slicer answers at once; the tutorial shows the table of the real one as text.
+/// Uses a substitute slicer, for speed. The tutorial shows the table of the real one as text, which
+/// is not compared.
 #[cfg(unix)]
 #[test]
 fn tutorial_blocks_match_their_output() {
     let folder = tempfile::tempdir().unwrap();
-    follow("cad/doc/tutorial.md", 6, Some(&crate::slicing::stand_in(folder.path())));
+    follow("cad/doc/tutorial.md", 6, Some(&crate::slicing::substitute_slicer(folder.path())));
 }
 
-/// Runs all commands of a document, at least so many, and compares what they print with what it shows.
+/// Runs all commands of a document, at least `least`, and compares their output with the output
+/// that it shows.
 fn follow(document: &str, least: usize, slicer: Option<&Path>) {
     let readme = std::fs::read_to_string(repository(document)).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    // As in a clone: the templates lie there.
+    // The templates of the repository, as in a clone.
     std::fs::create_dir(folder.path().join("templates")).unwrap();
     for entry in std::fs::read_dir(repository("templates")).unwrap().map(Result::unwrap) {
         if entry.path().is_file() {

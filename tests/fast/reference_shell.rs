@@ -1,5 +1,5 @@
-//! The shell that all programs were compared on (cad/doc/batch.md): its exact volume at every tolerance, and the deviation
-//! of every curve.
+//! The reference shell of the comparison of programs (cad/doc/batch.md): its exact volume at every
+//! tolerance, and the deviation of every curve.
 
 use pinswitch_solid::validity::examine;
 use pinswitch_switch::config::{Configuration, assign};
@@ -41,7 +41,7 @@ fn volume_is_exact_at_every_tolerance() {
     }
 }
 
-/// Every point of the mesh's outline lies within the tolerance of the exact profile: measured, not assumed.
+/// Measures the distance of every point of the mesh's outline from the exact profile.
 #[test]
 fn curves_stay_within_tolerance() {
     for tolerance in [0.05, 0.01, 0.001] {

@@ -20,9 +20,9 @@ fn changed_constants_are_reported() {
     done(path, &["-q", "simulate", "--seed", "21", "--out", "a"]);
     done(path, &["-q", "simulate", "--seed", "122", "--out", "b"]);
     done(path, &["-q", "simulate", "other.toml", "--seed", "121", "--out", "c"]);
-    let said = printed(path, &["-q", "calibrate", "a/plateaus.csv", "c/plateaus.csv", "--out", "changed"]);
+    let output = printed(path, &["-q", "calibrate", "a/plateaus.csv", "c/plateaus.csv", "--out", "changed"]);
     let change = "changed: mu_s differs by -2";
-    assert!(said.contains(change) && said.contains("in session a/plateaus.csv (0.2"), "{said}");
+    assert!(output.contains(change) && output.contains("in session a/plateaus.csv (0.2"), "{output}");
     let report = json(&path.join("changed/report.json"));
     let change = &report["changes"][0];
     let end = |i: usize| change["factor"]["ci95"][i].as_f64().unwrap();
@@ -32,7 +32,7 @@ fn changed_constants_are_reported() {
     assert!(report["noise"]["mount_scale"].as_f64().unwrap() < 0.03, "{}", report["noise"]);
     let page = std::fs::read_to_string(path.join("changed/report.html")).unwrap();
     assert!(page.contains("The switch differs between the tables") && !page.contains("Inconclusive:"));
-    assert!(!said.contains("inconclusive: no effect detected"), "{said}");
+    assert!(!output.contains("inconclusive: no effect detected"), "{output}");
     // Predictions are for the current switch; for rows of the first session, by its name, for the
     // earlier one.
     let rms = |table: &str| {
@@ -67,11 +67,11 @@ fn changed_constants_are_reported() {
     assert!(now < 0.2 && before < 0.2 && wrong > 0.5, "{now} {before} {wrong}");
     let model = std::fs::read_to_string(path.join("changed/model.toml")).unwrap();
     std::fs::write(path.join("m.toml"), model.replace("groups = [0]", "groups = [1]")).unwrap();
-    let (code, said) =
+    let (code, output) =
         ended(path, &["predict", "--model", "m.toml", "--rows", "c/plateaus-fresh.csv", "--out", "x.csv"]);
-    assert!(code == Some(2) && said.contains("frame.changes[0].groups"), "{said}");
-    let said = printed(path, &["-q", "calibrate", "a/plateaus.csv", "b/plateaus.csv", "--out", "same"]);
-    assert!(!said.contains("changed"), "{said}");
+    assert!(code == Some(2) && output.contains("frame.changes[0].groups"), "{output}");
+    let output = printed(path, &["-q", "calibrate", "a/plateaus.csv", "b/plateaus.csv", "--out", "same"]);
+    assert!(!output.contains("changed"), "{output}");
     assert!(json(&path.join("same/report.json"))["changes"].is_null());
 }
 
@@ -86,10 +86,10 @@ fn recurring_offsets_stay_attributed() {
     }
     let tables = ["a/plateaus.csv", "b/plateaus.csv", "c/plateaus.csv"];
     for count in 1..=3 {
-        let said = printed(path, &[&["-q", "calibrate"], &tables[..count], &["--out", "x"]].concat());
+        let output = printed(path, &[&["-q", "calibrate"], &tables[..count], &["--out", "x"]].concat());
         assert!(
-            said.contains("verdict: attributed") && said.contains("load_cell_offset (direction): b = 0."),
-            "{said}"
+            output.contains("verdict: attributed") && output.contains("load_cell_offset (direction): b = 0."),
+            "{output}"
         );
         let size = json(&path.join("x/report.json"))["effects"][0]["parameters"]["b"].clone();
         assert!((size["value"].as_f64().unwrap() - 0.5).abs() < 0.05, "{size}");
@@ -159,15 +159,15 @@ fn mismatched_files_give_one_error() {
         ("experiment mine --out x", "mine/report.json: the calibration tested the effect 'lubricant_dip'"),
     ] {
         let arguments: Vec<&str> = ["-q"].into_iter().chain(command.split(' ')).collect();
-        let (code, said) = ended(path, &arguments);
-        assert!(code == Some(2) && said.contains(words), "{command}: {said}");
+        let (code, output) = ended(path, &arguments);
+        assert!(code == Some(2) && output.contains(words), "{command}: {output}");
         assert!(!path.join("x").exists(), "{command}");
     }
 }
 
 /// The runs for a rig with another wrap have that wrap, and are rehearsed with it.
 #[test]
-fn runs_have_the_wrap_of_the_table() {
+fn runs_have_the_table_wrap() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::write(path.join("wide.toml"), "wrap_angle_deg = 95.0\n").unwrap();
@@ -184,7 +184,7 @@ fn runs_have_the_wrap_of_the_table() {
     };
     done(path, &["-q", "simulate", "wide.toml", "--runs", "next/next-runs.csv", "--out", "b"]);
     done(path, &["-q", "simulate", "--model", "c/model.toml", "--runs", "next/next-runs.csv", "--out", "d"]);
-    // A plan without the column has the rig's own wrap.
+    // A plan without the column has the wrap of the rig.
     let bare: Vec<&str> = runs.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
     std::fs::write(path.join("bare.csv"), bare.join("\n")).unwrap();
     done(path, &["-q", "simulate", "wide.toml", "--runs", "bare.csv", "--out", "e"]);

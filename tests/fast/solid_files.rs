@@ -1,9 +1,9 @@
-//! 3MF, STEP and GLB of a set: valid, exact, and the 3MF made into the set again.
+//! 3MF, STEP and GLB of a set: validity, exact volumes, and the set generated again from its 3MF.
 
 use crate::harness::step_file::StepFile;
 use crate::harness::{done, ended, repository};
 
-/// Files of a folder with their bytes.
+/// Returns the bytes of the files of a folder, by name.
 fn files(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>> {
     let entry = |e: std::io::Result<std::fs::DirEntry>| {
         let path = e.unwrap().path();
@@ -13,7 +13,7 @@ fn files(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>
 }
 
 #[test]
-fn a_written_3mf_is_valid_and_a_damaged_one_not() {
+fn written_3mf_is_valid() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["-q", "generate", "three-single", "--format", "3mf", "--out", "set"]);
     let (code, output) = ended(folder.path(), &["check", "set/assembly.3mf", "--json"]);
@@ -27,7 +27,8 @@ fn a_written_3mf_is_valid_and_a_damaged_one_not() {
         let verdict = checked.iter().find(|verdict| verdict["name"] == part["name"]).unwrap();
         let exact = part["volume_mm3"].as_f64().unwrap();
         let volume = verdict["facts"]["volume_mm3"].as_f64().unwrap();
-        // Flattened arcs keep their area, so that little more than single precision is lost.
+        // Flattened arcs keep their area, so the error is little more than that of single
+        // precision.
         assert!((volume / exact - 1.0).abs() < 1e-4, "{}: {volume} for {exact}", part["name"]);
     }
     std::fs::write(folder.path().join("archive.3mf"), "PK\u{3}\u{4} nothing").unwrap();
@@ -39,9 +40,9 @@ fn manifest(set: &std::path::Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(set.join("manifest.json")).unwrap()).unwrap()
 }
 
-/// Every STEP file of a set: closed and oriented shells on exact surfaces, with the exact volume of
-/// their parts, and an assembly of all of them. The parser of these tests shares no code with the
-/// writer.
+/// Every STEP file of a set has closed and oriented shells on exact surfaces and the exact volume
+/// of its part, and the assembly contains all parts. The parser of these tests shares no code with
+/// the writer.
 #[test]
 fn step_files_contain_the_exact_parts() {
     let corpus = |name: &str| repository(&format!("tests/corpus/{name}.toml")).display().to_string();
@@ -79,7 +80,7 @@ fn step_files_contain_the_exact_parts() {
 }
 
 #[test]
-fn check_refuses_step_with_the_way_out() {
+fn check_of_step_suggests_a_converter() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["-q", "generate", "three-single", "--format", "step", "--out", "set"]);
     std::fs::write(folder.path().join("text.step"), "ISO-10303-21;\nnothing\n").unwrap();
@@ -124,9 +125,9 @@ fn overlapping_items_are_not_valid() {
     }
 }
 
-/// A small bed needs several plates. Each of them is valid, and each makes the set again.
+/// A small bed needs several plates. Each is valid, and the set can be generated again from each.
 #[test]
-fn a_small_bed_takes_several_plates() {
+fn small_beds_need_several_plates() {
     let folder = tempfile::tempdir().unwrap();
     let generate = ["-q", "generate", "three-double", "--set", "print.bed_mm=62", "--out"];
     done(folder.path(), &[&generate[..], &["set"]].concat());
@@ -166,7 +167,7 @@ fn a_small_bed_takes_several_plates() {
     printed.sort();
     parts.sort();
     assert_eq!(printed, parts);
-    // With a larger bed, the same folder contains one plate and none of the former ones.
+    // With a larger bed, the same folder contains one plate, and the old ones are removed.
     done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
     let one = files(&folder.path().join("set"));
     assert!(one.contains_key("assembly.3mf") && one.contains_key("plate.png"));
@@ -174,7 +175,7 @@ fn a_small_bed_takes_several_plates() {
 }
 
 #[test]
-fn a_3mf_makes_its_set_again() {
+fn a_3mf_regenerates_its_set() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(
         folder.path().join("mine.toml"),

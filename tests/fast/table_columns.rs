@@ -28,12 +28,12 @@ fn calibrated(text: &str) -> (String, Value) {
     std::fs::write(folder.path().join("t.csv"), text).unwrap();
     let output = pinswitch(folder.path(), &["-q", "calibrate", "t.csv", "--out", "out"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8(output.stdout).unwrap();
+    let message = String::from_utf8(output.stdout).unwrap();
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(!page.contains("NaN") && !page.contains("inf "), "the page contains a number that is not finite");
     assert!(page.contains("Noise components") && page.contains("Limits on undetected effects"));
     let report = std::fs::read(folder.path().join("out/report.json")).unwrap();
-    (said, serde_json::from_slice(&report).unwrap())
+    (message, serde_json::from_slice(&report).unwrap())
 }
 
 fn small() -> Plan {
@@ -46,12 +46,12 @@ fn ignored_columns_are_listed() {
     let text = with_columns(&rows, &["humidity", "session", "note"], |_, _| {
         ["41", "monday", "ok"].map(str::to_owned).to_vec()
     });
-    let (said, report) = calibrated(&text);
+    let (output, report) = calibrated(&text);
     assert_eq!(report["ignored_columns"], serde_json::json!(["humidity", "note"]));
-    assert!(said.contains("ignored columns: humidity, note\n"), "{said}");
-    let (said, report) = calibrated(&PlateauTable::write(&rows));
+    assert!(output.contains("ignored columns: humidity, note\n"), "{output}");
+    let (output, report) = calibrated(&PlateauTable::write(&rows));
     assert_eq!(report["ignored_columns"], serde_json::json!([]));
-    assert!(!said.contains("ignored columns"), "{said}");
+    assert!(!output.contains("ignored columns"), "{output}");
 }
 
 #[test]
@@ -96,9 +96,9 @@ fn differences_between_operators_are_noise() {
     }
     let text =
         with_columns(&rows, &["operator"], |_, row| vec![if ann(row) { "ann" } else { "ben" }.to_owned()]);
-    let (said, report) = calibrated(&text);
+    let (output, report) = calibrated(&text);
     let parts: Vec<&str> =
         report["noise_parts"].as_array().unwrap().iter().filter_map(|p| p["part"].as_str()).collect();
-    assert!(parts.contains(&"group"), "{parts:?}: {said}");
-    assert!(!report["effects"].to_string().contains("load_cell_offset"), "{said}");
+    assert!(parts.contains(&"group"), "{parts:?}: {output}");
+    assert!(!report["effects"].to_string().contains("load_cell_offset"), "{output}");
 }

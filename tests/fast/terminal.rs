@@ -1,4 +1,5 @@
-//! The terminal: no control character of a foreign name, cell or argument reaches it, and `--json` reports errors as JSON.
+//! The terminal: no control character of a foreign name, cell or argument reaches it, and `--json`
+//! reports errors as JSON.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -18,7 +19,8 @@ fn write(folder: &Path, name: &str, text: &str) {
     std::fs::write(folder.join(name), text).unwrap();
 }
 
-/// Runs a command and asserts that its output shows the printable part of the attack, but no control character.
+/// Runs a command and asserts that its output shows the printable part of the attack, but no
+/// control character.
 fn assert_neutral(folder: &Path, arguments: &[&str]) {
     let output = pinswitch(folder, arguments);
     let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
@@ -33,7 +35,7 @@ fn plateaus(folder: &Path) -> String {
     std::fs::read_to_string(folder.join("rig/plateaus.csv")).unwrap()
 }
 
-/// Every argument that a message quotes.
+/// Covers every argument that a message quotes.
 #[test]
 fn arguments_are_neutral() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +69,7 @@ fn arguments_are_neutral() {
     }
 }
 
-/// Every file whose content a message quotes.
+/// Covers every file whose content a message quotes.
 #[test]
 fn content_of_files_is_neutral() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +125,7 @@ fn content_of_files_is_neutral() {
     }
 }
 
-/// Results on standard output, warnings and log lines, of commands that succeed.
+/// Covers results on standard output, warnings and log lines of successful commands.
 #[test]
 fn results_are_neutral() {
     let folder = tempfile::tempdir().unwrap();
@@ -152,7 +154,7 @@ fn results_are_neutral() {
     assert_neutral(path, &["experiment", "calibrated", "--minutes", "60", "--out", &format!("e{ATTACK}")]);
 }
 
-/// The 3MF with the attack at the begin of every object's name.
+/// Returns the 3MF with the attack at the start of every object's name.
 fn with_names(package: &[u8]) -> Vec<u8> {
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(package)).unwrap();
     let mut renamed = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
@@ -185,7 +187,8 @@ fn piped_data_keeps_its_bytes() {
     assert_eq!(csv.matches("a\tb").count(), 3, "{csv}");
 }
 
-/// One JSON document on standard output, with exit code, location, problem and help; text on standard error as always.
+/// Standard output is one JSON document with exit code, location, problem and help; standard error
+/// keeps its text.
 #[test]
 fn errors_are_json() {
     let folder = tempfile::tempdir().unwrap();

@@ -6,12 +6,12 @@ use std::path::Path;
 use crate::harness::{done, ended, files, repository};
 use serde_json::Value;
 
-/// The manifest of a set.
+/// Reads the manifest of a set.
 fn manifest(set: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(set.join("manifest.json")).unwrap()).unwrap()
 }
 
-/// Every part of a manifest agrees with the second kernel within its limits.
+/// Asserts that every part of a manifest agrees with the second kernel within its limits.
 fn assert_verified(manifest: &Value) {
     let parts = manifest["parts"].as_array().unwrap();
     assert!(!parts.is_empty());
@@ -48,7 +48,7 @@ fn a_verified_set_records_the_agreement() {
     assert!(output.contains("meshes agree with truck-modeling"), "{output}");
     let mut verified = manifest(&path.join("verified"));
     assert_verified(&verified);
-    // Without the record, the set is the same.
+    // The set without the record is otherwise equal.
     for part in verified["parts"].as_array_mut().unwrap() {
         part.as_object_mut().unwrap().remove("verification").unwrap();
     }
@@ -85,7 +85,7 @@ fn a_verified_batch_records_the_agreement() {
     for variant in variants {
         assert_verified(&manifest(&variant.unwrap().path()));
     }
-    // A batch without the record is another one.
+    // A batch without the record is a different batch.
     let (code, output) = ended(folder.path(), &["batch", "sweep.toml", "--out", "all"]);
     assert_eq!(code, Some(2), "{output}");
 }

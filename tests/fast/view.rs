@@ -1,4 +1,4 @@
-//! `pinswitch view`: who gets an answer, bounds, saving, and complete files only.
+//! `pinswitch view`: origin checks, bounds, saving, and partial files.
 
 use std::io::Write;
 use std::time::Duration;
@@ -11,29 +11,29 @@ fn other_hosts_and_origins_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");
     let host = preview.host();
-    let page = preview.ask("GET /", &host);
+    let page = preview.request("GET /", &host);
     assert!(page.starts_with("HTTP/1.1 200"), "{page:.200}");
     // The same policy as in a saved page.
     let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap().to_owned();
     assert!(policy.contains("script-src 'sha256-") && !policy.contains("script-src 'unsafe"), "{policy}");
     assert!(page.contains(&format!("content=\"{policy}\"")));
     let port = preview.address.rsplit(':').next().unwrap();
-    assert!(preview.ask("GET /", &format!("Host: localhost:{port}\r\n")).starts_with("HTTP/1.1 200"));
+    assert!(preview.request("GET /", &format!("Host: localhost:{port}\r\n")).starts_with("HTTP/1.1 200"));
     for headers in [
         format!("Host: evil.example:{port}\r\n"),
         String::new(),
         format!("{host}Origin: http://evil.example\r\n"),
         format!("{host}Origin: null\r\n"),
     ] {
-        let answer = preview.ask("GET /state?after=0", &headers);
+        let answer = preview.request("GET /state?after=0", &headers);
         assert!(answer.starts_with("HTTP/1.1 403"), "{headers:?}: {answer:.200}");
         assert!(!answer.contains("manifest"));
     }
     for method in ["POST", "PUT", "DELETE", "TRACE", "OPTIONS"] {
-        let answer = preview.ask(&format!("{method} /"), &host);
+        let answer = preview.request(&format!("{method} /"), &host);
         assert!(answer.starts_with("HTTP/1.1 405"), "{method}: {answer:.200}");
     }
-    let head = preview.ask("HEAD /", &host);
+    let head = preview.request("HEAD /", &host);
     assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"), "{head:.200}");
 }
 
@@ -49,7 +49,7 @@ fn with_headers(preview: &Preview, request: &str) -> String {
 
 /// Returns the answer to a request of the configurator.
 fn post(preview: &Preview, path: &str, request: &str) -> String {
-    let answer = preview.ask(&format!("POST {path}"), &with_headers(preview, request));
+    let answer = preview.request(&format!("POST {path}"), &with_headers(preview, request));
     answer.split_once("\r\n\r\n").map_or(answer.clone(), |(_, body)| body.to_owned())
 }
 
@@ -59,10 +59,10 @@ fn the_configurator_saves_the_followed_file() {
     let text = "# mine\n[layout]\npins = [5, 8, 11] # three\n\n[shell]\nwidth_mm = 14\n";
     std::fs::write(folder.path().join("mine.toml"), text).unwrap();
     let preview = Preview::start(folder.path(), "mine.toml");
-    let page = preview.ask("GET /configure", &preview.host());
+    let page = preview.request("GET /configure", &preview.host());
     let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap();
     assert!(policy.contains("worker-src blob:") && page.contains(&format!("content=\"{policy}\"")));
-    let start = preview.ask("GET /start", &preview.host());
+    let start = preview.request("GET /start", &preview.host());
     let start: serde_json::Value = serde_json::from_str(start.split_once("\r\n\r\n").unwrap().1).unwrap();
     assert_eq!(start["source"]["file"], "mine.toml");
     assert_eq!(start["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
@@ -107,7 +107,7 @@ fn the_configurator_saves_the_followed_file() {
     assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), now);
     // Other origins cannot save.
     let foreign = format!("{}Origin: http://evil.example\r\nContent-Length: 2\r\n\r\n{{}}", preview.host());
-    assert!(preview.ask("POST /save", &foreign).starts_with("HTTP/1.1 403"));
+    assert!(preview.request("POST /save", &foreign).starts_with("HTTP/1.1 403"));
 }
 
 /// A search of many seconds, among 40 grooves.
@@ -163,10 +163,10 @@ fn headers_and_connections_are_bounded() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");
     let host = preview.host();
-    let answer = preview.ask("GET /", &format!("{host}X: {}\r\n", "x".repeat(1_000_000)));
+    let answer = preview.request("GET /", &format!("{host}X: {}\r\n", "x".repeat(1_000_000)));
     assert!(!answer.starts_with("HTTP/1.1 200"), "{answer:.200}");
     let many: String = (0..1000).map(|i| format!("X-{i}: x\r\n")).collect();
-    let answer = preview.ask("GET /", &format!("{host}{many}"));
+    let answer = preview.request("GET /", &format!("{host}{many}"));
     assert!(!answer.starts_with("HTTP/1.1 200"), "{answer:.200}");
 
     let before = preview.threads();
@@ -178,9 +178,9 @@ fn headers_and_connections_are_bounded() {
         })
         .collect();
     // The page is served meanwhile, and waiting requests need no threads.
-    assert!(preview.ask("GET /", &host).starts_with("HTTP/1.1 200"));
+    assert!(preview.request("GET /", &host).starts_with("HTTP/1.1 200"));
     assert!(preview.threads() <= before + 2, "{before} threads became {}", preview.threads());
-    assert!(preview.ask("GET /state?after=1", &host).starts_with("HTTP/1.1 503"));
+    assert!(preview.request("GET /state?after=1", &host).starts_with("HTTP/1.1 503"));
     drop(waiting);
 }
 
@@ -206,5 +206,5 @@ fn a_partial_save_is_not_shown() {
     std::fs::write(&file, "").unwrap();
     let state = preview.state(2);
     assert!(state["trouble"].as_str().unwrap().contains("empty"), "{}", state["trouble"]);
-    assert!(preview.ask("GET /", &preview.host()).contains("3 of 15: 6 8 10"));
+    assert!(preview.request("GET /", &preview.host()).contains("3 of 15: 6 8 10"));
 }

@@ -1,5 +1,5 @@
-//! Files and folders that commands write: names that are not paths, complete sets, and which files are removed, replaced
-//! or left alone.
+//! Files and folders that commands write: names that are not paths, complete sets, and which files
+//! are removed, replaced or left alone.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,7 +20,8 @@ fn names(folder: &Path) -> BTreeSet<String> {
         .collect()
 }
 
-/// Asserts that the folder has every file of its manifest with its hash, and no other files but `others`.
+/// Asserts that the folder has every file of its manifest with its hash, and no other files but
+/// `others`.
 fn assert_complete(folder: &Path, others: &[&str]) {
     let existing = hashes(folder);
     let manifest: serde_json::Value =
@@ -50,11 +51,11 @@ fn names_are_not_paths() {
     for name in &refused {
         let toml = format!("[switch]\nname = {}\n", toml_edit::Value::from(name.as_str()));
         std::fs::write(work.join("mine.toml"), &toml).unwrap();
-        let (code, said) = generate(&work, &["mine.toml"]);
-        assert_eq!(code, Some(2), "{name:?}: {said}");
+        let (code, output) = generate(&work, &["mine.toml"]);
+        assert_eq!(code, Some(2), "{name:?}: {output}");
         assert!(
-            said.starts_with("error: mine.toml:2:8: switch.name = ") && said.contains("1 to 80"),
-            "{said}"
+            output.starts_with("error: mine.toml:2:8: switch.name = ") && output.contains("1 to 80"),
+            "{output}"
         );
         let sweep = format!(
             "[sweep]\nname = {}\n[axes]\n\"shell.width_mm\" = [14]\n",
@@ -62,8 +63,8 @@ fn names_are_not_paths() {
         );
         std::fs::write(work.join("sweep.toml"), sweep).unwrap();
         for more in [&["--out", "b"][..], &["--dry-run"]] {
-            let (code, said) = ended(&work, &[&["-q", "batch", "sweep.toml"], more].concat());
-            assert!(code == Some(2) && said.contains("sweep.name = "), "{name:?}: {said}");
+            let (code, output) = ended(&work, &[&["-q", "batch", "sweep.toml"], more].concat());
+            assert!(code == Some(2) && output.contains("sweep.name = "), "{name:?}: {output}");
         }
         std::fs::remove_file(work.join("sweep.toml")).unwrap();
         assert_eq!(names(&work), BTreeSet::from(["mine.toml".to_owned()]), "{name:?}");
@@ -81,16 +82,16 @@ fn names_are_not_paths() {
 }
 
 #[test]
-fn stale_files_go_and_others_stay() {
+fn only_stale_files_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let (path, out) = (folder.path(), folder.path().join("set"));
     done(path, &["-q", "generate", "three-double", "--format", "stl,step,page", "--out", "set"]);
     std::fs::write(out.join("notes.txt"), "dear").unwrap();
     std::fs::write(out.join("coupon.step"), "changed by hand").unwrap();
     let more = ["three-double", "--out", "set", "--set", "parts.proxy=false"];
-    let (code, said) = ended(path, &[&["generate", "--format", "stl"], &more[..]].concat());
-    assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("warning: set/coupon.step: was changed since it was written"), "{said}");
+    let (code, output) = ended(path, &[&["generate", "--format", "stl"], &more[..]].concat());
+    assert_eq!(code, Some(0), "{output}");
+    assert!(output.contains("warning: set/coupon.step: was changed since it was written"), "{output}");
     assert_complete(&out, &["notes.txt", "coupon.step"]);
     assert!(!out.join("proxy.stl").exists() && !out.join("report.html").exists());
 }
@@ -102,9 +103,9 @@ fn an_obstacle_leaves_the_set_complete() {
     assert_eq!(generate(folder.path(), &["three-double", "--out", "set"]).0, Some(0));
     let before = hashes(&out);
     std::fs::create_dir(out.join("report.html")).unwrap();
-    let (code, said) = ended(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
-    assert!(code == Some(1) && said.contains("set/report.html: cannot write"), "{said}");
-    assert!(said.contains("\n  help: ") && said.lines().count() == 2, "{said}");
+    let (code, output) = ended(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
+    assert!(code == Some(1) && output.contains("set/report.html: cannot write"), "{output}");
+    assert!(output.contains("\n  help: ") && output.lines().count() == 2, "{output}");
     assert_eq!(hashes(&out), before);
     std::fs::remove_dir(out.join("report.html")).unwrap();
     done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
@@ -125,11 +126,11 @@ fn unwritable_places_are_one_error() {
         ("physics --out file", "file: cannot write"),
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
-        let (code, said) = ended(folder.path(), &arguments);
-        assert_eq!(code, Some(1), "{arguments:?}: {said}");
-        assert!(said.contains(word) && said.len() < 600, "{arguments:?}: {said}");
-        let lines = |start: &str| said.lines().filter(|line| line.starts_with(start)).count();
-        assert_eq!((lines("error: "), lines("  help: ")), (1, 1), "{arguments:?}: {said}");
+        let (code, output) = ended(folder.path(), &arguments);
+        assert_eq!(code, Some(1), "{arguments:?}: {output}");
+        assert!(output.contains(word) && output.len() < 600, "{arguments:?}: {output}");
+        let lines = |start: &str| output.lines().filter(|line| line.starts_with(start)).count();
+        assert_eq!((lines("error: "), lines("  help: ")), (1, 1), "{arguments:?}: {output}");
         assert_eq!(names(folder.path()).len(), 1, "{arguments:?}");
     }
 }
@@ -142,10 +143,10 @@ fn another_source_needs_force() {
     let before = hashes(&path.join("out/three-double"));
     done(path, &["init", "three-double", "--out", "mine.toml"]);
     let text = std::fs::read_to_string(path.join("mine.toml")).unwrap();
-    let (code, said) = generate(path, &["mine.toml"]);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, output) = generate(path, &["mine.toml"]);
+    assert_eq!(code, Some(2), "{output}");
     for word in ["error: out/three-double: ", "three-double,", "mine.toml", "--force", "--out"] {
-        assert!(said.contains(word), "{word}: {said}");
+        assert!(output.contains(word), "{word}: {output}");
     }
     assert_eq!(hashes(&path.join("out/three-double")), before);
     assert_eq!(generate(path, &["mine.toml", "--out", "out/mine"]).0, Some(0));
@@ -164,24 +165,24 @@ fn another_source_needs_force() {
         std::fs::write(path.join(place).join("x.toml"), text).unwrap();
     }
     assert_eq!(generate(path, &["a/x.toml"]).0, Some(0));
-    let (code, said) = generate(path, &["b/x.toml"]);
-    assert!(code == Some(2) && said.contains("a/x.toml") && said.contains("b/x.toml"), "{said}");
-    // So are a file in the parent folder, and a file with the name of a template.
+    let (code, output) = generate(path, &["b/x.toml"]);
+    assert!(code == Some(2) && output.contains("a/x.toml") && output.contains("b/x.toml"), "{output}");
+    // A file in the parent folder and a file with the name of a template are other sources, too.
     std::fs::write(path.join("x.toml"), "[switch]\nname = \"both\"\n[shell]\nwidth_mm = 17\n").unwrap();
-    let (code, said) = generate(path, &["x.toml"]);
+    let (code, output) = generate(path, &["x.toml"]);
     assert!(
         code == Some(2)
-            && said.contains("another source, ../../a/x.toml, while this set is made from ../../x.toml\n"),
-        "{said}"
+            && output.contains("another source, ../../a/x.toml, while this set is made from ../../x.toml\n"),
+        "{output}"
     );
     std::fs::write(path.join("six-single"), "[shell]\nwidth_mm = 17\n").unwrap();
     assert_eq!(generate(path, &["six-single", "--out", "six"]).0, Some(0));
     std::fs::remove_file(path.join("six-single")).unwrap();
-    let (code, said) = generate(path, &["six-single", "--out", "six"]);
+    let (code, output) = generate(path, &["six-single", "--out", "six"]);
     assert!(
         code == Some(2)
-            && said.contains("another source, ../six-single, while this set is made from six-single\n"),
-        "{said}"
+            && output.contains("another source, ../six-single, while this set is made from six-single\n"),
+        "{output}"
     );
     // A folder with the name of a template does not hide it.
     assert_eq!(generate(path, &["six-double", "--out", "six-double"]).0, Some(2));
@@ -190,10 +191,10 @@ fn another_source_needs_force() {
     // A file of another program is not overwritten.
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/shell.stl"), "dear").unwrap();
-    let (code, said) = generate(path, &["three-double", "--out", "papers"]);
+    let (code, output) = generate(path, &["three-double", "--out", "papers"]);
     assert!(
-        code == Some(2) && said.contains("papers/shell.stl: pinswitch did not write this file"),
-        "{said}"
+        code == Some(2) && output.contains("papers/shell.stl: pinswitch did not write this file"),
+        "{output}"
     );
     assert_eq!(files(&path.join("papers")).len(), 1);
 }
@@ -206,9 +207,12 @@ fn changed_parts_need_force() {
     assert_eq!(again(&[]).0, Some(0));
     let made = std::fs::read(&part).unwrap();
     std::fs::write(&part, "repaired by hand").unwrap();
-    let (code, said) = again(&["--set", "shell.width_mm=15"]);
-    assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("set/shell.stl: was changed since it was written\n  help: give --force"), "{said}");
+    let (code, output) = again(&["--set", "shell.width_mm=15"]);
+    assert_eq!(code, Some(2), "{output}");
+    assert!(
+        output.contains("set/shell.stl: was changed since it was written\n  help: give --force"),
+        "{output}"
+    );
     assert_eq!(std::fs::read(&part).unwrap(), b"repaired by hand");
     assert_eq!(again(&["--force"]).0, Some(0));
     assert_eq!(std::fs::read(&part).unwrap(), made);
@@ -235,11 +239,11 @@ fn inputs_are_not_overwritten() {
         "predict --model model.toml --rows residuals.csv --out model.toml",
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
-        let (code, said) = ended(path, &arguments);
-        assert_eq!(code, Some(2), "{arguments:?}: {said}");
+        let (code, output) = ended(path, &arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {output}");
         assert!(
-            said.contains(": is an input of this command\n  help: give another --out"),
-            "{arguments:?}: {said}"
+            output.contains(": is an input of this command\n  help: give another --out"),
+            "{arguments:?}: {output}"
         );
         assert_eq!(files(path), before, "{arguments:?}");
     }
@@ -259,14 +263,14 @@ fn concurrent_runs_fail_immediately() {
         let outcomes: Vec<_> = runs.into_iter().map(|child| child.wait_with_output().unwrap()).collect();
         assert!(outcomes.iter().any(|o| o.status.success()));
         for lost in outcomes.iter().filter(|o| !o.status.success()) {
-            let said = String::from_utf8_lossy(&lost.stderr);
+            let output = String::from_utf8_lossy(&lost.stderr);
             assert!(
                 lost.status.code() == Some(1)
-                    && said.starts_with(
+                    && output.starts_with(
                         "error: set: cannot write: another run is writing into this folder\n  help: "
                     )
-                    && said.lines().count() == 2,
-                "{said}"
+                    && output.lines().count() == 2,
+                "{output}"
             );
             refused += 1;
         }

@@ -1,9 +1,10 @@
-//! What the test binaries share: the real binary, the repository's files, folders and their hashes, a small sweep.
+//! Shared by the test binaries: the binary under test, files of the repository, folders and their
+//! hashes, a small sweep.
 
 #![allow(dead_code)]
 
 pub(crate) mod preview;
-#[path = "../../cad/solid/src/files/step/step_file.rs"]
+#[path = "../../cad/solid/src/files/step/step_file/mod.rs"]
 pub(crate) mod step_file;
 
 use std::collections::BTreeMap;
@@ -15,41 +16,42 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-/// A file or folder of this repository.
+/// Returns the path of a file or folder of this repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
-/// Reports that a test is skipped, past the capture of passing tests' output. In CI, which installs every judge, a skipped
-/// test fails.
-pub(crate) fn say_skipped(reason: &str) {
+/// Reports that a test is skipped, on the standard error that `cargo test` does not capture. In CI,
+/// which installs every judge, a skipped test fails.
+pub(crate) fn report_skipped(reason: &str) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     assert!(std::env::var_os("CI").is_none(), "{test} cannot be skipped in CI: {reason}");
     let _ = writeln!(std::io::stderr(), "SKIPPED {test}: {reason}");
 }
 
-/// A file next to this repository, where there is one: CI has it, a user has not.
-pub(crate) fn beside_repository(path: &str) -> Option<PathBuf> {
-    let found = repository("../shared").join(path);
-    if !found.exists() {
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not here", found.display());
+/// Returns the path of a file in the folder `shared` next to this repository, which CI has.
+pub(crate) fn shared_file(path: &str) -> Option<PathBuf> {
+    let file = repository("../shared").join(path);
+    if !file.exists() {
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {} is not here", file.display());
     }
-    found.exists().then_some(found)
+    file.exists().then_some(file)
 }
 
-/// The browser of this machine, if there is one.
+/// Returns the name of an installed browser.
 pub(crate) fn browser() -> Option<&'static str> {
     ["chromium", "chromium-browser", "google-chrome"]
         .into_iter()
         .find(|name| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success()))
 }
 
-/// The command of the real binary.
+/// Returns a command that runs the binary under test.
 pub(crate) fn binary() -> Command {
     Command::new(env!("CARGO_BIN_EXE_pinswitch"))
 }
 
-/// Variants of [`SWEEP`] that cannot be built or are forbidden: 60 grooves overlap, 12 mm is too narrow.
+/// Variants of [`SWEEP`] that cannot be built or are forbidden: 60 grooves overlap, 12 mm is too
+/// narrow.
 pub(crate) const REFUSED: usize = 12;
 /// All variants of [`SWEEP`].
 pub(crate) const VARIANTS: usize = 24;
@@ -75,7 +77,7 @@ pub(crate) fn pinswitch<S: AsRef<OsStr>>(folder: &Path, arguments: &[S]) -> Outp
     binary().args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Runs the binary in a folder; it must end with this exit code.
+/// Runs the binary in a folder and asserts its exit code.
 pub(crate) fn expect_code<S: AsRef<OsStr> + std::fmt::Debug>(
     code: i32,
     folder: &Path,
@@ -87,17 +89,17 @@ pub(crate) fn expect_code<S: AsRef<OsStr> + std::fmt::Debug>(
     output
 }
 
-/// What a successful run prints on standard output.
+/// Returns the standard output of a successful run.
 pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(expect_code(0, folder, arguments).stdout).unwrap()
 }
 
-/// What a successful run prints, as JSON.
+/// Returns the standard output of a successful run as JSON.
 pub(crate) fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&printed(folder, arguments)).unwrap()
 }
 
-/// Every file of a folder, by name.
+/// Returns the bytes of every file of a folder, by name.
 pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     std::fs::read_dir(folder)
         .unwrap()
@@ -106,31 +108,31 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// SHA-256 in hexadecimal.
+/// Returns the SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Everything that a successful run says.
+/// Returns the standard output and standard error of a successful run.
 pub(crate) fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = expect_code(0, folder, arguments);
     String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
 }
 
-/// Exit code and everything that was said.
+/// Returns the exit code, and the standard output and standard error.
 pub(crate) fn ended(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = pinswitch(folder, arguments);
     (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
 }
 
-/// A folder with the sweep in it.
+/// Creates a temporary folder that contains the sweep.
 pub(crate) fn with_sweep(text: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("sweep.toml"), text).unwrap();
     folder
 }
 
-/// SHA-256 of every file under `folder`, by its path.
+/// Returns the SHA-256 of every file under `folder`, by its path.
 pub(crate) fn hashes(folder: &Path) -> BTreeMap<String, String> {
     let mut all = BTreeMap::new();
     let mut left = vec![folder.to_owned()];
@@ -148,7 +150,7 @@ pub(crate) fn hashes(folder: &Path) -> BTreeMap<String, String> {
     all
 }
 
-/// Differences between two folders, for a message.
+/// Returns the sorted paths at which the hashes of two folders differ.
 pub(crate) fn differences(a: &BTreeMap<String, String>, b: &BTreeMap<String, String>) -> Vec<String> {
     let names = a.keys().chain(b.keys());
     let mut all: Vec<_> = names.filter(|n| a.get(*n) != b.get(*n)).cloned().collect();
@@ -157,7 +159,7 @@ pub(crate) fn differences(a: &BTreeMap<String, String>, b: &BTreeMap<String, Str
     all
 }
 
-/// The rows of a table, by column.
+/// Reads the rows of the table of a batch, by column.
 pub(crate) fn table(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let text = std::fs::read(folder.join("variants.csv")).unwrap();
     let mut reader = csv::Reader::from_reader(text.as_slice());

@@ -1,4 +1,4 @@
-//! `pinswitch view`, asked as a browser would ask it.
+//! A running `pinswitch view`, with the requests of a browser.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::binary;
 
-/// A running preview, ended with the test.
+/// A running preview, which ends when it is dropped.
 pub(crate) struct Preview {
     child: Child,
     /// Host and port.
@@ -23,7 +23,7 @@ impl Drop for Preview {
 }
 
 impl Preview {
-    /// Of a configuration, in `folder`.
+    /// Starts the preview of a configuration in `folder`.
     pub(crate) fn start(folder: &Path, config: &str) -> Self {
         let mut command = binary();
         command.args(["view", config, "--port", "0"]).current_dir(folder);
@@ -44,10 +44,10 @@ impl Preview {
         stream
     }
 
-    /// The answer to a request with this line and these headers.
-    pub(crate) fn ask(&self, line: &str, headers: &str) -> String {
+    /// Returns the answer to a request with this line and these headers.
+    pub(crate) fn request(&self, line: &str, headers: &str) -> String {
         let mut stream = self.connect();
-        // It may be refused before it was sent whole.
+        // The server may refuse the request before it is complete.
         let _ = write!(stream, "{line} HTTP/1.1\r\n{headers}\r\n");
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -58,7 +58,7 @@ impl Preview {
         format!("Host: {}\r\n", self.address)
     }
 
-    /// What stands at a path.
+    /// Returns the body at a path.
     pub(crate) fn get(&self, path: &str) -> String {
         let mut stream = self.connect();
         // HTTP 1.0: the answer ends with the connection, and comes in one piece.
@@ -68,19 +68,19 @@ impl Preview {
         answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap()
     }
 
-    /// What is shown after a version.
+    /// Returns the state that follows a version.
     pub(crate) fn state(&self, after: u64) -> serde_json::Value {
         serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
     }
 
-    /// Processes that it has started and that have not ended; `None` where the system does not tell.
+    /// Returns the number of running child processes, or `None` on systems without `/proc`.
     pub(crate) fn children(&self) -> Option<usize> {
         let threads = std::fs::read_dir(format!("/proc/{}/task", self.child.id())).ok()?;
         let of_each = threads.flatten().map(|thread| std::fs::read_to_string(thread.path().join("children")));
         of_each.collect::<Result<String, _>>().ok().map(|all| all.split_whitespace().count())
     }
 
-    /// Threads of the process, where the system tells.
+    /// Returns the number of threads of the process, or 0 on systems without `/proc`.
     pub(crate) fn threads(&self) -> usize {
         std::fs::read_dir(format!("/proc/{}/task", self.child.id())).map_or(0, Iterator::count)
     }

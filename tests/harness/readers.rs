@@ -1,6 +1,7 @@
-//! Every reader of files that others wrote, and what must hold for any bytes: one short error, or something whole.
+//! Every reader of foreign files, with the condition that it must satisfy for any bytes: one short
+//! error, or a complete and consistent value.
 //!
-//! The fuzz targets (`fuzz/`), the replay of `tests/corpus` and the campaign judge by these.
+//! The fuzz targets (`fuzz/`), the tests of `tests/corpus` and the campaign use these readers.
 
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
@@ -26,12 +27,12 @@ use pinswitch_switch::feasibility;
 use pinswitch_switch::request::Request;
 use sha2::{Digest, Sha256};
 
-/// Most characters of an error.
+/// Largest number of characters of an error.
 pub const LONGEST: usize = 600;
 /// Name of the file in errors.
 const FILE: &str = "given";
 
-/// What a reader made of some bytes, where it did what it must.
+/// The result of a reader that satisfies its conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
     Accepted,
@@ -41,11 +42,11 @@ pub enum Reading {
 /// A reader, by the name of its folder in `tests/corpus` and of its fuzz target.
 pub struct Reader {
     pub name: &'static str,
-    /// What became of the bytes, or what is wrong with the reader.
+    /// Reads the bytes; an error is a fault of the reader.
     pub judge: fn(&[u8]) -> Result<Reading, String>,
 }
 
-/// All of them.
+/// All readers.
 pub const READERS: [Reader; 16] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
@@ -65,21 +66,21 @@ pub const READERS: [Reader; 16] = [
     Reader { name: "batch_files", judge: batch_files },
 ];
 
-/// Judges bytes by the reader of that name.
+/// Reads bytes with the reader of that name.
 ///
 /// # Errors
-/// What is wrong with the reader.
+/// A fault of the reader.
 pub fn judge(name: &str, bytes: &[u8]) -> Result<Reading, String> {
     let reader = READERS.iter().find(|reader| reader.name == name).ok_or(format!("no reader {name}"))?;
     (reader.judge)(bytes)
 }
 
-/// The text of the bytes; what is none is refused by the command line, before any reader.
+/// Returns the bytes as text. The command line refuses other bytes before any reader.
 fn text(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(bytes).ok()
 }
 
-/// A refusal, if its message is one that can be read.
+/// Returns a refusal, if its message is neither empty nor too long.
 fn refused(error: &impl std::fmt::Display) -> Result<Reading, String> {
     let message = error.to_string();
     match message.chars().count() {
@@ -89,8 +90,8 @@ fn refused(error: &impl std::fmt::Display) -> Result<Reading, String> {
     }
 }
 
-fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), String> {
-    if holds { Ok(()) } else { Err(what()) }
+fn require(is_true: bool, fault: impl FnOnce() -> String) -> Result<(), String> {
+    if is_true { Ok(()) } else { Err(fault()) }
 }
 
 fn configuration(bytes: &[u8]) -> Result<Reading, String> {
@@ -100,8 +101,8 @@ fn configuration(bytes: &[u8]) -> Result<Reading, String> {
         Err(e) => return refused(&e),
     };
     let written = to_toml(&configuration);
-    let (again, _) = read(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
-    require(again == configuration, || format!("what was written reads otherwise:\n{written}"))?;
+    let (again, _) = read(&written, "written").map_err(|e| format!("the written file is refused: {e}"))?;
+    require(again == configuration, || format!("the written file has another content:\n{written}"))?;
     match feasibility::design(configuration) {
         Ok(_) => Ok(Reading::Accepted),
         Err(e) => {
@@ -130,7 +131,7 @@ fn ask(bytes: &[u8]) -> Result<Reading, String> {
         Ok(ask) => ask,
         Err(e) => return refused(&e),
     };
-    require(!ask.targets.is_empty(), || "an ask that asks nothing".to_owned())?;
+    require(!ask.targets.is_empty(), || "a request without targets".to_owned())?;
     for target in &ask.targets {
         let (low, high) = target.requirement.interval();
         require(low <= high && low.is_finite(), || format!("{target}: {low} to {high}"))?;
@@ -150,7 +151,7 @@ fn run_plan(bytes: &[u8]) -> Result<Reading, String> {
     };
     for series in &plan.series {
         let load_n = series.load_n(&plan.rig);
-        // What a plateau table may hold.
+        // The range of a load in a plateau table.
         require((0.0..=1e5).contains(&load_n), || format!("a load of {load_n} N"))?;
         let mut pins = series.pins.clone();
         pins.sort_unstable();
@@ -172,12 +173,12 @@ fn log(bytes: &[u8]) -> Result<Reading, String> {
     };
     require(log.time_s.is_sorted_by(|a, b| a < b), || "time steps back".to_owned())?;
     let plan = RunPlan::parse(RIG, "run.toml").map_err(|e| e.to_string())?;
-    let found = segment(&log, &plan.rig);
-    for plateau in &found.plateaus {
+    let segmentation = segment(&log, &plan.rig);
+    for plateau in &segmentation.plateaus {
         let numbers = [plateau.force_n, plateau.position_mm, plateau.time_s];
         require(numbers.iter().all(|x| x.is_finite()), || format!("a plateau of {numbers:?}"))?;
     }
-    for finding in &found.findings {
+    for finding in &segmentation.findings {
         require(finding.to_string().chars().count() < LONGEST, || "a finding without end".to_owned())?;
     }
     Ok(Reading::Accepted)
@@ -194,8 +195,8 @@ fn plateaus(bytes: &[u8]) -> Result<Reading, String> {
     }
     let written = table.with_columns(&[], &[], 0);
     let again = PlateauTable::read(written.as_bytes(), "written")
-        .map_err(|e| format!("what was written is refused: {e}\n{written:.300}"))?;
-    require(again.rows == table.rows, || format!("what was written reads otherwise:\n{written:.300}"))?;
+        .map_err(|e| format!("the written file is refused: {e}\n{written:.300}"))?;
+    require(again.rows == table.rows, || format!("the written file has another content:\n{written:.300}"))?;
     match table.require_baseline(FILE) {
         Ok(()) => Ok(Reading::Accepted),
         Err(e) => refused(&e),
@@ -209,7 +210,7 @@ fn conditions(bytes: &[u8]) -> Result<Reading, String> {
     }
 }
 
-/// Rows of a plateau table at the ends of what a table may hold.
+/// Rows of a plateau table with values at the ends of their ranges.
 const ROWS: &str = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
 0,silicone,,up,251.2,3.0766,47,3,eccentric,1,6.93,3.5,2.3157
 1,abs,5;8;11,down,251.2,30,0,0,concentric,2,-10,3.5,2.3157
@@ -226,10 +227,10 @@ fn model(bytes: &[u8]) -> Result<Reading, String> {
     };
     let written = model.to_text().map_err(|e| e.to_string())?;
     let again =
-        ModelFile::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
-    require(again == model, || format!("what was written reads otherwise:\n{written:.300}"))?;
+        ModelFile::parse(&written, "written").map_err(|e| format!("the written file is refused: {e}"))?;
+    require(again == model, || format!("the written file has another content:\n{written:.300}"))?;
     let rows = PlateauTable::read_conditions(ROWS.as_bytes(), "rows").map_err(|e| e.to_string())?.rows;
-    // A single row at a time: one that is refused must not hide another.
+    // One row at a time, so that a refused row does not hide others.
     let mut reading = Reading::Accepted;
     for row in &rows {
         match model.predict(std::slice::from_ref(row), FILE) {
@@ -250,7 +251,7 @@ fn model(bytes: &[u8]) -> Result<Reading, String> {
     Ok(reading)
 }
 
-/// Rows of a plan that are simulated while it is judged; larger ones are only read.
+/// Largest number of rows of a plan that is also simulated; larger plans are only read.
 const MOST_ROWS: u64 = 3000;
 
 fn plan(bytes: &[u8]) -> Result<Reading, String> {
@@ -260,13 +261,13 @@ fn plan(bytes: &[u8]) -> Result<Reading, String> {
         Err(e) => return refused(&e),
     };
     let written = plan.to_text().map_err(|e| e.to_string())?;
-    let again = Plan::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
-    require(again == plan, || format!("what was written reads otherwise:\n{written:.300}"))?;
+    let again = Plan::parse(&written, "written").map_err(|e| format!("the written file is refused: {e}"))?;
+    require(again == plan, || format!("the written file has another content:\n{written:.300}"))?;
     let settings = (1 + 2 * plan.layouts.len() as u64).saturating_mul(2 * plan.weights_g.len() as u64);
     let repetitions: u64 =
         plan.repetitions.iter().map(|n| u64::from(*n) + u64::from(plan.repetitions_spread)).sum();
     let rows = settings.saturating_mul(repetitions);
-    // A plan of any size must be refused before it fills the memory.
+    // A plan that would fill the memory must be refused.
     require(rows <= 1_000_000, || format!("a plan of {rows} rows"))?;
     if rows <= MOST_ROWS {
         let simulated = simulate(&plan);
@@ -288,7 +289,7 @@ fn rig(bytes: &[u8]) -> Result<Reading, String> {
     }
 }
 
-/// Read without a vocabulary of them, which would stay in memory.
+/// Reads effects without adding them to a vocabulary, which would stay in memory.
 fn effects(bytes: &[u8]) -> Result<Reading, String> {
     let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
     let built_in = Vocabulary::built_in();
@@ -298,36 +299,36 @@ fn effects(bytes: &[u8]) -> Result<Reading, String> {
     };
     let written = own_effects_text(effects.iter().map(OwnEffect::definition));
     let again = read_own_effects(&written, "written", &built_in)
-        .map_err(|e| format!("what was written is refused: {e}"))?;
-    require(again == effects, || format!("what was written reads otherwise:\n{written:.300}"))?;
+        .map_err(|e| format!("the written file is refused: {e}"))?;
+    require(again == effects, || format!("the written file has another content:\n{written:.300}"))?;
     Ok(Reading::Accepted)
 }
 
 thread_local! {
-    /// A folder in memory, where the system has one.
-    static PLACE: RefCell<Option<tempfile::TempDir>> = const { RefCell::new(None) };
+    /// A temporary folder of the thread.
+    static FOLDER: RefCell<Option<tempfile::TempDir>> = const { RefCell::new(None) };
 }
 
-/// Does something in a folder that lasts as long as the thread.
-fn in_place<T>(act: impl FnOnce(&Path) -> Result<T, String>) -> Result<T, String> {
-    PLACE.with_borrow_mut(|place| {
-        if place.is_none() {
-            *place = Some(in_memory()?);
+/// Calls a function with a temporary folder that exists as long as the thread.
+fn in_folder<T>(act: impl FnOnce(&Path) -> Result<T, String>) -> Result<T, String> {
+    FOLDER.with_borrow_mut(|folder| {
+        if folder.is_none() {
+            *folder = Some(in_memory()?);
         }
-        place.as_ref().map_or(Err("no folder".to_owned()), |place| act(place.path()))
+        folder.as_ref().map_or(Err("no folder".to_owned()), |folder| act(folder.path()))
     })
 }
 
-/// A temporary folder, in memory where the system has one.
+/// Creates a temporary folder, in memory on systems with `/dev/shm`.
 pub fn in_memory() -> Result<tempfile::TempDir, String> {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).map_err(|e| e.to_string())
 }
 
-/// The file of rows that a sweep may name.
+/// The file of rows that a sweep may cite.
 const SWEEP_ROWS: &str = "\"shell.width_mm\",\"layout.pins\"\n14,\"[5, 8, 11]\"\n15,\"[4, 8, 12]\"\n";
 
 fn sweep(bytes: &[u8]) -> Result<Reading, String> {
-    let source = in_place(|folder| {
+    let source = in_folder(|folder| {
         let (rows, path) = (folder.join("rows.csv"), folder.join("sweep.toml"));
         std::fs::write(rows, SWEEP_ROWS)
             .and_then(|()| std::fs::write(&path, bytes))
@@ -342,7 +343,7 @@ fn sweep(bytes: &[u8]) -> Result<Reading, String> {
         Ok(sweep) => sweep,
         Err(e) => return refused(&e),
     };
-    // The command line refuses more than that before it lists them.
+    // The command line refuses more variants before it lists them.
     if sweep.count().is_none_or(|count| count > 10_000) {
         return Ok(Reading::Refused);
     }
@@ -352,7 +353,7 @@ fn sweep(bytes: &[u8]) -> Result<Reading, String> {
         if index < variants.count() {
             let variant = variants.get(index);
             require(!variant.id.is_empty() && variant.id.len() < 256, || format!("id {:?}", variant.id))?;
-            require(variant.index == index, || format!("variant {index} says {}", variant.index))?;
+            require(variant.index == index, || format!("variant {index} has index {}", variant.index))?;
             ids.insert(variant.id);
         }
     }
@@ -369,27 +370,27 @@ fn stl(bytes: &[u8]) -> Result<Reading, String> {
     if stl.mesh.triangles.len() > 20_000 {
         return Ok(Reading::Accepted);
     }
-    let found = examine(&stl.mesh, &Expectation::default());
-    for fault in &found.faults {
+    let examination = examine(&stl.mesh, &Expectation::default());
+    for fault in &examination.faults {
         let text = fault.to_string();
         require(!text.is_empty() && text.chars().count() < LONGEST, || format!("a fault: {text:.200}"))?;
         let at = fault.at_mm.iter().flatten();
         require(at.copied().all(f64::is_finite), || format!("a fault at {:?}", fault.at_mm))?;
     }
-    let facts = &found.facts;
+    let facts = &examination.facts;
     let numbers = facts.low_mm.iter().chain(&facts.high_mm).chain([&facts.volume_mm3]);
     require(numbers.copied().all(f64::is_finite), || format!("{facts:?}"))?;
-    // What is valid is valid again when it is written.
-    if found.is_valid() {
+    // A valid mesh must remain complete when it is written and read again.
+    if examination.is_valid() {
         let written = stl_bytes(&stl.mesh).map_err(|e| e.to_string())?;
         let again =
-            read_stl(&mut Cursor::new(written)).map_err(|e| format!("what was written is refused: {e}"))?;
+            read_stl(&mut Cursor::new(written)).map_err(|e| format!("the written file is refused: {e}"))?;
         require(again.mesh.triangles.len() == stl.mesh.triangles.len(), || "facets are lost".to_owned())?;
     }
     Ok(Reading::Accepted)
 }
 
-/// A 3MF, whose meshes are then examined as an STL is.
+/// Reads a 3MF and examines its meshes like an STL.
 fn three_mf(bytes: &[u8]) -> Result<Reading, String> {
     let package = match read_three_mf(bytes) {
         Ok(package) => package,
@@ -408,7 +409,7 @@ fn three_mf(bytes: &[u8]) -> Result<Reading, String> {
     Ok(Reading::Accepted)
 }
 
-/// The sweep of the batches that are judged: two variants of one part.
+/// The sweep of the batches: two variants of one part.
 const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set]\n\"friction.points\" = 2\n\
                            [axes]\n\"tendon.length_mm\" = [200, 300]\n";
 
@@ -424,7 +425,7 @@ fn small_source() -> SweepSource {
     }
 }
 
-/// Sets of rows in a Parquet file, which the batch reads back when shards are merged.
+/// Reads rows from a Parquet file, as a merge of shards does.
 fn shard_table(bytes: &[u8]) -> Result<Reading, String> {
     let source = small_source();
     let sweep = Sweep::new(&source).map_err(|e| e.to_string())?;
@@ -438,28 +439,28 @@ fn shard_table(bytes: &[u8]) -> Result<Reading, String> {
     require(rows.iter().all(|row| row.len() == schema.columns().len()), || {
         "a row of another width".to_owned()
     })?;
-    in_place(|folder| {
+    in_folder(|folder| {
         let (csv, parquet) = (folder.join("t.csv"), folder.join("t.parquet"));
         let mut table = TableWriter::create(&schema, &csv, &parquet).map_err(|e| e.to_string())?;
         for row in &rows {
-            table.push(row.clone()).map_err(|e| format!("what was read cannot be written: {e}"))?;
+            table.push(row.clone()).map_err(|e| format!("the rows cannot be written: {e}"))?;
         }
-        table.finish().map_err(|e| format!("what was read cannot be written: {e}"))
+        table.finish().map_err(|e| format!("the rows cannot be written: {e}"))
     })?;
     Ok(Reading::Accepted)
 }
 
-/// Nobody watches.
-pub struct Nobody;
+/// An observer that does nothing.
+pub struct NullObserver;
 
-impl Observer for Nobody {
+impl Observer for NullObserver {
     fn variant_done(&self, _: &VariantOutcome) {}
     fn stop_requested(&self) -> bool {
         false
     }
 }
 
-/// The JSON with the hash that a batch gives it, for a forger who knows how.
+/// Returns the JSON with a valid checksum, so that damage is not detected by its checksum.
 pub fn sealed(json: &[u8]) -> Vec<u8> {
     let body = json.trim_ascii_end();
     let body = body.strip_suffix(b"}").unwrap_or(body).trim_ascii_end();
@@ -467,15 +468,15 @@ pub fn sealed(json: &[u8]) -> Vec<u8> {
     [body, format!(",\n  \"checksum\": \"{hash}\"\n}}\n").as_bytes()].concat()
 }
 
-/// The table of a finished shard: its columns are those of the parameters of today, so that the corpus cannot keep one for
-/// good.
+/// Returns the table of a finished shard. Its columns follow the parameters, so the file in the
+/// corpus changes with them.
 pub fn finished_shard_table() -> Result<Vec<u8>, String> {
     let shards = Shards::new()?;
     let table = shards.files.into_iter().find(|(name, _)| name.ends_with(".parquet"));
     table.map(|(_, bytes)| bytes).ok_or_else(|| "a shard without a table".to_owned())
 }
 
-/// Two finished shards of one variant each, and what merging them makes.
+/// Two finished shards of one variant each, and the table of their merge.
 struct Shards {
     folder: tempfile::TempDir,
     /// Every file that a merge reads, with its bytes.
@@ -504,31 +505,31 @@ impl Shards {
                 slicer: None,
                 kernel: None,
             };
-            run(&variants, &source, &place, options, &Nobody).map_err(|e| e.to_string())?;
+            run(&variants, &source, &place, options, &NullObserver).map_err(|e| e.to_string())?;
         }
         let mut files = Vec::new();
         collect(&folder.path().join("b"), "", &mut files)?;
         files.sort();
         let mut shards = Self { folder, files, table: Vec::new() };
-        shards.merged().map_err(|e| e.to_string())?;
-        shards.table = shards.made()?;
+        shards.merge().map_err(|e| e.to_string())?;
+        shards.table = shards.merged_table()?;
         Ok(shards)
     }
 
     /// Merges into a new folder.
-    fn merged(&self) -> Result<(), MergeError> {
+    fn merge(&self) -> Result<(), MergeError> {
         let target = self.folder.path().join("m");
         let _ = std::fs::remove_dir_all(&target);
         let open = |folder: &Path| Destination::open(&folder.display().to_string(), ".partial-m");
         merge(&[open(&self.folder.path().join("b"))?], &open(&target)?).map(drop)
     }
 
-    fn made(&self) -> Result<Vec<u8>, String> {
+    fn merged_table(&self) -> Result<Vec<u8>, String> {
         std::fs::read(self.folder.path().join("m/variants.csv")).map_err(|e| e.to_string())
     }
 }
 
-/// Every file below a folder.
+/// Collects every file below a folder, with its bytes.
 fn collect(folder: &Path, prefix: &str, all: &mut Vec<(String, Vec<u8>)>) -> Result<(), String> {
     for entry in std::fs::read_dir(folder).map_err(|e| e.to_string())? {
         let entry = entry.map_err(|e| e.to_string())?;
@@ -546,7 +547,7 @@ thread_local! {
     static SHARDS: RefCell<Option<Shards>> = const { RefCell::new(None) };
 }
 
-/// What bytes do to a file: replaced, some bytes changed, cut short, deleted.
+/// Damages a file: replaces it, changes some bytes, truncates it, or deletes it (`None`).
 fn damaged(whole: &[u8], how: u8, rest: &[u8]) -> Option<Vec<u8>> {
     let offset = |pair: &[u8]| pair.iter().fold(0, |n, b| 256 * n + usize::from(*b)) % whole.len().max(1);
     match how % 4 {
@@ -565,25 +566,26 @@ fn damaged(whole: &[u8], how: u8, rest: &[u8]) -> Option<Vec<u8>> {
     }
 }
 
-/// A file of finished shards is damaged: the first byte says which file, and whether it then gets the hash that a batch
-/// would give it; the second how. What is merged all the same is what would have been merged.
+/// Damages a file of finished shards and merges them. The first byte selects the file, and whether
+/// it gets a valid checksum; the second selects the damage. A merge that succeeds must give the
+/// undamaged table.
 fn batch_files(bytes: &[u8]) -> Result<Reading, String> {
     let [choice, how, rest @ ..] = bytes else { return Ok(Reading::Refused) };
-    SHARDS.with_borrow_mut(|kept| {
-        if kept.is_none() {
-            *kept = Some(Shards::new()?);
+    SHARDS.with_borrow_mut(|shards| {
+        if shards.is_none() {
+            *shards = Some(Shards::new()?);
         }
-        let shards = kept.as_ref().ok_or("no shards")?;
+        let shards = shards.as_ref().ok_or("no shards")?;
         let (name, whole) = &shards.files[usize::from(choice >> 1) % shards.files.len()];
         let is_forged = choice & 1 == 1 && name.ends_with(".json");
         let content = damaged(whole, *how, rest).map(|bytes| if is_forged { sealed(&bytes) } else { bytes });
         let path = shards.folder.path().join("b").join(name);
-        // A new file: parts are links to one.
+        // Creates a new file, since parts are links to one file.
         std::fs::remove_file(&path).map_err(|e| e.to_string())?;
         let put = |bytes: &[u8]| std::fs::write(&path, bytes).map_err(|e| e.to_string());
         content.as_deref().map_or(Ok(()), put)?;
-        let merged = shards.merged();
-        let table = merged.as_ref().ok().map(|()| shards.made());
+        let merged = shards.merge();
+        let table = merged.as_ref().ok().map(|()| shards.merged_table());
         put(whole)?;
         match (merged, table) {
             (Err(e), _) => refused(&e),
@@ -591,7 +593,7 @@ fn batch_files(bytes: &[u8]) -> Result<Reading, String> {
                 let table = table.ok_or("no table")??;
                 require(table == shards.table, || format!("a damaged {name} reached the table"))?;
                 let is_kept = is_forged || content.as_ref() == Some(whole);
-                require(is_kept, || format!("a damaged {name} was not noticed"))?;
+                require(is_kept, || format!("a damaged {name} was not detected"))?;
                 Ok(Reading::Accepted)
             }
         }

@@ -1,8 +1,8 @@
-//! A batch in a bucket, against servers on loopback that nobody here wrote: moto for S3, Azurite for Azure, each behind a
-//! proxy that can be slow, or gone. Object by object the same as in a folder.
+//! A batch in a bucket equals a batch in a folder, object by object. The servers on loopback are
+//! moto for S3 and Azurite for Azure, each behind a proxy that can be slow or absent.
 //!
-//! Needs the feature `cloud`, moto in `/tmp/pinswitch-buckets` and Azurite in the folder `azurite` there; `.ci/run` puts
-//! them there.
+//! The tests need the feature `cloud`, moto in `/tmp/pinswitch-buckets` and Azurite in its folder
+//! `azurite`; `.ci/run` installs both.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
@@ -13,14 +13,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::harness::{SWEEP, binary, differences, done, hashes, repository, say_skipped, with_sweep};
+use crate::harness::{SWEEP, binary, differences, done, hashes, report_skipped, repository, with_sweep};
 
-/// Where `.ci/run` installs the servers.
+/// Folder where `.ci/run` installs the servers.
 const SERVERS: &str = "/tmp/pinswitch-buckets";
-/// How long a slow server takes for every answer.
+/// Delay of each answer of a slow server.
 const SLOW: Duration = Duration::from_millis(120);
 
-/// A program that ends with the test.
+/// A server that ends when it is dropped.
 struct Server(Child);
 
 impl Drop for Server {
@@ -45,7 +45,7 @@ fn serve(command: &mut Command, port: u16) -> Server {
     server
 }
 
-/// How a proxy treats its clients.
+/// Behaviour of a proxy towards its clients.
 #[derive(Clone, Copy)]
 enum Mood {
     Fine = 0,
@@ -53,7 +53,7 @@ enum Mood {
     Gone = 2,
 }
 
-/// A proxy before a server.
+/// A proxy in front of a server.
 struct Proxy {
     port: u16,
     mood: Arc<AtomicU8>,
@@ -85,7 +85,7 @@ impl Proxy {
     }
 }
 
-/// Passes bytes on until one end closes, or the proxy is gone.
+/// Copies bytes until one end closes, or the proxy is gone.
 fn pass(mut from: TcpStream, mut to: TcpStream, mood: &AtomicU8, delay: Duration) {
     let mut buffer = vec![0; 1 << 16];
     while let Ok(n) = from.read(&mut buffer) {
@@ -104,10 +104,10 @@ fn pass(mut from: TcpStream, mut to: TcpStream, mood: &AtomicU8, delay: Duration
     let _ = to.shutdown(std::net::Shutdown::Both);
 }
 
-/// A bucket, and how to get there.
+/// A bucket, with the URL and the environment variables that give access to it.
 struct Bucket {
     folder: tempfile::TempDir,
-    /// Such as `s3://bucket`.
+    /// For example `s3://bucket`.
     url: &'static str,
     variables: Vec<(&'static str, String)>,
 }
@@ -124,29 +124,30 @@ impl Bucket {
         self.command(arguments).output().unwrap()
     }
 
-    /// What a successful run says.
+    /// Returns the output of a successful run.
     fn done(&self, arguments: &str) -> String {
         let output = self.output(arguments);
-        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-        assert!(output.status.success(), "{arguments}: {said}");
-        said
+        let message = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert!(output.status.success(), "{arguments}: {message}");
+        message
     }
 
-    /// The one error of a run that ends with this code.
+    /// Returns the only error of a run that ends with this code.
     fn refused(&self, code: i32, arguments: &str) -> String {
         let output = self.output(arguments);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        let errors: Vec<_> = said.lines().filter(|l| l.starts_with("error: ")).collect();
-        assert!(output.status.code() == Some(code) && errors.len() == 1, "{arguments}: {said}");
-        assert!(errors[0].len() < 600 && !said.contains("panicked"), "{said}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let errors: Vec<_> = message.lines().filter(|l| l.starts_with("error: ")).collect();
+        assert!(output.status.code() == Some(code) && errors.len() == 1, "{arguments}: {message}");
+        assert!(errors[0].len() < 600 && !message.contains("panicked"), "{message}");
         errors[0].to_owned()
     }
 
-    /// Batch, shards with a merge, and a run that is killed and taken up: the same objects under three prefixes.
+    /// Writes the same objects under three prefixes: by one run, by shards with a merge, and by a
+    /// run that is killed and resumed.
     fn fill(&self) {
         let url = self.url;
         self.done(&format!("-q batch sweep.toml --out {url}/whole"));
-        // Two shards at once.
+        // Two shards at the same time.
         let shard = |k: u8| format!("-q batch sweep.toml --out {url}/shards --shard {k}/2");
         let mut second = self.command(&shard(2)).spawn().unwrap();
         self.done(&shard(1));
@@ -161,17 +162,18 @@ impl Bucket {
         assert!(again.contains("; 12 existed before"), "{again}");
     }
 
-    /// A server that is slow, and one that goes away: 16 uploads at once, one clear error, and the rest later.
+    /// Asserts that uploads to a slow server are concurrent, and that a run whose server disappears
+    /// gives one clear error and can be resumed.
     fn survive(&self, proxy: &Proxy) {
         let url = self.url;
         proxy.be(Mood::Slow);
         let start = Instant::now();
         self.done(&format!("-q batch sweep.toml --out {url}/slow"));
-        // 12 variants with two objects of their own, and 28 parts that are looked for and then written.
-        let one_after_the_other = SLOW * (2 * 12 + 2 * 28);
-        assert!(start.elapsed() < one_after_the_other * 2 / 3, "{:?}", start.elapsed());
-        // Gone half-way; a server that is gone before the run has looked at its place ends it as bad input, with 2, and then
-        // the next try waits longer.
+        // Two objects for each of 12 variants, and one search and one upload for each of 28 parts.
+        let sequential = SLOW * (2 * 12 + 2 * 28);
+        assert!(start.elapsed() < sequential * 2 / 3, "{:?}", start.elapsed());
+        // The server disappears during the run. If it does so before the run has listed its folder,
+        // the run ends with exit code 2, and the next attempt waits longer.
         let until_gone = |wait_ms: u64| {
             proxy.be(Mood::Slow);
             let mut child = self
@@ -181,17 +183,17 @@ impl Bucket {
                 .unwrap();
             std::thread::sleep(Duration::from_millis(wait_ms));
             proxy.be(Mood::Gone);
-            let mut said = String::new();
-            child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
-            (child.wait().unwrap().code(), said)
+            let mut output = String::new();
+            child.stderr.take().unwrap().read_to_string(&mut output).unwrap();
+            (child.wait().unwrap().code(), output)
         };
-        let tried: Vec<_> = [900, 1500, 2100, 2700].iter().map(|wait_ms| until_gone(*wait_ms)).collect();
-        let half_way = tried.iter().find(|(code, _)| *code == Some(1));
-        let said = &half_way.unwrap_or_else(|| panic!("never half-way: {tried:?}")).1;
-        let error = said.lines().find(|l| l.starts_with("error: ")).unwrap();
-        assert!(error.contains("then run the same command again to resume ("), "{said}");
-        assert!(error.contains(" variants are finished)"), "{said}");
-        assert!(error.len() < 600 && !said.contains("panicked"), "{said}");
+        let attempts: Vec<_> = [900, 1500, 2100, 2700].iter().map(|wait_ms| until_gone(*wait_ms)).collect();
+        let half_way = attempts.iter().find(|(code, _)| *code == Some(1));
+        let output = &half_way.unwrap_or_else(|| panic!("no attempt ended half-way: {attempts:?}")).1;
+        let error = output.lines().find(|l| l.starts_with("error: ")).unwrap();
+        assert!(error.contains("then run the same command again to resume ("), "{output}");
+        assert!(error.contains(" variants are finished)"), "{output}");
+        assert!(error.len() < 600 && !output.contains("panicked"), "{output}");
         let error = self.refused(2, &format!("-q batch sweep.toml --out {url}/gone"));
         assert!(
             error.contains(&format!("{url}/gone")) && error.contains("check that the store is reachable"),
@@ -201,8 +203,9 @@ impl Bucket {
         self.done(&format!("-q batch sweep.toml --out {url}/gone"));
     }
 
-    /// What lies under a prefix, as a folder would hold it: parts are linked there, and only named here.
-    fn is_like_the_folder(&self, objects: &BTreeMap<String, String>, prefixes: &[&str]) {
+    /// Asserts that the objects under each prefix are the files of a folder, without the links to
+    /// parts, which a bucket does not have.
+    fn assert_equals_folder(&self, objects: &BTreeMap<String, String>, prefixes: &[&str]) {
         done(self.folder.path(), &["-q", "batch", "sweep.toml", "--out", "folder"]);
         let mut folder = hashes(&self.folder.path().join("folder"));
         folder.retain(|name, _| !(name.starts_with("variants/") && name.ends_with(".stl")));
@@ -220,10 +223,10 @@ impl Bucket {
 fn s3_batch_equals_folder_batch() {
     let python = Path::new(SERVERS).join("bin/python");
     if !cfg!(feature = "cloud") {
-        return say_skipped("this build writes to folders only; --features cloud adds buckets");
+        return report_skipped("this build writes to folders only; --features cloud adds buckets");
     }
     if !Path::new(SERVERS).join("bin/moto_server").exists() {
-        return say_skipped("moto is not in /tmp/pinswitch-buckets; .ci/run installs it");
+        return report_skipped("moto is not in /tmp/pinswitch-buckets; .ci/run installs it");
     }
     let port = free_port();
     let mut moto = Command::new(Path::new(SERVERS).join("bin/moto_server"));
@@ -247,9 +250,9 @@ fn s3_batch_equals_folder_batch() {
     bucket.fill();
     bucket.survive(&proxy);
     let objects = ask(&["list", &port.to_string(), &writer["key"], &writer["secret"]]);
-    bucket.is_like_the_folder(&objects, &["whole", "shards", "killed", "slow", "gone"]);
-    // Who may not write is told so, by a dry run too, and no object comes of it.
-    for (name, value) in [("AWS_SECRET_ACCESS_KEY", "wrong"), ("AWS_ACCESS_KEY_ID", "nobody")] {
+    bucket.assert_equals_folder(&objects, &["whole", "shards", "killed", "slow", "gone"]);
+    // Without write permission, a run and a dry run report an error and write no object.
+    for (name, value) in [("AWS_SECRET_ACCESS_KEY", "wrong"), ("AWS_ACCESS_KEY_ID", "unknown")] {
         let right = bucket.variables.clone();
         bucket.variables.iter_mut().filter(|(n, _)| *n == name).for_each(|(_, v)| *v = value.to_owned());
         for more in ["", " --dry-run"] {
@@ -266,10 +269,10 @@ fn s3_batch_equals_folder_batch() {
 fn azure_batch_equals_folder_batch() {
     let azurite: PathBuf = Path::new(SERVERS).join("azurite/node_modules/.bin/azurite-blob");
     if !cfg!(feature = "cloud") {
-        return say_skipped("this build writes to folders only; --features cloud adds buckets");
+        return report_skipped("this build writes to folders only; --features cloud adds buckets");
     }
     if !azurite.exists() {
-        return say_skipped("Azurite is not in /tmp/pinswitch-buckets/azurite; .ci/run installs it");
+        return report_skipped("Azurite is not in /tmp/pinswitch-buckets/azurite; .ci/run installs it");
     }
     let port = free_port();
     let folder = with_sweep(SWEEP);
@@ -284,7 +287,7 @@ fn azure_batch_equals_folder_batch() {
     ]);
     let _server = serve(command.arg(port.to_string()).current_dir(folder.path()), port);
     let proxy = Proxy::before(port);
-    // The account and key that Azurite is known by.
+    // The public account and key of Azurite.
     let key = "Eby8vdM02xNOcqFlqUwJPLlmEtlCDXJ1OUzFT50uSRZ6IFsuFq2UVErCz4I6tq/K1SZFPTOtr/KBHBeksoGMGw==";
     let endpoint = format!("http://127.0.0.1:{}/devstoreaccount1", proxy.port);
     let variables = vec![
@@ -305,8 +308,8 @@ fn azure_batch_equals_folder_batch() {
     let made = Command::new("node").args(["-e", script, &port.to_string(), key]).status().unwrap();
     assert!(made.success(), "the container cannot be made");
     bucket.fill();
-    // What lies there is read back by the program itself: a merge looks at every file and its hash.
     bucket.survive(&proxy);
+    // A merge reads every object back and checks its hash.
     for k in 1..=2 {
         bucket.done(&format!("-q batch sweep.toml --out az://container/merged --shard {k}/2"));
     }

@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::harness::{browser, pinswitch, repository, say_skipped};
+use crate::harness::{browser, pinswitch, report_skipped, repository};
 
 const TOOLS: &str = "/tmp/pinswitch-browser";
 /// Lines of the table, few enough for a calibration within seconds.
@@ -18,7 +18,7 @@ const LINES: usize = 300;
 fn site() -> Option<PathBuf> {
     let site = std::env::var_os("PINSWITCH_SITE");
     if site.is_none() {
-        say_skipped(
+        report_skipped(
             "only the server is tested; to test the module, run cad/app/build site and set PINSWITCH_SITE to its absolute path",
         );
     }
@@ -41,16 +41,16 @@ fn table(folder: &Path) -> PathBuf {
 #[test]
 fn the_configurator_works_in_a_browser() {
     let Some(browser) = browser() else {
-        return say_skipped("no chromium here; Debian's package is called chromium");
+        return report_skipped("no chromium here; Debian's package is called chromium");
     };
     if !Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        return say_skipped("no node here; Debian's package is called nodejs");
+        return report_skipped("no node here; Debian's package is called nodejs");
     }
     if !["puppeteer-core", "axe-core"]
         .iter()
         .all(|name| Path::new(TOOLS).join("node_modules").join(name).is_dir())
     {
-        return say_skipped(
+        return report_skipped(
             "puppeteer-core and axe-core are not in /tmp/pinswitch-browser; .ci/run installs them",
         );
     }

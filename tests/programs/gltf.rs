@@ -1,17 +1,17 @@
-//! Khronos' own validator judges `assembly.glb`, where node and `gltf-validator` are.
+//! Khronos' validator checks `assembly.glb`, where node and `gltf-validator` are installed.
 
 use std::path::Path;
 use std::process::Command;
 
-use crate::harness::{done, repository, say_skipped};
+use crate::harness::{done, report_skipped, repository};
 
-/// Where `.ci/run` puts the validator.
+/// Folder where `.ci/run` installs the validator.
 const VALIDATOR: &str = "/tmp/pinswitch-gltf/node_modules/gltf-validator";
 
 #[test]
 fn assembly_passes_gltf_validator() {
     if !Path::new(VALIDATOR).is_dir() {
-        return say_skipped("gltf-validator is not in /tmp/pinswitch-gltf; .ci/run puts it there");
+        return report_skipped("gltf-validator is not in /tmp/pinswitch-gltf; .ci/run installs it");
     }
     let folder = tempfile::tempdir().unwrap();
     let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n";
@@ -24,7 +24,7 @@ fn assembly_passes_gltf_validator() {
         done(folder.path(), &["-q", "generate", name, "--format", "glb", "--out", set]);
         made.push(folder.path().join(set).join("assembly.glb"));
     }
-    // The judge itself is judged: a file that is cut off must not pass.
+    // The validator must refuse a truncated file.
     let broken = folder.path().join("broken.glb");
     std::fs::write(&broken, &std::fs::read(&made[0]).unwrap()[..2000]).unwrap();
     let judge = |file: &Path| {
@@ -33,8 +33,8 @@ fn assembly_passes_gltf_validator() {
         (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
     };
     for file in &made {
-        let (is_valid, said) = judge(file);
-        assert!(is_valid, "{}: {said}", file.display());
+        let (is_valid, message) = judge(file);
+        assert!(is_valid, "{}: {message}", file.display());
     }
     assert!(!judge(&broken).0, "a broken file passes");
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::harness::{beside_repository, done, ended, files, say_skipped};
+use crate::harness::{done, ended, files, report_skipped, shared_file};
 
 /// Exit code of the judges if none of the requested ones is installed.
 pub(crate) const NONE_COULD_RUN: i32 = 3;
@@ -15,26 +15,30 @@ pub(crate) const NONE_COULD_RUN: i32 = 3;
 pub(crate) fn judges_python() -> Option<&'static Path> {
     let python = Path::new("/tmp/judges-venv/bin/python");
     if !python.exists() {
-        say_skipped(&format!("{} is not here; ../shared/tools/setup_judges.sh makes it", python.display()));
+        report_skipped(&format!(
+            "{} is not here; ../shared/tools/setup_judges.sh makes it",
+            python.display()
+        ));
     }
     python.exists().then_some(python)
 }
 
-/// Whether the only complaint of the judges is that bodies touch, as those of an assembly do: the
+/// Returns whether the only failed check is that bodies touch, as those of an assembly do: the
 /// analyser of boolean arguments counts that as self-interference. The file must still be readable
 /// and valid, with closed shells and without overlaps.
-pub(crate) fn only_touches(said: &str) -> bool {
-    said.lines()
+pub(crate) fn only_touches(output: &str) -> bool {
+    output
+        .lines()
         .filter(|l| l.contains(" FAIL "))
         .all(|l| l.trim_end().ends_with("(self-interference or small edges)") && !l.contains(';'))
 }
 
 #[test]
 fn mesh_judges_accept_the_three_layouts() {
-    let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
+    let Some(judge) = shared_file("tools/judge_mesh.py") else { return };
     let installed = Command::new("prusa-slicer").arg("--help").output().is_ok_and(|o| o.status.success());
     if !installed {
-        say_skipped("prusa-slicer is not installed; ../shared/tools/setup_judges.sh installs the judges");
+        report_skipped("prusa-slicer is not installed; ../shared/tools/setup_judges.sh installs the judges");
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -72,7 +76,7 @@ fn mesh_judges_accept_the_three_layouts() {
 
 #[test]
 fn check_finds_every_defect() {
-    let Some(maker) = beside_repository("tools/make_test_meshes.py") else { return };
+    let Some(maker) = shared_file("tools/make_test_meshes.py") else { return };
     let folder = tempfile::tempdir().unwrap();
     let Some(venv) = judges_python() else { return };
     let made = Command::new(venv).arg(&maker).arg(folder.path()).output().unwrap();
@@ -91,8 +95,8 @@ fn check_finds_every_defect() {
 
 /// Slicers, lib3mf's strict reader and OCCT judge the three layouts, where they are installed.
 #[test]
-fn package_and_step_readers_accept_the_layouts() {
-    let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
+fn foreign_readers_accept_the_layouts() {
+    let Some(judge) = shared_file("tools/judge_mesh.py") else { return };
     let Some(python) = judges_python() else { return };
     for layout in ["six-single", "three-double", "three-single"] {
         let folder = tempfile::tempdir().unwrap();
@@ -111,22 +115,22 @@ fn package_and_step_readers_accept_the_layouts() {
             (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
         };
         let judged = |file: &str, extra: &[&str]| {
-            let (code, said) = ask(file, extra);
+            let (code, message) = ask(file, extra);
             if code == Some(NONE_COULD_RUN) {
-                say_skipped(&format!("{layout}: {file}: no judge of {} is installed", extra[1]));
+                report_skipped(&format!("{layout}: {file}: no judge of {} is installed", extra[1]));
             } else {
-                assert_eq!(code, Some(0), "{layout}: {file}: {said}");
+                assert_eq!(code, Some(0), "{layout}: {file}: {message}");
             }
         };
-        // pymeshlab reads the last object of a package only, and is left out.
+        // pymeshlab is omitted, since it reads only the last object of a package.
         judged("assembly.3mf", &["--only", "prusa_info,prusa_slice,lib3mf,opc3mf,manifold3d"]);
         for part in manifest["parts"].as_array().unwrap() {
             let file = part["file"].as_str().unwrap().replace(".stl", ".step");
             let volume = part["volume_mm3"].to_string();
             judged(&file, &["--only", "ocp", "--volume", &volume, "--rtol", "1e-9"]);
         }
-        let (_, said) = ask("assembly.step", &["--only", "ocp"]);
-        assert!(only_touches(&said), "{layout}: {said}");
+        let (_, message) = ask("assembly.step", &["--only", "ocp"]);
+        assert!(only_touches(&message), "{layout}: {message}");
     }
 }
 
@@ -136,10 +140,10 @@ fn package_and_step_readers_accept_the_layouts() {
 fn the_slicer_reports_time_and_filament() {
     let path = std::env::var_os("PATH").unwrap_or_default();
     if !std::env::split_paths(&path).any(|folder| folder.join("prusa-slicer").is_file()) {
-        return say_skipped("prusa-slicer is not installed");
+        return report_skipped("prusa-slicer is not installed");
     }
     let folder = tempfile::tempdir().unwrap();
-    let said = done(
+    let output = done(
         folder.path(),
         &[
             "generate",
@@ -156,13 +160,13 @@ fn the_slicer_reports_time_and_filament() {
     let set = files(&folder.path().join("set"));
     let read = |name: &str| -> Value { serde_json::from_slice(&set[name]).unwrap() };
     let (slicing, manifest) = (read("slicing.json"), read("manifest.json"));
-    assert!(slicing["slicer"].as_str().unwrap().starts_with("PrusaSlicer "), "{said}");
+    assert!(slicing["slicer"].as_str().unwrap().starts_with("PrusaSlicer "), "{output}");
     let list = |value: &Value| value.as_array().unwrap().clone();
     let grams = |entry: &Value| entry["filament_g"].as_f64().unwrap();
     for (sliced, part) in list(&slicing["parts"]).iter().zip(list(&manifest["parts"])) {
         assert_eq!(sliced["file"], part["file"]);
         let share = grams(sliced) / part["mass_g"].as_f64().unwrap();
-        // The skirt adds to it.
+        // The slicer adds a skirt.
         assert!((0.9..1.6).contains(&share), "{sliced} of {} g", part["mass_g"]);
         assert!(sliced["print_minutes"].as_f64().unwrap() > 1.0);
     }

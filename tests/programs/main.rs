@@ -1,5 +1,5 @@
-//! What programs say that nobody here wrote: slicers, mesh checkers, a browser, Slurm. Each test says `SKIPPED` and why
-//! where its program is absent.
+//! Tests with external programs: slicers, mesh checkers, a browser, Slurm. Where its program is
+//! absent, a test prints `SKIPPED` and the reason.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

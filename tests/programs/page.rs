@@ -81,14 +81,15 @@ fn pinswitch(folder: &Path, arguments: &[&str]) {
 #[test]
 fn the_controls_of_a_page_work() {
     let Some(name) = browser() else {
-        crate::harness::say_skipped("no chromium here; Debian's package is called chromium");
+        crate::harness::report_skipped("no chromium here; Debian's package is called chromium");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
     pinswitch(folder.path(), &["generate", "three-double", "--out", "set"]);
     let page = std::fs::read_to_string(folder.path().join("set/report.html")).unwrap();
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
-    // Under its own policy: its scripts fill the table, and an inserted script does not run.
+    // With its content security policy, the page's scripts fill the table, and an inserted script
+    // does not run.
     let inserted = folder.path().join("inserted.html");
     std::fs::write(&inserted, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
     let dom = browse(name, &inserted, &["--dump-dom"]);

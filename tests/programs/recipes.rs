@@ -1,4 +1,5 @@
-//! The recipes for many machines: a Slurm of one node really runs the job array, a schema checks the Kubernetes Job.
+//! The recipes for many machines: a Slurm cluster of one node runs the job array, and a schema
+//! checks the Kubernetes Job.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -11,24 +12,28 @@ fn recipe(name: &str) -> PathBuf {
     crate::harness::repository("templates/batch").join(name).canonicalize().unwrap()
 }
 
-/// A Slurm on loopback: its daemons end with it.
+/// A Slurm cluster on loopback, whose daemons end when it is dropped.
 struct Slurm {
     folder: PathBuf,
     daemons: Vec<Child>,
 }
 
 impl Slurm {
-    /// Starts munged, slurmctld and slurmd, or says why it cannot.
+    /// Starts munged, slurmctld and slurmd.
+    ///
+    /// # Errors
+    /// The reason why they cannot start here.
     fn start(folder: &Path) -> Result<Self, String> {
         for program in ["munged", "slurmctld", "slurmd", "sbatch", "sinfo"] {
-            let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
-            if !found.status.success() {
+            let location =
+                Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
+            if !location.status.success() {
                 return Err(format!("{program} is not installed (Debian: apt-get install slurm-wlm munge)"));
             }
         }
         let user = Command::new("id").arg("-u").output().unwrap().stdout;
         if String::from_utf8_lossy(&user).trim() != "0" {
-            return Err("slurmd wants to be run by an administrator".to_owned());
+            return Err("slurmd must be run by an administrator".to_owned());
         }
         let host = String::from_utf8(Command::new("hostname").output().unwrap().stdout).unwrap();
         let (host, at) = (host.trim(), folder.display());
@@ -68,10 +73,10 @@ impl Slurm {
         slurm.daemon("slurmctld", &["-D".to_owned()])?;
         slurm.daemon("slurmd", &["-D".to_owned(), "-N".to_owned(), host.to_owned()])?;
         let start = Instant::now();
-        while !slurm.say("sinfo", &["-h", "-o", "%t"]).contains("idle") {
+        while !slurm.output("sinfo", &["-h", "-o", "%t"]).contains("idle") {
             if start.elapsed() > Duration::from_secs(60) {
                 let log = std::fs::read_to_string(folder.join("slurmctld.log")).unwrap_or_default();
-                return Err(format!("Slurm does not come up here: {log}"));
+                return Err(format!("Slurm does not start here: {log}"));
             }
             std::thread::sleep(Duration::from_millis(300));
         }
@@ -96,7 +101,7 @@ impl Slurm {
         command
     }
 
-    fn say(&self, program: &str, arguments: &[&str]) -> String {
+    fn output(&self, program: &str, arguments: &[&str]) -> String {
         let output = self.command(program).args(arguments).output().unwrap();
         String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
     }
@@ -118,21 +123,21 @@ fn slurm_array_equals_one_run() {
     let slurm = match Slurm::start(path) {
         Ok(slurm) => slurm,
         Err(reason) => {
-            crate::harness::say_skipped(&reason);
+            crate::harness::report_skipped(&reason);
             return;
         }
     };
-    // The two commands of the recipe's head.
+    // The two commands in the head of the recipe.
     let binary = env!("CARGO_BIN_EXE_pinswitch");
     let export = format!("--export=ALL,PINSWITCH={binary},SWEEP=sweep.toml,OUT=array");
     let script = recipe("slurm.sbatch");
-    let array = slurm.say("sbatch", &["--parsable", "--array=1-3", &export, script.to_str().unwrap()]);
+    let array = slurm.output("sbatch", &["--parsable", "--array=1-3", &export, script.to_str().unwrap()]);
     let array = array.trim();
     assert!(array.parse::<u32>().is_ok(), "{array}");
     let after = format!("--dependency=afterok:{array}");
     let merge = format!("'{binary}' merge \"$OUT\"");
     let merged =
-        slurm.say("sbatch", &["--parsable", "--wait", &after, "--export=ALL,OUT=array", "--wrap", &merge]);
+        slurm.output("sbatch", &["--parsable", "--wait", &after, "--export=ALL,OUT=array", "--wrap", &merge]);
     let logs = || -> String {
         let files = std::fs::read_dir(path).unwrap().map(|e| e.unwrap().path());
         files
@@ -159,22 +164,22 @@ fn kubernetes_job_matches_schema() {
     let job: serde_json::Value = serde_saphyr::from_str(&text).unwrap();
     let errors: Vec<_> = validator.iter_errors(&job).map(|e| e.to_string()).collect();
     assert!(errors.is_empty(), "{errors:?}");
-    // The schema is strict: a slip is found.
-    let slip: serde_json::Value =
+    // The schema refuses an unknown key.
+    let misspelt: serde_json::Value =
         serde_saphyr::from_str(&text.replace("completionMode", "completionsMode")).unwrap();
-    assert!(!validator.is_valid(&slip));
+    assert!(!validator.is_valid(&misspelt));
     let spec = &job["spec"];
     let command = spec["template"]["spec"]["containers"][0]["args"][0].as_str().unwrap();
     assert_eq!(spec["completionMode"], "Indexed");
     assert!(command.contains(&format!("+ 1))/{}\"", spec["completions"])), "{command}");
-    // The command's arguments are ours: every pod's shard, with a shell in between.
+    // A shell computes the shard of each pod in the command's arguments.
     for (index, shard) in [("0", "1/8"), ("7", "8/8")] {
         let shown = command.replace("exec pinswitch", "echo");
-        let said =
+        let message =
             Command::new("sh").args(["-c", &shown]).env("JOB_COMPLETION_INDEX", index).output().unwrap();
-        let said = String::from_utf8(said.stdout).unwrap();
+        let message = String::from_utf8(message.stdout).unwrap();
         assert_eq!(
-            said.trim(),
+            message.trim(),
             format!("batch /sweep/sweep.toml --out s3://bucket/sweep --shard {shard} --yes")
         );
     }

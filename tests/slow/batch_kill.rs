@@ -1,4 +1,5 @@
-//! A batch that is killed (SIGKILL) at random moments and restarted has the same files as an uninterrupted one.
+//! A batch that is killed (SIGKILL) at random moments and restarted has the same files as an
+//! uninterrupted one.
 
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -9,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Total number of kills.
 const KILLS: usize = 20;
-/// Kills of one batch before it runs to its end.
+/// Consecutive kills of one batch before a run without a kill.
 const IN_A_ROW: usize = 4;
 
 const SWEEP: &str = r#"
@@ -24,7 +25,7 @@ parts = ["shell", "mould-core", "support-left", "coupon"]
 "#;
 
 #[test]
-fn killed_runs_end_with_the_same_files() {
+fn killed_runs_resume_with_equal_files() {
     let folder = with_sweep(SWEEP);
     let start = Instant::now();
     done(folder.path(), &["batch", "sweep.toml", "--out", "whole"]);
@@ -45,7 +46,7 @@ fn killed_runs_end_with_the_same_files() {
                 .unwrap();
             std::thread::sleep(Duration::from_secs_f64(longest_s * random.random_range(0.0..1.0)));
             if child.try_wait().unwrap().is_some() {
-                // It finished before the kill: later kills are earlier.
+                // The run finished before the kill, so the next kills come earlier.
                 longest_s *= 0.8;
                 break;
             }

@@ -1,5 +1,6 @@
-//! The documented range of a parameter is its real one: at both ends, alone and with each neighbour in its table, a
-//! configuration gives parts or one error with field, value and remedy; beyond the ends it is refused.
+//! The documented range of a parameter is the actual one. At both ends, alone and with each other
+//! parameter of its table, a configuration gives parts, or one error with field, value and remedy.
+//! Values beyond the ends are refused.
 
 use std::sync::Mutex;
 
@@ -8,7 +9,8 @@ use pinswitch_switch::config::{Configuration, assign};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::output::BuildError;
 
-/// Layers that a field may not like to be alone with.
+/// Assignments to which the value of a field is added; each enables rules that constrain other
+/// fields.
 const BASES: [&[&str]; 5] = [
     &[],
     &["mould.kind=one-piece", "label.engrave=false"],
@@ -17,7 +19,7 @@ const BASES: [&[&str]; 5] = [
     &["fasteners.dowel_diameter_mm=1.5", "mount.kind=rig", "mould.kind=one-piece"],
 ];
 
-/// The ends of a numeric field's range, as its description gives them.
+/// Returns the ends of a numeric field's range, as its description gives them.
 fn ends(field: &Parameter<Configuration>) -> Option<[String; 2]> {
     let range = (field.range)();
     let (low, high) = range.split_once(" to ")?;
@@ -25,10 +27,11 @@ fn ends(field: &Parameter<Configuration>) -> Option<[String; 2]> {
     (is_number(low) && is_number(high)).then(|| [low.to_owned(), high.to_owned()])
 }
 
-/// What is wrong with what became of a configuration; nothing if it gave parts, or an error with a remedy.
+/// Returns a description of the fault, or `None` if the configuration gives parts or an error with
+/// a remedy.
 fn fault(assignments: &[String]) -> Option<String> {
     let mut c = Configuration::default();
-    // Curves and meshes as small as can be: they are not what is walked here.
+    // Coarse curves and meshes, for speed: this test does not examine them.
     for assignment in ["friction.points=2", "mesh.chord_tolerance_mm=0.05"] {
         assign(&mut c, assignment).unwrap();
     }

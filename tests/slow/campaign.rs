@@ -1,15 +1,15 @@
-//! The campaign: thousands of configurations, tables, models, sweeps, meshes and batches, random or damaged. Whatever
-//! is given, the program does the work or says in one short error what to change.
+//! The campaign: thousands of configurations, tables, models, sweeps, meshes and batches, random or
+//! damaged. For any input, the program does the work or prints one short error with its remedy.
 //!
-//! Not part of the ordinary tests: `fuzz/run` runs it, or
+//! `fuzz/run` runs the campaign, which is not part of the ordinary tests. The command is:
 //!
 //! ```sh
 //! PINSWITCH_CAMPAIGN=1 cargo test --release --test slow campaign -- --ignored --nocapture
 //! ```
 //!
-//! `PINSWITCH_CAMPAIGN` multiplies the numbers of cases (1 unless told), `PINSWITCH_SEED` is the first seed (1 unless
-//! told), `PINSWITCH_LEAVE` the folder where failing cases are left. Each case has a seed of its own, which its failure
-//! names: the same seed gives the same case.
+//! `PINSWITCH_CAMPAIGN` multiplies the numbers of cases (default 1), `PINSWITCH_SEED` is the first
+//! seed (default 1), and `PINSWITCH_LEAVE` is the folder for the inputs of failed cases. Each case
+//! has its seed, which a failure reports; the same seed gives the same case.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -30,14 +30,14 @@ use super::random_configurations::{Outcome, build, configurations};
 use crate::harness::{done, ended, hashes, pinswitch, repository};
 use crate::readers::{LONGEST, Reading, in_memory, judge};
 
-/// What a case ended with, or what is wrong.
+/// The outcome of a case, or its fault.
 type Verdict = Result<&'static str, String>;
 
 fn number(name: &str, otherwise: f64) -> f64 {
     std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise)
 }
 
-/// Runs the cases on all processors and prints the table of what became of them; fails if any failed.
+/// Runs the cases on all processors and prints the number of each outcome. Panics if a case failed.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn campaign(what: &str, cases: u64, case: impl Fn(u64, &mut ChaCha8Rng) -> (Vec<u8>, Verdict) + Sync) {
     let count = ((cases as f64) * number("PINSWITCH_CAMPAIGN", 1.0)).ceil().max(1.0) as u64;
@@ -55,9 +55,10 @@ fn campaign(what: &str, cases: u64, case: impl Fn(u64, &mut ChaCha8Rng) -> (Vec<
                     let mut random = ChaCha8Rng::seed_from_u64(seed);
                     let outcome = catch_unwind(AssertUnwindSafe(|| case(seed, &mut random)));
                     let (given, verdict) = outcome.unwrap_or_else(|panic| {
-                        let said = panic.downcast_ref::<String>().cloned();
-                        let said = said.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()));
-                        (Vec::new(), Err(format!("a panic: {}", said.unwrap_or_default())))
+                        let message = panic.downcast_ref::<String>().cloned();
+                        let message =
+                            message.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()));
+                        (Vec::new(), Err(format!("a panic: {}", message.unwrap_or_default())))
                     });
                     let word = match verdict {
                         Ok(word) => word,
@@ -74,12 +75,12 @@ fn campaign(what: &str, cases: u64, case: impl Fn(u64, &mut ChaCha8Rng) -> (Vec<
     });
     let tally = tally.into_inner().unwrap();
     let table: Vec<_> = tally.iter().map(|(word, n)| format!("{n} {word}")).collect();
-    println!("{what}: {count} tried, seeds {first} to {}: {}", first + count - 1, table.join(", "));
+    println!("{what}: {count} cases, seeds {first} to {}: {}", first + count - 1, table.join(", "));
     let faults = faults.into_inner().unwrap();
     assert!(faults.is_empty(), "{what}: {} failed:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// Leaves what failed where it was asked for.
+/// Writes the input of a failed case to the folder in `PINSWITCH_LEAVE`, if it is set.
 fn leave(what: &str, seed: u64, given: &[u8]) {
     if let Ok(folder) = std::env::var("PINSWITCH_LEAVE") {
         let folder = Path::new(&folder).join(what.replace(' ', "-"));
@@ -88,16 +89,16 @@ fn leave(what: &str, seed: u64, given: &[u8]) {
     }
 }
 
-/// Whether an error that the program said can be read, with these words in it.
-fn is_clear(code: Option<i32>, said: &str, words: &[&str]) -> Result<(), String> {
-    let lines: Vec<_> = said.lines().filter(|line| line.starts_with("error: ")).collect();
+/// Checks that the output is one short error of exit code 2 that contains these words.
+fn is_clear(code: Option<i32>, output: &str, words: &[&str]) -> Result<(), String> {
+    let lines: Vec<_> = output.lines().filter(|line| line.starts_with("error: ")).collect();
     if code != Some(2) {
-        return Err(format!("exit code {code:?}: {said:.300}"));
+        return Err(format!("exit code {code:?}: {output:.300}"));
     }
-    let error = said.split("error: ").last().unwrap_or_default();
+    let error = output.split("error: ").last().unwrap_or_default();
     if lines.len() != 1 || error.chars().count() >= LONGEST {
         return Err(format!(
-            "{} errors, the last of {} characters: {said:.300}",
+            "{} errors, the last of {} characters: {output:.300}",
             lines.len(),
             error.chars().count()
         ));
@@ -105,15 +106,15 @@ fn is_clear(code: Option<i32>, said: &str, words: &[&str]) -> Result<(), String>
     words
         .iter()
         .find(|word| !error.contains(**word))
-        .map_or(Ok(()), |word| Err(format!("no {word:?} in: {said}")))
+        .map_or(Ok(()), |word| Err(format!("no {word:?} in: {output}")))
 }
 
-/// One of these.
+/// Returns a random element.
 fn one<'a, T: ?Sized>(random: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
     of[random.random_range(0..of.len())]
 }
 
-/// A value for a parameter with this range, in or out of it, or of no type that it could have.
+/// Returns a value for a parameter with this range: inside it, outside it, or of another type.
 fn value(random: &mut ChaCha8Rng, range: &str) -> String {
     let numbers = range.split_once(" to ").and_then(|(low, high)| {
         let high = high.split(' ').next()?;
@@ -141,7 +142,7 @@ fn value(random: &mut ChaCha8Rng, range: &str) -> String {
             let beyond = (high - low) * random.random_range(1e-9..0.5);
             if random.random() { format!("{:?}", low - beyond) } else { format!("{:?}", high + beyond) }
         }
-        // Whole numbers stand for numbers of either kind.
+        // A whole number is valid for an integer and for a real parameter.
         (4..8, Some((low, high))) => format!("{}", random.random_range(low..=high).round()),
         (_, Some((low, high))) => format!("{:?}", random.random_range(low..=high)),
         (_, None) if range.starts_with('"') => {
@@ -160,7 +161,8 @@ fn value(random: &mut ChaCha8Rng, range: &str) -> String {
     }
 }
 
-/// A configuration as text: a template or one that can often be built, with some parameters set at random.
+/// Returns the text of a configuration: a template, or one that can often be built, with some
+/// parameters set at random.
 fn configuration_text(seed: u64, random: &mut ChaCha8Rng) -> String {
     let mut tables: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let base = match random.random_range(0..3) {
@@ -224,11 +226,11 @@ fn configurations_are_built_or_refused() {
             if let Some(error) = error.as_ref().filter(|e| e.chars().count() >= LONGEST) {
                 return Err(format!("an error of {} characters: {error:.200}", error.chars().count()));
             }
-            // The command line says the same, for some.
+            // The command line gives the same result; one case in ten checks that.
             if seed % 10 == 0 {
                 let folder = in_memory()?;
                 std::fs::write(folder.path().join("my.toml"), &text).map_err(|e| e.to_string())?;
-                let (code, said) =
+                let (code, output) =
                     ended(folder.path(), &["-q", "generate", "my.toml", "--out", "o", "--format", "stl"]);
                 match &error {
                     None if code == Some(0) => {
@@ -241,14 +243,14 @@ fn configurations_are_built_or_refused() {
                             .into_iter()
                             .chain(parts.iter().map(String::as_str))
                             .collect();
-                        let (code, said) = ended(folder.path(), &arguments);
+                        let (code, output) = ended(folder.path(), &arguments);
                         if code != Some(0) {
-                            return Err(format!("check refuses what was made: {said:.400}"));
+                            return Err(format!("check refuses the generated parts: {output:.400}"));
                         }
                     }
-                    None => return Err(format!("built here, but not by the command: {said:.300}")),
+                    None => return Err(format!("built here, but not by the command: {output:.300}")),
                     Some(_) => {
-                        is_clear(code, &said, &["my.toml", ";"])?;
+                        is_clear(code, &output, &["my.toml", "\n  help: "])?;
                         if folder.path().join("o").exists() {
                             return Err("something was written".to_owned());
                         }
@@ -261,7 +263,7 @@ fn configurations_are_built_or_refused() {
     });
 }
 
-/// Bytes damaged in one of many ways; text is also damaged as text.
+/// Damages bytes in one of many ways, some of which edit numbers and words of a text.
 fn damage(random: &mut ChaCha8Rng, whole: &[u8]) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     let at = |random: &mut ChaCha8Rng, bytes: &[u8]| random.random_range(0..bytes.len().max(1));
@@ -329,7 +331,7 @@ fn damage(random: &mut ChaCha8Rng, whole: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A table that can be calibrated in a moment, and the model of its calibration.
+/// Returns a table whose calibration is fast, and the models of its calibration.
 fn small_table_and_models() -> (Vec<u8>, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let plan = "seed = 5\nprotocol = \"randomised\"\nlayouts = [[5, 8, 11]]\nweights_g = [251.2, 1003.2, 2005.0, 3007.2, 5002.5]\n\
@@ -396,11 +398,11 @@ fn damaged_tables_are_calibrated_or_refused() {
             if seed % 20 == 0 {
                 let folder = in_memory()?;
                 std::fs::write(folder.path().join("t.csv"), &bytes).map_err(|e| e.to_string())?;
-                let (code, said) = ended(folder.path(), &["-q", "calibrate", "t.csv", "--out", "c"]);
+                let (code, output) = ended(folder.path(), &["-q", "calibrate", "t.csv", "--out", "c"]);
                 if word.starts_with("refused") {
-                    is_clear(code, &said, &["t.csv"])?;
+                    is_clear(code, &output, &["t.csv"])?;
                 } else if code != Some(0) {
-                    return Err(format!("calibrated here, but not by the command: {said:.300}"));
+                    return Err(format!("calibrated here, but not by the command: {output:.300}"));
                 }
             }
             Ok(word)
@@ -423,14 +425,14 @@ fn damaged_models_are_refused() {
                 std::fs::write(folder.path().join("m.toml"), &bytes).map_err(|e| e.to_string())?;
                 std::fs::write(folder.path().join("t.csv"), &table).map_err(|e| e.to_string())?;
                 for more in [&["--rows", "t.csv"][..], &["three-double"]] {
-                    let (code, said) =
+                    let (code, output) =
                         ended(folder.path(), &[&["-q", "predict", "--model", "m.toml"], more].concat());
                     match code {
-                        Some(0) if said.contains("NaN") || said.contains("inf") => {
+                        Some(0) if output.contains("NaN") || output.contains("inf") => {
                             return Err("NaN is printed".to_owned());
                         }
                         Some(0) => {}
-                        _ => is_clear(code, &said, &[])?,
+                        _ => is_clear(code, &output, &[])?,
                     }
                 }
             }
@@ -444,7 +446,8 @@ fn damaged_models_are_refused() {
     });
 }
 
-/// A sweep of few variants, with axes, sets and constraints at random, in or out of their ranges.
+/// Returns the text of a sweep of few variants, with random axes, sets and constraints, inside or
+/// outside their ranges.
 fn sweep_text(random: &mut ChaCha8Rng) -> String {
     let fields = [
         "shell.width_mm",
@@ -541,23 +544,25 @@ fn random_sweeps_match_dry_run() {
             )
             .map_err(|e| e.to_string())?;
             let dry = pinswitch(path, &["-q", "batch", "s.toml", "--out", "b", "--dry-run", "--json"]);
-            let said = String::from_utf8_lossy(&dry.stderr).into_owned();
+            let output = String::from_utf8_lossy(&dry.stderr).into_owned();
             if path.join("b").exists() {
                 return Err("a dry run wrote".to_owned());
             }
             if dry.status.code() != Some(0) {
-                is_clear(dry.status.code(), &said, &[])?;
+                is_clear(dry.status.code(), &output, &[])?;
             } else if let Ok(estimate) = serde_json::from_slice::<serde_json::Value>(&dry.stdout)
                 && estimate["variants"].as_u64().is_some_and(|n| n > 60)
             {
-                // Too many to make here.
+                // A run of so many variants takes too long.
                 return Ok("dry run only, of many variants");
             }
             let run = pinswitch(path, &["-q", "batch", "s.toml", "--out", "b", "--json"]);
-            let run_said = String::from_utf8_lossy(&run.stderr).into_owned();
-            if run.status.code() != dry.status.code() || (run.status.code() != Some(0) && run_said != said) {
+            let run_output = String::from_utf8_lossy(&run.stderr).into_owned();
+            if run.status.code() != dry.status.code()
+                || (run.status.code() != Some(0) && run_output != output)
+            {
                 return Err(format!(
-                    "dry {:?} {said:.200}\nrun {:?} {run_said:.200}",
+                    "dry {:?} {output:.200}\nrun {:?} {run_output:.200}",
                     dry.status.code(),
                     run.status.code()
                 ));
@@ -577,7 +582,7 @@ fn random_sweeps_match_dry_run() {
             let is_same = tally["made"] == estimate["made"]
                 && tally["refused"].as_u64() == Some(refused)
                 && tally["failed"] == 0;
-            if is_same { Ok("made, the dry run said the same") } else { Err(format!("{estimate}\n{tally}")) }
+            if is_same { Ok("made, equal to the dry run") } else { Err(format!("{estimate}\n{tally}")) }
         })();
         (text, verdict)
     });
@@ -635,11 +640,11 @@ fn damaged_meshes_are_examined_or_refused() {
             if seed % 20 == 0 {
                 let folder = in_memory()?;
                 std::fs::write(folder.path().join("a.stl"), &bytes).map_err(|e| e.to_string())?;
-                let (code, said) = ended(folder.path(), &["-q", "check", "a.stl"]);
+                let (code, output) = ended(folder.path(), &["-q", "check", "a.stl"]);
                 match (reading, code) {
                     (Reading::Accepted, Some(0 | 1)) => {}
-                    (Reading::Refused, _) => is_clear(code, &said, &["a.stl"])?,
-                    _ => return Err(format!("{code:?} {said:.300}")),
+                    (Reading::Refused, _) => is_clear(code, &output, &["a.stl"])?,
+                    _ => return Err(format!("{code:?} {output:.300}")),
                 }
             }
             Ok(if reading == Reading::Accepted { "examined" } else { "refused with one clear error" })
@@ -648,17 +653,18 @@ fn damaged_meshes_are_examined_or_refused() {
     });
 }
 
-/// A batch to damage: 4 variants, of which one is refused.
+/// A batch to damage: 4 variants, some of them refused.
 const BATCH: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\", \"shell\"]\nplots = true\n[set]\n\"friction.points\" = 3\n\
                      [axes]\n\"segment.grooves\" = [15, 60]\n\"tendon.length_mm\" = [200, 300]\n";
 
-/// Files of a folder are flipped, cut, replaced or deleted; returns what was done.
+/// Flips bits of files of a folder, or cuts, replaces or deletes them; returns a log of the
+/// changes.
 fn damage_files(random: &mut ChaCha8Rng, folder: &Path, names: &[String]) -> String {
     let mut log = String::new();
     for _ in 0..random.random_range(1..4) {
         let path = folder.join(&names[random.random_range(0..names.len())]);
         let Ok(bytes) = std::fs::read(&path) else { continue };
-        // A new file: parts are links to one.
+        // Creates a new file in most cases, since parts are links to one file.
         let by_link = random.random_range(0..4) == 0;
         if !by_link {
             std::fs::remove_file(&path).unwrap();
@@ -687,7 +693,7 @@ fn copied(from: &Path, to: &Path) {
 
 #[test]
 #[ignore = "minutes; see the head of the file"]
-fn damaged_batches_are_mended_or_named() {
+fn damaged_batches_are_repaired_or_reported() {
     let made = in_memory().unwrap();
     std::fs::write(made.path().join("s.toml"), BATCH).unwrap();
     done(made.path(), &["-q", "batch", "s.toml", "--out", "b"]);
@@ -701,7 +707,7 @@ fn damaged_batches_are_mended_or_named() {
         let log = damage_files(random, &path.join("b"), &names);
         let verdict = (|| {
             let stamp = hashes(&path.join("b")).get("batch.json").cloned();
-            let (code, said) = ended(path, &["-q", "batch", "s.toml", "--out", "b"]);
+            let (code, output) = ended(path, &["-q", "batch", "s.toml", "--out", "b"]);
             if code == Some(0) {
                 let now = hashes(&path.join("b"));
                 return if now == whole {
@@ -710,9 +716,9 @@ fn damaged_batches_are_mended_or_named() {
                     Err(format!("after the run: {:?}", crate::harness::differences(&whole, &now)))
                 };
             }
-            is_clear(code, &said, &["b"])?;
+            is_clear(code, &output, &["b"])?;
             if stamp == whole.get("batch.json").cloned() {
-                return Err(format!("refused though the stamp is whole: {said}"));
+                return Err(format!("refused though the stamp is whole: {output}"));
             }
             Ok("named, nothing made of it")
         })();
@@ -722,7 +728,7 @@ fn damaged_batches_are_mended_or_named() {
 
 #[test]
 #[ignore = "minutes; see the head of the file"]
-fn damaged_shards_are_named() {
+fn damaged_shards_are_reported() {
     let made = in_memory().unwrap();
     std::fs::write(made.path().join("s.toml"), BATCH).unwrap();
     for shard in ["1/2", "2/2"] {
@@ -740,7 +746,7 @@ fn damaged_shards_are_named() {
         let log = damage_files(random, &path.join("b"), &names);
         let verdict = (|| {
             let damaged = hashes(&path.join("b"));
-            let (code, said) = ended(path, &["-q", "merge", "b"]);
+            let (code, output) = ended(path, &["-q", "merge", "b"]);
             let now = hashes(&path.join("b"));
             if damaged == before {
                 return if now == whole {
@@ -749,9 +755,10 @@ fn damaged_shards_are_named() {
                     Err("merged otherwise".to_owned())
                 };
             }
-            // Without its stamp a shard is one that never ran: the variants are named, and the option that makes them.
-            let names_variants = said.contains("in no finished shard; run --shard ");
-            is_clear(code, &said, if names_variants { &[] } else { &["b"] })?;
+            // A shard without its stamp never ran: the error gives its variants, and the option
+            // that makes them.
+            let names_variants = output.contains("in no finished shard\n  help: run --shard ");
+            is_clear(code, &output, if names_variants { &[] } else { &["b"] })?;
             if now != damaged {
                 return Err(format!(
                     "something was written: {:?}",

@@ -46,7 +46,7 @@ fn believed<'a>(verdict: &'a str, report: &serde_json::Value) -> &'a str {
 }
 
 #[test]
-fn every_verdict_is_reached_on_simulated_rigs() {
+fn simulated_rigs_reach_every_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let unnamed =
@@ -133,9 +133,9 @@ fn predictions_come_from_the_better_model() {
     assert!(errors[1] < 0.1 * errors[0], "{errors:?}");
     // The offset of the rig is excluded from the part's curve.
     let output = pinswitch(0, at, "generate three-double --model cal/model.toml --out set -v");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("the curve includes effects of the switch: coating_ploughing"), "{said}");
-    assert!(said.contains("the curve excludes effects of the measurement: load_cell_offset"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("the curve includes effects of the switch: coating_ploughing"), "{message}");
+    assert!(message.contains("the curve excludes effects of the measurement: load_cell_offset"), "{message}");
     let manifest = std::fs::read_to_string(at.join("set/manifest.json")).unwrap();
     assert!(
         manifest.contains("the curve excludes effects of the measurement: load_cell_offset"),

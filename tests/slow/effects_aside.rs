@@ -71,9 +71,9 @@ fn operator_levels_are_confirmed() {
     let first = report_on("operators", None, folder.path());
     let form = &first["effects"][0]["form"];
     assert_eq!((&first["verdict"], &form["shape"]), (&"unattributed".into(), &"groups".into()), "{first}");
-    let drawn = folder.path().join("drawn.toml");
-    std::fs::copy(folder.path().join("out-false/discovered.toml"), &drawn).unwrap();
-    let next = report_on("operators-next", Some(&drawn), folder.path());
+    let derived = folder.path().join("derived.toml");
+    std::fs::copy(folder.path().join("out-false/discovered.toml"), &derived).unwrap();
+    let next = report_on("operators-next", Some(&derived), folder.path());
     assert_eq!(next["trials"][0]["outcome"], "confirmed", "{}", next["trials"]);
     let size = next["trials"][0]["size"]["value"].as_f64().unwrap();
     assert!((0.08..0.12).contains(&size.abs()), "{size}");

@@ -1,19 +1,19 @@
-//! `generate` killed (SIGKILL) at random moments, and at every file that it renames or removes, leaves the whole set of
-//! before, the whole new one, or no manifest; the next run removes what is left over. A unit test of
-//! `cad/cli/src/write/set_folder.rs` stops after every single step.
+//! `generate`, killed (SIGKILL) at random moments and at every file that it renames or removes,
+//! leaves the complete old set, the complete new set, or no manifest. The next run removes leftover
+//! files. A unit test of `cad/cli/src/write/set_folder.rs` stops after every single step.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::harness::{binary, differences, done, hashes, say_skipped};
+use crate::harness::{binary, differences, done, hashes, report_skipped};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Kills in all.
+/// Total number of kills.
 const KILLS: usize = 60;
 
-/// The sets take turns, so that each run has other files to remove and to replace.
+/// Sets that alternate, so that each run has files to remove and to replace.
 const SETS: [&[&str]; 3] = [
     &["-q", "generate", "three-double", "--format", "stl,step,dxf"],
     &["-q", "generate", "three-double", "--format", "stl", "--set", "shell.width_mm=16"],
@@ -46,7 +46,7 @@ fn killed_set_is_recognisably_incomplete() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Half of the kills are aimed at the end, where files take their names.
+        // Half of the kills are near the end of the run, when files get their final names.
         let share =
             if run % 2 == 0 { random.random_range(0.0..1.0) } else { random.random_range(0.85..1.02) };
         std::thread::sleep(Duration::from_secs_f64(whole_run_s[set] * share));
@@ -55,18 +55,19 @@ fn killed_set_is_recognisably_incomplete() {
             kills += 1;
         }
         child.wait().unwrap();
-        without_manifest += usize::from(place.exists() && !is_whole_or_unlisted(&place, &whole));
+        without_manifest += usize::from(place.exists() && !has_complete_set(&place, &whole));
         if run % 5 == 0 {
             done(folder.path(), &out("killed", set));
             assert_eq!(differences(&whole[set], &hashes(&place)), Vec::<String>::new());
         }
         assert!(run < 20 * KILLS, "the runs end before they are killed");
     }
-    println!("{kills} kills of {run} runs, {without_manifest} of which left no manifest");
+    println!("{kills} kills in {run} runs; {without_manifest} runs left no manifest");
 }
 
-/// Whether a manifest is there; then it lists a whole set, and no file of another is beside it.
-fn is_whole_or_unlisted(place: &Path, whole: &[std::collections::BTreeMap<String, String>]) -> bool {
+/// Returns whether the folder has a manifest. Asserts that a folder with a manifest is one of the
+/// complete sets.
+fn has_complete_set(place: &Path, whole: &[std::collections::BTreeMap<String, String>]) -> bool {
     let mut there = hashes(place);
     there.retain(|name, _| !name.starts_with(".pinswitch-"));
     if !there.contains_key("manifest.json") {
@@ -76,7 +77,8 @@ fn is_whole_or_unlisted(place: &Path, whole: &[std::collections::BTreeMap<String
     true
 }
 
-/// Stands before the C library: kills the process when it is about to rename or remove a file for the n-th time.
+/// Library that is preloaded before the C library: kills the process before it renames or removes
+/// the n-th file.
 #[cfg(target_os = "linux")]
 const KILLER: &str = r#"
 #define _GNU_SOURCE
@@ -109,7 +111,7 @@ fn set_survives_kill_at_every_file() {
         .current_dir(folder.path())
         .status();
     if !compiler.is_ok_and(|status| status.success()) {
-        return say_skipped("no C compiler here");
+        return report_skipped("no C compiler here");
     }
     let whole: Vec<_> = ["whole-0", "whole-1"]
         .iter()
@@ -135,13 +137,13 @@ fn set_survives_kill_at_every_file() {
         if status.success() {
             break;
         }
-        assert_eq!(status.code(), None, "not killed, but failed");
+        assert_eq!(status.code(), None, "the run failed without a kill");
         kills += 1;
-        without_manifest += usize::from(!is_whole_or_unlisted(&place, &whole));
+        without_manifest += usize::from(!has_complete_set(&place, &whole));
         done(folder.path(), &[SETS[1], &["--out", "killed"]].concat());
         assert_eq!(differences(&whole[1], &hashes(&place)), Vec::<String>::new(), "after kill {at}");
     }
-    println!("{kills} kills, {without_manifest} of which left no manifest");
-    // At least one for each file of either set.
+    println!("{kills} kills; {without_manifest} left no manifest");
+    // At least one kill for each file of the set.
     assert!(kills > whole[1].len() && without_manifest > 0, "{kills} {without_manifest}");
 }

@@ -1,4 +1,4 @@
-//! What takes minutes: the closed loop on many rigs, random configurations, batches that are killed.
+//! Tests that take minutes: the closed loop on many rigs, random configurations, killed batches.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

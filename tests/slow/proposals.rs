@@ -1,4 +1,5 @@
-//! Following every proposal of a refused configuration leads to one that builds. `PINSWITCH_CASES=2000` makes a long run.
+//! A refused configuration builds once its proposals are followed. `PINSWITCH_CASES=2000` makes a
+//! long run.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -12,7 +13,7 @@ use pinswitch_switch::output::BuildError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Choices of hardware, mount and mould, each with the share of configurations that it is in.
+/// Choices of hardware, mount and mould, each with the share of configurations that have it.
 const CHOICES: [(f64, &[&str]); 9] = [
     (0.5, &["fasteners.kind=screw", "fasteners.kind=nut-trap", "fasteners.kind=insert"]),
     (0.5, &["mould.kind=split", "mould.kind=one-piece", "mould.kind=none"]),
@@ -31,10 +32,12 @@ const PINS: [&str; 5] = [
     "layout.pins=[3, 5, 7, 9, 11, 13]",
     "layout.pins=[8, 15]",
 ];
-/// What changes no part, or only how finely it is meshed, which takes minutes at the lower end.
-const LEFT_ALONE: [&str; 2] = ["mesh.chord_tolerance_mm", "friction.points"];
+/// Parameters that are not varied: they change no part, or only the fineness of its mesh, which
+/// takes minutes at the lower end.
+const CONSTANT: [&str; 2] = ["mesh.chord_tolerance_mm", "friction.points"];
 
-/// A configuration as its assignments: one odd value, two, a tenth of all, or any share of all.
+/// Returns the assignments of a configuration: random values of one or two parameters, of a tenth,
+/// or of another share.
 fn case(seed: u64) -> Vec<String> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut set = vec![PINS[random.random_range(0..PINS.len())].to_owned()];
@@ -45,7 +48,7 @@ fn case(seed: u64) -> Vec<String> {
     }
     let fields: Vec<_> = Configuration::PARAMETERS
         .iter()
-        .filter(|p| !LEFT_ALONE.contains(&p.path().as_str()))
+        .filter(|p| !CONSTANT.contains(&p.path().as_str()))
         .filter_map(|p| Some((p, (p.ends)()?)))
         .collect();
     let mut odd = |random: &mut ChaCha8Rng, i: usize| {
@@ -84,7 +87,10 @@ fn configuration(assignments: &[String]) -> Configuration {
     c
 }
 
-/// The error of a configuration; `None` if it builds. What is no error of a configuration is one of the program.
+/// Returns the error of a configuration, or `None` if it builds.
+///
+/// # Errors
+/// An error of the program.
 fn refusal(c: &Configuration) -> Result<Option<Diagnostic>, String> {
     match feasibility::design(c.clone()).map_err(BuildError::Configuration).and_then(feasibility::build) {
         Ok(_) => Ok(None),
@@ -97,7 +103,8 @@ fn field_of(error: &Diagnostic) -> String {
     error.location().and_then(|location| location.field.clone()).unwrap_or_default()
 }
 
-/// The alternatives of a help, each as assignments; none for a help that leaves out some of its changes.
+/// Returns the alternatives of a help, each as assignments. A help that omits some of its changes
+/// has no alternatives.
 fn alternatives(error: &Diagnostic) -> Vec<Vec<String>> {
     let subject = field_of(error);
     let field = |name: &str| if name == "it" { subject.clone() } else { name.to_owned() };
@@ -114,12 +121,12 @@ fn alternatives(error: &Diagnostic) -> Vec<Vec<String>> {
     let marked = ["lower ", "raise ", "set "]
         .into_iter()
         .fold(marked, |text, verb| text.replace(&format!(", {verb}"), &format!("|{verb}")));
-    // What is not an instruction becomes an assignment that is refused, and counts as a fault.
+    // Words that are not an instruction become an invalid assignment, which counts as a fault.
     let step = |words: &str| assignment(words).unwrap_or_else(|| words.to_owned());
     marked.split('|').map(|alternative| alternative.split('&').map(step).collect()).collect()
 }
 
-/// Field and problem of an error, without numbers.
+/// Returns the field and the problem of an error, without numbers.
 fn kind(error: &Diagnostic) -> (String, String) {
     let words = error.problem().chars().filter(|c| !c.is_ascii_digit() && !".-".contains(*c)).collect();
     (field_of(error), words)

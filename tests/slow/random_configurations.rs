@@ -1,5 +1,5 @@
-//! Any configuration gives valid parts or one clear error, and none panics: random ones, and a corpus of those that
-//! once broke. `PINSWITCH_CASES=2000` makes a long run.
+//! Random configurations, and a corpus of configurations that once failed: each gives valid parts
+//! or one clear error, and none panics. `PINSWITCH_CASES=2000` makes a long run.
 
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -15,7 +15,7 @@ use pinswitch_switch::parts::{Part, printed, reference_bodies};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// What became of a configuration.
+/// The outcome of a configuration.
 pub(super) enum Outcome {
     Parts,
     Refused(String),
@@ -29,7 +29,7 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
     let (design, parts) = match parts {
         Ok(both) => both,
         Err(error) => {
-            // A part that cannot be outlined has its proposals where the set is built.
+            // Without help, the outline of a part failed; building the set adds the proposals.
             let error = match (error.help(), Design::new(configuration.clone())) {
                 (None, Ok(design)) => feasibility::build(design).err().map_or(error, Into::into),
                 _ => error,
@@ -43,7 +43,8 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
     for part in &parts {
         let mesh = match part.print_mesh(&design) {
             Ok(mesh) => mesh,
-            // What no rule knows is found while meshing, and a field is blamed all the same.
+            // No rule covers a fault that occurs while meshing, but its error must also name a
+            // field.
             Err(e) => {
                 return match feasibility::build(design) {
                     Err(BuildError::Configuration(e)) => Ok(Outcome::Refused(e.to_string())),
@@ -55,9 +56,9 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
         let bytes = stl_bytes(&mesh).map_err(|e| e.to_string())?;
         let written = read_stl(&mut Cursor::new(bytes)).map_err(|e| e.to_string())?;
         for (form, mesh) in [("mesh", &mesh), ("STL", &written.mesh)] {
-            let found = examine(mesh, &expected);
-            if !found.is_valid() {
-                return Err(format!("{} as {form}: {:?}", part.name, found.faults));
+            let examination = examine(mesh, &expected);
+            if !examination.is_valid() {
+                return Err(format!("{} as {form}: {:?}", part.name, examination.faults));
             }
         }
         if written.contrary_normals > 0 || written.mesh.triangles.len() != mesh.triangles.len() {
@@ -67,7 +68,8 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
     Ok(Outcome::Parts)
 }
 
-/// Configurations over the whole range of sizes; values hang together often enough that many can be built.
+/// Returns configurations over the whole range of sizes, with dependent values, so that many can be
+/// built.
 pub(super) fn configurations() -> impl Strategy<Value = Configuration> {
     let shape = (8.0..120.0f64, 20.0..340.0f64, 1usize..=40, 0.15..2.0f64, -4.0..-1.0f64);
     let layer = (0.5..4.0f64, 0.0..1.0f64, 4.0..30.0f64, 0.5..1.0f64, 0.0..2.0f64);
@@ -122,7 +124,8 @@ fn random_configurations_build_or_fail_clearly() {
             Ok(Outcome::Parts) => built.fetch_add(1, Ordering::Relaxed),
             Ok(Outcome::Refused(_)) => refused.fetch_add(1, Ordering::Relaxed),
             Err(fault) => {
-                // The first one printed is the one found; those after it are proptest's simplifications.
+                // The first printed configuration is the original; the others are proptest's
+                // simplifications.
                 eprintln!("{fault}\nin\n{}", to_toml(&configuration));
                 return Err(TestCaseError::fail(format!("{fault}\nin\n{}", to_toml(&configuration))));
             }
@@ -132,12 +135,12 @@ fn random_configurations_build_or_fail_clearly() {
     let (built, refused) = (built.into_inner(), refused.into_inner());
     println!("{built} built and valid, {refused} refused with one clear error");
     outcome.unwrap_or_else(|e| panic!("{e}"));
-    // A generator that only makes nonsense would prove nothing.
+    // The test proves nothing if few configurations can be built.
     assert!(built * 3 >= cases, "only {built} of {cases} could be built");
 }
 
 #[test]
-fn configurations_that_once_broke_are_fixed() {
+fn corpus_configurations_have_their_outcome() {
     let folder = crate::harness::repository("tests/corpus");
     let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     names.retain(|p| p.extension().is_some_and(|e| e == "toml"));
@@ -146,7 +149,7 @@ fn configurations_that_once_broke_are_fixed() {
     for path in names {
         let text = std::fs::read_to_string(&path).unwrap();
         let (configuration, _) = read(&text, &path.to_string_lossy()).unwrap();
-        // The first line says what is expected: "# builds" or "# refused: FIELD".
+        // The first line gives the expected outcome: "# builds" or "# refused: FIELD".
         match (text.lines().next().unwrap(), build(&configuration).unwrap()) {
             (line, Outcome::Parts) => assert!(line.starts_with("# builds"), "{}: {line}", path.display()),
             (line, Outcome::Refused(error)) => {

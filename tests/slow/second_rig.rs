@@ -36,7 +36,7 @@ fn column(path: &Path, name: &str) -> Vec<f64> {
 
 /// Returns the report of a set, and the ratio of its expected error to the error of its model on
 /// the later session.
-fn judged(name: &str) -> (Value, f64) {
+fn assess(name: &str) -> (Value, f64) {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let out = at.join("out");
@@ -78,7 +78,7 @@ fn verdicts_and_expected_errors_are_correct() {
         ("set-10", &[]),
     ];
     for (name, truth) in sets {
-        let (report, kept) = judged(name);
+        let (report, ratio) = assess(name);
         assert_eq!(named(&report), truth, "{name}");
         // In set 03 the friction of every mount differs in the later session, so a single session
         // cannot predict its error. In set 08 each fold estimates the step again, from three
@@ -89,7 +89,7 @@ fn verdicts_and_expected_errors_are_correct() {
             "set-08" => 1.5,
             _ => 1.15,
         };
-        assert!((0.8..most).contains(&kept), "{name}: {kept}");
+        assert!((0.8..most).contains(&ratio), "{name}: {ratio}");
         let verdict = report["verdict"].as_str().unwrap();
         let open = report["limits"].as_array().unwrap().iter().any(|l| l["excluded"] == false);
         match (truth.is_empty(), open) {
@@ -105,7 +105,7 @@ fn verdicts_and_expected_errors_are_correct() {
 #[test]
 fn scatter_is_a_component_of_noise() {
     let part = |name: &str, part: &str| {
-        let (report, _) = judged(name);
+        let (report, _) = assess(name);
         let parts = report["noise_parts"].as_array().unwrap().clone();
         parts.iter().find(|p| p["part"] == part).map(|p| p["size"].as_f64().unwrap())
     };

@@ -2,7 +2,7 @@
 //! model lacks. The tables are copies of rig sets (permitted by their README); each test states
 //! what its table contains.
 
-use crate::harness::{beside_repository, expect_code, repository};
+use crate::harness::{expect_code, repository, shared_file};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::Read;
@@ -67,8 +67,8 @@ fn judge(name: &str, verdict: &str, effects: &[&str], ratio: f64) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let report = calibrate(&unpack(name, folder.path()), &out);
-    let said = report["verdict"].as_str().unwrap();
-    assert!(verdict.split(" or ").any(|v| v == said), "{name}: {said} {:?}", ids(&report));
+    let output = report["verdict"].as_str().unwrap();
+    assert!(verdict.split(" or ").any(|v| v == output), "{name}: {output} {:?}", ids(&report));
     assert_eq!(ids(&report), effects, "{name}");
     let fresh = unpack(&format!("{name}-fresh"), folder.path());
     let before = fresh_error(&out.join("baseline.toml"), &fresh, folder.path());
@@ -220,8 +220,8 @@ fn unidentifiable_effects_are_listed() {
 
 /// A real machine: the data may not be copied, so the test is skipped where they are absent.
 #[test]
-fn a_bad_run_of_a_machine_is_listed() {
-    let Some(table) = beside_repository("data/real/davinci_tool4.csv") else { return };
+fn bad_machine_runs_are_listed() {
+    let Some(table) = shared_file("data/real/davinci_tool4.csv") else { return };
     let folder = tempfile::tempdir().unwrap();
     let report = calibrate(&table, &folder.path().join("out"));
     assert!(report["augmented"]["heldout_rmse_N"].as_f64().unwrap() < 2.0);
@@ -266,9 +266,9 @@ fn unknown_effects_are_not_missed() {
         ("reading-that-settles-in-its-dwell", "dwell", "forgetting", 0.01),
         ("gain-of-the-second-half", "time", "step", 0.012),
     ] {
-        let found = report_on(name);
-        assert_eq!(ids(&found), ["unattributed"], "{name}: {}", found["effects"]);
-        let effect = &found["effects"][0];
+        let report = report_on(name);
+        assert_eq!(ids(&report), ["unattributed"], "{name}: {}", report["effects"]);
+        let effect = &report["effects"][0];
         let form = &effect["form"];
         assert_eq!(
             (&effect["covariate"], &form["shape"]),
@@ -278,7 +278,7 @@ fn unknown_effects_are_not_missed() {
         let [low, high] = [0, 1].map(|end| form["parameters"]["a"]["ci95"][end].as_f64().unwrap());
         assert!(low < size && size < high, "{name}: {low} to {high}");
         // Every constant of a form that is this well determined has a finite interval.
-        let constants = found["augmented"]["parameters"].as_object().unwrap();
+        let constants = report["augmented"]["parameters"].as_object().unwrap();
         if let Some((_, constant)) = constants.iter().find(|(name, _)| name.ends_with("forgetting.t")) {
             let [low, high] = [0, 1].map(|end| constant["ci95"][end].as_f64().unwrap());
             assert!(low > 0.2 && low < 2.0 && 2.0 < high && high < 20.0, "{name}: {constant}");

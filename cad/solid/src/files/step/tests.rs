@@ -1,6 +1,6 @@
 //! STEP files, read back with a parser that shares no code with the writer.
 
-use super::step_file::{StepFile, StepSolid};
+use super::step_file::{StepError, StepFile, StepSolid};
 use super::{StepPart, step_assembly, step_part};
 use crate::pose::Pose;
 use crate::profile::{Contour, Pen, Point2, polar};
@@ -35,7 +35,7 @@ fn text(solid: &Solid) -> String {
     step_part(StepPart { name: "plate", solid })
 }
 
-fn solids(text: &str) -> Result<Vec<StepSolid>, String> {
+fn solids(text: &str) -> Result<Vec<StepSolid>, StepError> {
     StepFile::parse(text)?.solids()
 }
 
@@ -111,7 +111,7 @@ fn damaged_files_are_refused() {
         (whole.replacen("CARTESIAN_POINT('',(20.0,", "CARTESIAN_POINT('',(20.1,", 1), "line"),
     ] {
         assert_ne!(damaged, whole, "{problem}");
-        let error = solids(&damaged).unwrap_err();
+        let error = solids(&damaged).unwrap_err().to_string();
         assert!(error.contains(problem), "{problem}: {error}");
     }
 }

@@ -17,7 +17,6 @@ use pinswitch_switch::output::OutputFile;
 
 use super::calibrate::{FORM_FILE, remove_stale_form};
 use super::calibrated_curve::read_model;
-use super::failure::unconverted;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, print_json, print_text};
@@ -118,7 +117,7 @@ fn located(error: ExperimentError, arguments: &Arguments) -> Diagnostic {
         ExperimentError::CellTooSmall { .. } => arguments.rig.as_ref().map(|rig| rig.display().to_string()),
         _ => None,
     };
-    let diagnostic = unconverted(error);
+    let diagnostic = Diagnostic::from_error(error);
     match file {
         Some(file) => diagnostic.or_in_file(&file),
         None => diagnostic,

@@ -79,12 +79,6 @@ impl Serialize for Failure {
     }
 }
 
-/// Returns the diagnostic of an error whose crate does not convert it: its message is the problem, and it stays the
-/// source.
-pub(crate) fn unconverted(error: impl Error + Send + Sync + 'static) -> Diagnostic {
-    Diagnostic::from_error(error)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

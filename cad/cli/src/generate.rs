@@ -7,7 +7,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use pinswitch_diagnostic::{Diagnostic, Location};
 
 use super::calibrated_curve::calibrated_curve;
-use super::failure::unconverted;
 use super::law::LawChoice;
 use super::second_kernel::requested_kernel;
 use super::slicing;
@@ -119,7 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
-        other => Failure::failed(unconverted(other)),
+        other => Failure::failed(Diagnostic::from_error(other)),
     })?;
     let verifications = kernel.map(|kernel| built.verified(kernel)).transpose().map_err(Failure::failed)?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();

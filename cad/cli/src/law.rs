@@ -8,7 +8,6 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::Prediction;
 
 use super::Failure;
-use super::failure::unconverted;
 use super::terminal::warn;
 
 /// The friction law of the curve.
@@ -55,7 +54,7 @@ impl LawChoice {
             None => Ok(Prediction::of(design)),
             Some(law) => Prediction::by(law, design).map_err(|e| {
                 let location = Location::field("--law", law.as_str());
-                Failure::bad_input(unconverted(e).with_location(location))
+                Failure::bad_input(Diagnostic::from_error(e).with_location(location))
             }),
         }
     }

@@ -11,7 +11,6 @@ use pinswitch_switch::output::BuildError;
 use pinswitch_switch::scene::{all_plates, assembled};
 
 use super::Failure;
-use super::failure::unconverted;
 use super::source::Source;
 use crate::write::write_file;
 
@@ -72,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
     let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
-        other => Failure::failed(unconverted(other)),
+        other => Failure::failed(Diagnostic::from_error(other)),
     })?;
     let bodies = match arguments.scene {
         Scene::Assembled => assembled(&built, 0.0),

@@ -11,7 +11,6 @@ use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 
 use super::Failure;
-use super::failure::unconverted;
 use super::terminal::{to_json, warn};
 
 /// Finds the slicer of this machine. Without one, warns with what to install and returns `None`.
@@ -38,7 +37,7 @@ pub(super) fn installed() -> Result<Option<Slicer>, Failure> {
 /// Returns the failure of a slicer's error, with its exit code.
 pub(super) fn failure(error: SlicerError) -> Failure {
     let is_bad_input = error.is_bad_input();
-    let diagnostic = unconverted(error);
+    let diagnostic = Diagnostic::from_error(error);
     if is_bad_input { Failure::bad_input(diagnostic) } else { Failure::failed(diagnostic) }
 }
 

@@ -14,7 +14,6 @@ use pinswitch_switch::feasibility::{self, ParameterChange, Proposal};
 use pinswitch_switch::templates;
 
 use super::Failure;
-use super::failure::unconverted;
 use crate::write::source_of_set_with;
 
 /// Template of a command that was given no configuration.
@@ -221,7 +220,8 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
     if !bytes.starts_with(b"PK") {
         return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
     }
-    let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(unconverted(e).or_in_file(file)))?;
+    let package =
+        read_three_mf(&bytes).map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(file)))?;
     let source = source_of_set_with(Path::new(file), &bytes);
     let law = package.law;
     package.configuration.map(|text| (text, Kind::Package(source, law))).ok_or_else(|| {

@@ -11,7 +11,6 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use super::super::Failure;
 use super::FORM_FILE;
 use super::plan_match::PlanMatch;
-use crate::failure::unconverted;
 use crate::input::{read_file, read_text_file};
 use crate::terminal::warn;
 
@@ -80,7 +79,7 @@ fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<SessionPlan, Failure> 
         vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
     };
     file.plan.check(is_known).map_err(|e| {
-        let error = unconverted(e).or_in_file(&name);
+        let error = Diagnostic::from_error(e).or_in_file(&name);
         Failure::bad_input(if error.help().is_none() { error.with_help(GIVE_PLAN) } else { error })
     })?;
     Ok(SessionPlan { runs: by_contact(&runs), ..file.plan })

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 
-use crate::nearest;
+use crate::nearest::nearest;
 
 /// Most characters of a name in an error.
 const LONGEST_NAME: usize = 40;

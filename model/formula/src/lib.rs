@@ -1,27 +1,26 @@
 //! Formulas and conditions: one small expression language for user-defined effects and for
 //! constraints of sweeps.
 //!
-//! A [`Formula`] evaluates to a number, a [`Condition`] to a truth value. Both consist of:
+//! A [`Formula`] evaluates to a number, a [`Condition`] to a truth value. Both consist of these
+//! elements. Operators are listed with the highest precedence first; brackets override it:
 //!
 //! | element | spelling | notes |
 //! | --- | --- | --- |
 //! | numbers | `12`, `0.5`, `.5`, `1e-3` | finite and not negative; `-` is an operator |
 //! | names | `load_n`, `shell.width_mm` | letters, digits, `_`, and a dot before a letter; the caller resolves them |
-//! | power | `a ^ b` | from the right: `2^3^2` is `2^(3^2)`; before a sign: `-x^2` is `-(x^2)` |
+//! | power | `a ^ b` | right-associative: `2^3^2` is `2^(3^2)`; before a sign: `-x^2` is `-(x^2)` |
 //! | prefixes | `-a`, `!a` | `!` negates a truth value: `!(a < b)` |
-//! | products | `a * b`, `a / b` | from the left |
-//! | sums | `a + b`, `a - b` | from the left |
+//! | products | `a * b`, `a / b` | left-associative |
+//! | sums | `a + b`, `a - b` | left-associative |
 //! | comparisons | `<`, `<=`, `>`, `>=`, `==`, `!=` | of numbers, not chained; `==` and `!=` also of truth values |
 //! | conjunction | `a && b`, `a and b` | of truth values |
 //! | disjunction | <code>a \|\| b</code>, `a or b` | of truth values |
-//! | functions of one value | `exp ln sqrt abs sin cos tanh round floor ceil` | `round` takes halves away from zero |
+//! | functions of one value | `exp ln sqrt abs sin cos tanh round floor ceil` | `round` rounds halves away from zero |
 //! | functions of two values | `min(a, b)`, `max(a, b)` | |
 //!
-//! Operators are listed with the strongest first; brackets override them.
-//!
 //! **Types.** Comparisons and logical operators give truth values. Arithmetic and functions take a
-//! truth value as 1 or 0, so that `k*(time > 0.5)` is a step. Nothing takes a number as a truth
-//! value: `a && 1` is an error at the `1`. A formula must be a number, and a condition a truth
+//! truth value as 1 or 0, so that `k*(time > 0.5)` is a step. Logical operators do not take a number:
+//! `a && 1` is an error at the `1`. A formula must evaluate to a number, and a condition to a truth
 //! value.
 //!
 //! **Undefined values.** A value that does not exist is not a number (NaN). A comparison with it is
@@ -29,8 +28,8 @@
 //! || 1 < 2` is true without a threshold, `threshold_n > 20` and `!(threshold_n > 20)` are
 //! undecided. In arithmetic an undecided truth value counts as 0.
 //!
-//! **Bounds.** A formula has at most 1000 characters and at most 100 nested operations. Parsing and
-//! evaluation need neither more stack nor more time than these bounds allow, whatever the text.
+//! **Bounds.** A formula has at most 1000 characters and at most 100 nested operations. This bounds
+//! the stack and the time of parsing and evaluation, for any text.
 //!
 //! ```
 //! use pinswitch_formula::{Formula, NameError};
@@ -55,7 +54,7 @@
 //! # Ok::<(), pinswitch_formula::FormulaError>(())
 //! ```
 //!
-//! A condition has a truth value, or none:
+//! The truth value of a condition is `None` if it is undecided:
 //!
 //! ```
 //! use pinswitch_formula::{Condition, NameError};
@@ -74,6 +73,7 @@
 mod error;
 mod evaluate;
 mod names;
+mod nearest;
 mod parser;
 #[cfg(test)]
 mod tests;
@@ -82,7 +82,8 @@ mod tree;
 mod writer;
 
 pub use error::{FormulaError, NameError};
-pub use names::{is_reserved, nearest};
+pub use names::is_reserved;
+pub use nearest::nearest;
 pub use tree::{Condition, Formula, Function, Kind, Node, Operator, Type};
 
 /// Most characters of a formula.

@@ -1,4 +1,4 @@
-//! Names: those that the language itself uses, and the nearest of a list.
+//! Names that the language itself uses.
 
 use crate::token::KEYWORDS;
 use crate::tree::{FUNCTIONS, PAIRS};
@@ -16,12 +16,4 @@ pub fn is_reserved(name: &str) -> bool {
 /// Returns whether a name followed by a bracket is a call.
 pub(crate) fn is_function(name: &str) -> bool {
     FUNCTIONS.iter().any(|(known, _)| *known == name) || PAIRS.iter().any(|(known, _)| *known == name)
-}
-
-/// Returns the known name that is most like `name`, if one is: at most a third of the letters
-/// differ, or two.
-pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let distances = known.into_iter().map(|k| (strsim::damerau_levenshtein(k, name), k));
-    let (distance, near) = distances.min()?;
-    (distance <= (near.len().max(name.len()) / 3).max(2)).then_some(near)
 }

@@ -1,19 +1,19 @@
-//! Sweeps of many variants: built in parallel, resumed after an interruption, on one machine or on
-//! many.
+//! Sweeps: many variants of a switch, built in parallel on one or many machines, and resumed after
+//! an interruption.
 //!
 //! This crate implements sweeps, destinations and tables; `pinswitch-switch` builds and predicts a
 //! switch.
 //!
 //! Data flow: sweep file → axes → variants → sets (equal parts once) → rows → table, plots, page.
 //!
-//! | type | what it is |
+//! | type | content |
 //! | --- | --- |
 //! | [`SweepSource`] | the texts of a sweep: its file, its base configuration and its rows |
 //! | [`Sweep`] | a valid sweep: a base configuration, [axes](SweepAxis) and [constraints](Constraint) |
 //! | [`Variants`] | the variants of a sweep, each computed on request |
 //! | [`Shard`] | a contiguous block of the variants, for one machine |
 //! | [`Destination`] | the folder or object store of a batch |
-//! | [`VariantOutcome`] | what became of a variant: made, [refused](Refusal) or failed |
+//! | [`VariantOutcome`] | the outcome of a variant: made, [refused](Refusal) or failed |
 //! | [`Tally`] | totals of a batch or shard |
 //!
 //! ```
@@ -44,7 +44,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`run`] makes them at a [`Destination`]; `cad/examples/sweep.rs` is a complete program.
+//! [`run`] makes the variants at a [`Destination`]; `cad/examples/sweep.rs` is a complete program.
 //! `cad/doc/batch.md` describes the files of a batch, how it is resumed and distributed, and what
 //! it costs.
 //!

@@ -1,7 +1,8 @@
-//! The command line of pinswitch: one file per subcommand, with input and output at its edges.
+//! The command line of pinswitch: one file per subcommand.
 //!
-//! The crates that `pinswitch` re-exports do the work. Each command returns a [`Failure`] or has printed its result;
-//! `terminal` is the only place that writes to the terminal, and `write` the only one that writes files.
+//! A command reads its options and files, calls the crates that `pinswitch` re-exports, and prints
+//! its result or returns a [`Failure`]. Only `terminal` writes to the terminal, and only `write`
+//! writes files.
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 

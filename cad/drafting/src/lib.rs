@@ -1,8 +1,9 @@
 //! Technical drawings of solids: views, sections and dimensions on sheets of paper, written as SVG, PDF and DXF.
 //!
-//! [`PartDrawing`] draws the sheet of a part from its exact [`Solid`](pinswitch_solid::solid::Solid): a front view along its
-//! axis, a view from above, a section, enlarged details, and every dimension once. It chooses paper, scale and cutting plane.
-//! [`Fits`] adds tolerances and purposes, which a solid does not show.
+//! [`PartDrawing`] draws the sheet of a part from its exact
+//! [`Solid`](pinswitch_solid::solid::Solid): a front view along its axis, a view from above, a
+//! section, enlarged details, and every dimension once. It selects paper, scale and cutting plane.
+//! [`Fits`] adds tolerances and purposes, which a solid does not contain.
 //!
 //! ```
 //! use pinswitch_drafting::{Fit, Paper, PartDrawing, RoundFit, TitleBlock, collisions, drawing_svg};
@@ -29,7 +30,7 @@
 //! };
 //! let sheet = drawing.sheet(&title, Paper::A4).ok_or("the plate fits on no paper")?;
 //!
-//! // Every dimension found free space.
+//! // No dimension overlaps anything.
 //! assert!(collisions(&sheet).is_empty());
 //! let text = |key: &str| sheet.annotations.iter().find(|a| a.key == key).map(|a| a.text.as_str());
 //! assert_eq!(text("hole 1"), Some("\u{d8}9 H13 through, for M8"));
@@ -43,24 +44,28 @@
 //!
 //! # Sheets
 //!
-//! A [`Draft`] is a sheet under construction: lines, arcs and texts on [`Layer`]s, in groups. [`Linear`], [`Angular`],
-//! [`Callout`] and [`Label`] are annotations. Each has many candidate positions and takes the cheapest one that touches
-//! nothing. [`collisions`] tests a finished [`Sheet`].
+//! A [`Draft`] is an unfinished sheet: lines, arcs and texts on [`Layer`]s, in groups. [`Linear`],
+//! [`Angular`], [`Callout`] and [`Label`] are annotations. An annotation has many candidate
+//! positions, and gets the one of least cost at which it overlaps nothing. [`collisions`] tests a
+//! finished [`Sheet`].
 //!
-//! All lengths are millimetres on paper, with the origin in the lower left corner of the sheet and y up. A [`View`] has the
-//! scale of its lines. One list of sheets becomes `drawing.svg`, `drawing.pdf` and `drawing.dxf`.
+//! All lengths are millimetres on paper. The origin is the lower left corner of the sheet, and y
+//! points up. A [`View`] has the scale of its lines. [`drawing_svg`], [`drawing_pdf`] and
+//! [`drawing_dxf`] write a list of sheets to one file.
 //!
 //! # Views
 //!
-//! [`view`] has the views themselves, for sheets of other kinds, such as an assembly: front views of one body or of several,
-//! side views with hidden lines, cut faces with hatching, and the mark of a section.
+//! [`view`] contains the views, for other kinds of sheets, such as that of an assembly: front views
+//! of one or several bodies, side views with hidden lines, cut faces with hatching, and the mark of
+//! a section.
 //!
 //! # Limits
 //!
-//! Solids are stacks of contours of lines and arcs. These features have dimensions: radii and angles about the axis (the
-//! origin), stepped, blind and hexagonal bores, round bosses, straight and curved slots, half-round grooves and ribs, rounded
-//! corners, ring segments, ends of sectors, patterns of pockets, corners of outlines, and heights. An outline of free curves
-//! has views, but no dimensions.
+//! Solids consist of contours of lines and arcs at heights. These features get dimensions: radii and
+//! angles about the axis (the origin), stepped, blind and hexagonal bores, round bosses, straight
+//! and curved slots, half-round grooves and ribs, rounded corners, ring segments, ends of sectors,
+//! patterns of pockets, corners of outlines, and heights. An outline of other curves gets views, but
+//! no dimensions.
 
 #![warn(clippy::disallowed_methods)]
 

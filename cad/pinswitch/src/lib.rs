@@ -1,4 +1,4 @@
-//! pinswitch generates printable parts of a friction switch from a layout of pins, predicts their friction curve, and
+//! pinswitch generates the printable parts of a friction switch, predicts its friction curve, and
 //! calibrates the prediction with measured data.
 //!
 //! A friction switch is a segment of a pulley with steel pins in a silicone layer on a rigid shell. At low load a coated
@@ -13,23 +13,23 @@
 //! | [`calibration`] | tables of measured plateaus, segmentation of logs, effects, fits, verdicts |
 //! | [`simulation`] | a simulated rig: tables and logs with chosen effects, the power of a plan |
 //! | [`formula`] | the formula language of user-defined effects and sweep constraints |
-//! | [`solid`] | exact solids of lines and arcs, meshes, their examination, STL, 3MF, STEP and DXF |
-//! | [`drafting`] | technical drawings on paper as SVG, PDF and DXF |
+//! | [`solid`] | exact solids of lines and arcs, meshes, their examination, and their files: STL, 3MF, GLB, STEP and DXF |
+//! | [`drafting`] | technical drawings of solids, as SVG, PDF and DXF |
 //! | [`switch`] | configurations, rules, parts, sets and their documents, the search for designs |
 //! | [`batch`] | sweeps of many switches, made in parallel and resumed after an interruption |
 //! | [`slicer`] | print time and filament from an installed slicer |
 //! | [`report`] | figures of curves, layouts and calibrations as SVG and HTML |
 //! | [`diagnostic`] | errors with a location, a problem and a help |
 //!
-//! A configuration becomes a design, the design parts, and the parts files. Parameters that a configuration leaves out have
-//! defaults, each with a reason:
+//! A configuration becomes a design, the design becomes parts, and the parts become files. A
+//! parameter that the configuration does not set has its default:
 //!
 //! ```
 //! use pinswitch::friction::{Transition, PredictionStatus};
 //! use pinswitch::solid::validity::{Expectation, examine};
 //! use pinswitch::switch::{built::Built, config, design::Design, formats, prediction::Prediction, set::Set};
 //!
-//! // Four pins, 11.9 degrees apart, in a shell whose wall is a little thicker than usual.
+//! // Four pins, 11.9 degrees apart, in a shell with a thinner wall than the default.
 //! let text = "[layout]\npins = [5, 7, 9, 11]\n[shell]\nwall_mm = 6.5\n[friction]\npoints = 21\n";
 //! let (configuration, _) = config::read(text, "four.toml")?;
 //! let design = Design::new(configuration)?; // or one error: field, value, bound and remedy
@@ -53,7 +53,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `cad/examples` in the repository has complete programs, and `CONTRIBUTING.md` a map of the crates.
+//! `cad/examples` in the repository contains complete programs; `CONTRIBUTING.md` describes the
+//! crates.
 
 pub use pinswitch_batch as batch;
 pub use pinswitch_calibration as calibration;

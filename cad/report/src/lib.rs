@@ -1,7 +1,7 @@
 //! Figures of friction curves, layouts and calibrations, and the HTML pages of a calibration.
 //!
 //! The crate does no input or output and uses no solids: each function returns the text of an SVG
-//! or HTML file. Figures are the same bytes on every platform.
+//! or HTML file. A figure has the same bytes on every platform.
 //!
 //! | function | result |
 //! | --- | --- |
@@ -14,7 +14,7 @@
 //! | [`published_plot`], [`published_page`] | figure and page of the calibration with the paper's seven maxima |
 //! | [`run_sheet`] | the runs of a proposed experiment, to print |
 //!
-//! [`html`] has the parts of pages that other crates share: templates, escapes and the
+//! [`html`] contains the parts of pages that other crates share: templates, escapes and the
 //! Content-Security-Policy.
 //!
 //! # Examples
@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Layouts of a search, with the front of the target region:
+//! Layouts of a design search, with the Pareto front and the target region:
 //!
 //! ```
 //! use pinswitch_friction::layout_search::LayoutCandidate;

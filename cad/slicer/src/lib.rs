@@ -1,10 +1,10 @@
 //! Print time and filament of a switch, estimated with an installed `PrusaSlicer`
 //! (cad/doc/slicing.md).
 //!
-//! [`find`] locates the program, [`Slicer::prepared`] lets it write its settings, and
-//! [`PreparedSlicer::slice`] returns a [`PrintEstimate`] for each file. [`Slicing`] contains the
-//! estimates of a set. G-code is written to a temporary folder and deleted: it contains time
-//! stamps, and is not meant for a particular printer.
+//! [`find`] locates the program. [`Slicer::prepared`] runs it to write its settings, and
+//! [`PreparedSlicer::slice`] runs it to return a [`PrintEstimate`] for each file. [`Slicing`]
+//! contains the estimates of a set. G-code is written to a temporary folder and deleted, because it
+//! contains time stamps and is not suitable for a particular printer.
 //!
 //! ```
 //! use pinswitch_slicer::{GcodeError, PrintEstimate};

@@ -2,7 +2,7 @@
 //! any solid.
 //!
 //! The crate does not depend on switches, friction or configurations, and does no input or output:
-//! it computes meshes, bytes and findings from numbers and text.
+//! it computes meshes, bytes and faults from numbers and text.
 //!
 //! | module | content |
 //! | --- | --- |

@@ -1,18 +1,18 @@
 //! Calibration of the friction model with measured data.
 //!
-//! The crate converts raw logs to plateau tables, selects the effects that the paper's model lacks
-//! on a table, and writes a model that predicts readings. It knows nothing about simulated rigs,
-//! parts, files or plots.
+//! The crate converts raw logs to plateau tables, selects the effects that a table shows and the
+//! paper's model lacks, and writes a model that predicts readings. It does not depend on simulated
+//! rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
 //!
 //! Each step can be used alone:
 //!
 //! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
 //! 2. [`table`] reads and checks a plateau table.
-//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`inference`]) and returns
-//!    a [`Report`] with the held-out errors before and after.
-//! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a printed
-//!    part without the effects of the rig.
-//! 5. [`experiment`] proposes the runs that answer most of the open questions.
+//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`inference`]) and
+//!    returns a [`Report`] with the held-out errors of the baseline and of the selected model.
+//! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a
+//!    printed part without the effects of the rig.
+//! 5. [`experiment`] proposes the runs that answer most open questions of a report.
 //!
 //! # Model
 //!
@@ -26,10 +26,10 @@
 //! ```
 //!
 //! `d` is -1 for the eccentric and +1 for the concentric direction, `a` the wrap angle in radians,
-//! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` for `n` pins, `S`
-//! the silicone's share of the friction, `F_half` the threshold and `s` the steepness
-//! (`model/doc/friction-laws.md`). A reading is this tension after the effects of the model, plus
-//! hierarchical noise ([`inference::Noise`]).
+//! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` the weight for `n`
+//! pins, `S` the share of the contact that has switched from pins to silicone, `F_half` the half
+//! load and `s` the steepness (`model/doc/friction-laws.md`). A reading is this tension with the
+//! effects of the model, plus noise with random effects ([`inference::Noise`]).
 //!
 //! # Examples
 //!
@@ -54,8 +54,8 @@
 //! assert_eq!(error.location().and_then(|location| location.line), Some(1));
 //! ```
 //!
-//! Readers take text, bytes or [`std::io::Read`], and writers return text: the crate opens no
-//! files, reads no clock and no environment. `model/doc/file-formats.md` describes the files,
+//! Readers take text, bytes or [`std::io::Read`], and writers return text: the crate does not open
+//! files, and does not read clocks or environment variables. `model/doc/file-formats.md` describes the files,
 //! `model/doc/effect-catalogue.md` the effects and `model/doc/naming-an-effect.md` their selection.
 
 #![warn(clippy::disallowed_methods)]

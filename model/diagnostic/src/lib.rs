@@ -1,8 +1,8 @@
 //! Diagnostics: what is wrong, where, and what to do about it.
 //!
-//! Every reader of the workspace reports a [`Diagnostic`]: a [`Location`], a problem, a remedy and the errors that caused
-//! it. A front end decides how to show one: [`Diagnostic::render`] prints it for a person in two parts, with the line of
-//! the file where there is one, and [`serde`] writes it as JSON for a program.
+//! Every reader of the workspace reports errors as a [`Diagnostic`]: a [`Location`], a problem, a help text and the errors
+//! that caused it. A front end decides how to show it: [`Diagnostic::render`] formats it for a person in two parts, with
+//! the line of the file if there is one, and [`serde`] writes it as JSON for a program.
 //!
 //! ```
 //! use pinswitch_diagnostic::{Diagnostic, Location};
@@ -21,8 +21,8 @@
 //! );
 //! ```
 //!
-//! Text from strangers' files may contain control characters that move a terminal's cursor or change its title.
-//! [`neutral`] is the boundary that all text for people passes.
+//! Text from untrusted files may contain control characters that move the cursor of a terminal or change its title.
+//! [`neutral`] makes them visible. All text that a person sees passes through it.
 
 mod diagnostic;
 mod excerpt;

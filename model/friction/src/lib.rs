@@ -19,12 +19,12 @@
 //! - [`Direction`]: eccentric (load released) or concentric (load pulled).
 //!
 //! [`finger`] computes the benefit of a switch in a tendon-driven finger, and [`layout_search`]
-//! finds pins for a wanted curve. [`physics`] is the model behind the default law, [`published`]
+//! finds pins for a target curve. [`physics`] is the model behind the default law, [`published`]
 //! has the numbers of the paper, and [`validation`] compares every law with the published maxima.
 //!
 //! # Equations
 //!
-//! All laws share the capstan's relation between load and tension:
+//! All laws relate load and tension by the capstan equation:
 //!
 //! ```text
 //! T_e = F exp(-x_e),    T_c = F exp(x_c),    D = (T_c - T_e)/2
@@ -37,7 +37,7 @@
 //! | `x_e`, `x_c` | friction exponent of that direction; `mu a` on one uniform material | 1 |
 //! | `D` | friction | N |
 //!
-//! The default law computes the exponents from the turns of the tendon at the pins and on the
+//! The default law computes the exponents from the turn angles of the tendon at the pins and on the
 //! silicone:
 //!
 //! ```text
@@ -46,8 +46,8 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | `theta_i`, `T_i` | turn and local tension at pin `i` | rad, N |
-//! | `theta_s` | turn on the silicone | rad |
+//! | `theta_i`, `T_i` | turn angle and local tension at pin `i` | rad, N |
+//! | `theta_s` | turn angle on the silicone | rad |
 //! | `a` | wrap angle | rad |
 //! | `kappa` | ploughing coefficient of the coating: `mu = kappa sqrt(N)` at a force `N` | N^-0.5 |
 //! | `mu_s` | friction coefficient of the tendon on silicone | 1 |
@@ -90,8 +90,8 @@
 //! Angles are in radians and forces in newtons, unless a name has another unit. Every error
 //! converts into a [`Diagnostic`](pinswitch_diagnostic::Diagnostic).
 //!
-//! Architecture invariant: the crate knows contacts and forces, but not measured tables, effects,
-//! parts or files. It reads no files, clocks or environment variables. With the feature `parallel`,
+//! Architecture invariant: the crate has contacts and forces, but does not depend on measured
+//! tables, effects, parts or files. It does not read files, clocks or environment variables. With the feature `parallel`,
 //! [`layout_search`] uses all processors and gives the same results. `model/doc/friction-laws.md`
 //! and `model/doc/physics.md` explain the laws with their sources.
 

@@ -1,7 +1,7 @@
 //! A synthetic friction rig: plateau tables and raw logs with known effects and noise.
 //!
-//! It plans experiments (which effects could a session detect?), tests the calibrator, and runs a
-//! study of the calibrator on rigs whose true effects are known.
+//! The crate serves three purposes: to plan experiments (which effects could a session detect?), to
+//! test the calibrator, and to study its error rates on rigs with known effects.
 //!
 //! # Vocabulary
 //!
@@ -15,13 +15,13 @@
 //!   offset.
 //! - [`RawRun`]: raw logs of a session, with [`Faults`].
 //! - [`power()`]: the detection rate of each effect with a plan.
-//! - [`Case`], [`Truth`], [`Group`]: kinds of rig in the study, with what is true of them.
-//!   [`run_case`] calibrates one rig, and [`Study`] collects the outcomes. [`FormStudy`] and
-//!   [`ExperimentStudy`] are further chapters.
+//! - [`Case`], [`Truth`], [`Group`]: kinds of rig in the study, with their true effects.
+//!   [`run_case`] calibrates one rig, and [`Study`] collects the outcomes. [`FormStudy`] does the
+//!   same for discovered effects, and [`ExperimentStudy`] for proposed sessions.
 //!
 //! # Equation
 //!
-//! A reading without noise follows from eq. 4 of the paper, with the effects of the plan in its
+//! A reading without noise follows from eq. 4 of the paper. The effects of the plan change its
 //! terms:
 //!
 //! ```text
@@ -78,8 +78,8 @@
 //! The same plan makes the same bytes on every machine. `model/doc/calibration.md` reports the
 //! results of the study.
 //!
-//! Architecture invariant: the crate has its own formulas of the effects and uses none of the
-//! fitter, so that the study also tests effects whose true form differs from the fitted one.
+//! Architecture invariant: the crate has its own formulas of the effects and does not use those of
+//! the fit, so that the study also tests effects whose true form differs from the fitted one.
 
 #[cfg(test)]
 mod calibrator_tests;

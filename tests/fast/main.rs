@@ -35,6 +35,7 @@ mod segment_raw;
 mod several_sessions;
 mod slicing;
 mod solid_files;
+mod structure;
 mod table_columns;
 mod terminal;
 mod verification;

@@ -160,7 +160,7 @@ fn fitted_form(form: &FormReport) -> String {
         form.acts_on,
         constants.join(", "),
         100.0 * form.explains,
-        if form.in_model { "included in the model" } else { "the model keeps the smooth correction" }
+        if form.in_model { "included in the model" } else { "the model keeps the shapes" }
     )
 }
 

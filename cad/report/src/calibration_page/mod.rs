@@ -157,7 +157,7 @@ fn detected(report: &Report) -> String {
         let side = match effect.side.as_deref() {
             Some("switch") => "It is an effect of the switch and part of predicted curves.",
             Some(_) => "It is an effect of the rig and not part of the curves of a printed part.",
-            None => "No named effect explains it: the model has a smooth correction.",
+            None => "No named effect explains it: the model has a shape in its place.",
         };
         let _ = write!(
             html,
@@ -190,7 +190,7 @@ fn detected(report: &Report) -> String {
 /// Describes the discovered effect of a structure, and its confirmation test.
 fn discovered(form: &FormReport) -> String {
     let mut html = format!(
-        "<p>Discovered effect: <b>{}</b> on {}: <code>{}</code>. It explains {:.0} % of the smooth correction; held-out error with \
+        "<p>Discovered effect: <b>{}</b> on {}: <code>{}</code>. It explains {:.0} % of the shapes; held-out error with \
          it instead of the correction: {}.</p>{}",
         escape(&form.words()),
         escape(&form.acts_on),

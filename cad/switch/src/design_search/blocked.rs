@@ -119,9 +119,7 @@ pub(super) fn blocked(
             of_pins(pins, "is missed by less")
         }
         (Some(first), _) => format!("{}; no single parameter reaches the request", first.forbidden_by),
-        (None, _) => {
-            "the physics: no parameter that the program knows comes nearer; relax a target".to_owned()
-        }
+        (None, _) => "the physics: no varied parameter reduces the miss; relax a target".to_owned(),
     };
     let together = if moves.first().is_some_and(|m| m.meets) { Vec::new() } else { together(trial, nearest) };
     Blocked { missed, limit, moves, together }
@@ -218,9 +216,7 @@ fn best_move(
         candidates.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
     let forbidden_by = forbidden(trial.request, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
-        .unwrap_or_else(|| {
-            "the search, which stopped near to it: request again with more --starts".to_owned()
-        });
+        .unwrap_or_else(|| "the search stopped early: increase --starts".to_owned());
     let missed = all_missed(trial, &moved);
     Some(Move { parameter, from, to, meets: miss == 0.0, missed, miss, forbidden_by })
 }
@@ -252,10 +248,10 @@ fn forbidden(request: &Request, space: &Space, parameter: Parameter, from: f64, 
     let list = match parameter {
         Parameter::PinDiameterMm => &request.materials.pin_diameter_mm,
         Parameter::HardnessShoreA => &request.materials.hardness_shore_a,
-        _ => return Some(format!("{name} is held at {from:.2}: it is not in vary")),
+        _ => return Some(format!("{name} is fixed at {from:.2}, because it is not in vary")),
     };
     Some(if list.is_empty() {
-        format!("{name} is held at {from:.2}: it is not in vary")
+        format!("{name} is fixed at {from:.2}, because it is not in vary")
     } else {
         format!("materials.{name} = {list:?}")
     })

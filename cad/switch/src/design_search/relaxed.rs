@@ -49,7 +49,7 @@ fn refusal(original: &Trial<'_>, space: &Space) -> (Configuration, String) {
     let Some(pins) = patterns.first() else {
         let (fewest, most) = original.request.limits.pins.unwrap_or_default();
         let why = format!(
-            "limits.pins = {fewest}..{most}: fewer grooves lie under the tendon; request for fewer pins (--pins) or raise \
+            "limits.pins = {fewest}..{most}: fewer grooves are under the tendon; request fewer pins (--pins) or raise \
              layout.wrap_angle_deg"
         );
         return (space.materials[0].clone(), why);
@@ -58,7 +58,7 @@ fn refusal(original: &Trial<'_>, space: &Space) -> (Configuration, String) {
     let why = match original.broken_limit(&c) {
         Some(limit) => limit,
         None if original.part(&c).is_none() => format!(
-            "layout.pins = {:?}, which vary.pattern = false (--keep-pins) keeps: the tendon must lie on all of its pins, at \
+            "layout.pins = {:?}, which vary.pattern = false (--keep-pins) keeps: the tendon must touch all of its pins, at \
              least 1; let pins vary, or give others",
             c.layout.pins
         ),

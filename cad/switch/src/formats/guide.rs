@@ -259,12 +259,12 @@ mod tests {
     #[test]
     fn the_tendon_is_over_pins_within_the_wrap() {
         let text = guide("[layout]\npins = [1, 2, 15]\n");
-        assert!(text.contains("**warning**: 3 pins lie outside the wrap of 63.89 deg"), "{text}");
+        assert!(text.contains("**warning**: 3 pins are outside the wrap of 63.89 deg"), "{text}");
         assert!(text.contains("over the silicone layer. It touches"), "{text}");
         assert!(!text.contains("over the pins") && !text.contains("touches only its pins"), "{text}");
         assert!(text.contains("raise layout.wrap_angle_deg to 83.5"), "{text}");
         let one = guide("[layout]\npins = [8, 15]\n");
-        assert!(one.contains("1 pin lies outside the wrap") && one.contains("over the pins"), "{one}");
+        assert!(one.contains("1 pin is outside the wrap") && one.contains("over the pins"), "{one}");
         assert!(!guide("[layout]\npins = [5, 8, 11]\n").contains("outside the wrap"));
     }
 

@@ -32,7 +32,7 @@ impl ChangeReport {
         let than = self
             .latest
             .map_or_else(String::new, |latest| format!(" ({:.3} instead of {latest:.3})", value * latest));
-        let name = if self.constant == "F_half" { "the threshold of every layout" } else { &self.constant };
+        let name = if self.constant == "F_half" { "the half load of every layout" } else { &self.constant };
         format!(
             "{name} differs by {} % [{}, {}] in {} {}{than} from that in {}",
             percent(*value),

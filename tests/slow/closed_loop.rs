@@ -248,7 +248,7 @@ fn requested_effects_are_checked() {
     for (options, expected) in [
         ("--effect gravity=1", "use one of"),
         ("--effect run_in=0.1", "run_in needs 3 values"),
-        ("--effect adhesion=much", "values are numbers"),
+        ("--effect adhesion=much", "a value is not a number"),
     ] {
         let output = pinswitch(2, folder.path(), &format!("simulate {options} --out rig"));
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -99,7 +99,7 @@ def figures(folder):
     def add(name, values, command, text, documents):
         made[name] = {"values": values, "command": command, "text": text.format(**values), "documents": documents}
 
-    for variants, (radii, widths) in {100: (10, 10), 1000: (50, 20)}.items():
+    for variants, (radii, widths) in {100: (10, 10), 1000: (50, 20), 10000: (100, 100)}.items():
         name = sweep(folder, f"different-{variants}.toml", DIFFERENT % (radii, widths))
         wall, used, memory = run(folder, "batch", name, "--out", f"different-{variants}")
         values = {"variants": variants, "cpu_s": used, "per_variant_ms": 1e3 * used / variants, "memory_mb": memory, "wall_s": wall}
@@ -107,7 +107,16 @@ def figures(folder):
         text = "| {variants:,} | {cpu_s:.1f} s | {per_variant_ms:.1f} ms | {per_second:.0f} | {memory_mb:.0f} MB | {wall_s:.1f} s |"
         add(f"batch of {variants}", values, f"pinswitch batch {name}", text, ["cad/doc/batch.md"])
     add("batch in README", made["batch of 1000"]["values"], "pinswitch batch different-1000.toml",
-        "1,000 variants take {wall_s:.1f} s on two processors", ["README.md"])
+        "1,000 variants take {wall_s:.0f} s on two processors", ["README.md"])
+    hours = made["batch of 10000"]["values"]["per_variant_ms"] * 1e6 / 3.6e6
+    add("million variants", {"hours": hours, "minutes": 0.6 * hours}, "from the batch of 10,000",
+        "**A million variants** like these take {hours:.0f} hours of one processor", ["cad/doc/batch.md"])
+    add("shard", {"minutes": 0.6 * hours}, "from the batch of 10,000",
+        "Each of 100 shards of 10,000 variants takes {minutes:.0f} minutes of one processor", ["cad/doc/batch.md"])
+    meshes = [os.path.join(at, name) for at, _, names in os.walk(os.path.join(folder, "different-1000", "variants")) for name in names if name.endswith(".stl")]
+    wall, _, _ = run(folder, "check", *meshes)
+    add("check", {"meshes": len(meshes), "wall_s": wall}, "pinswitch check different-1000/variants/*/*.stl",
+        "reports all {meshes:,} meshes of the 1,000 variants as valid, in {wall_s:.0f} s on two processors", ["cad/doc/batch.md"])
     own = cpu(folder, "batch", sweep(folder, "own.toml", OWN_CURVES), "--out", "own-figure", fresh="own-figure")
     shared = cpu(folder, "batch", sweep(folder, "shared.toml", SHARED_CURVE), "--out", "shared-figure", fresh="shared-figure")
     add("curves of a batch", {"own_ms": 1e3 * own / 40, "shared_ms": 1e3 * shared / 40}, "pinswitch batch own.toml; pinswitch batch shared.toml",
@@ -120,6 +129,9 @@ def figures(folder):
     wall, used, _ = run(folder, "design", *arguments, "--out", "designs")
     add("design", {"wall_s": wall, "cpu_s": used}, "pinswitch design " + " ".join(arguments),
         "takes {wall_s:.0f} s on two processors, {cpu_s:.0f} s of processor time", ["cad/doc/design.md"])
+    refused = cpu(folder, "generate", "three-double", "--set", "segment.grooves=40", "--fix", "--out", "fixed", fresh="fixed")
+    add("fix", {"more_ms": 1e3 * (refused - one_set)}, "pinswitch generate three-double --set segment.grooves=40 --fix",
+        "The search takes {more_ms:.0f} ms of processor time for a configuration with overlapping grooves", ["cad/doc/dimensions.md"])
     return made
 
 

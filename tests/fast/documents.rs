@@ -128,3 +128,25 @@ fn contributing_maps_every_crate() {
     members.sort();
     assert_eq!(mapped, members);
 }
+
+/// Figures age unseen where they are typed: every sentence of the ledger of measurements is in the
+/// documents that it names.
+#[test]
+fn measured_figures_are_current() {
+    let ledger = std::fs::read_to_string(repository("cad/benches/ledger.json")).unwrap();
+    let ledger: serde_json::Value = serde_json::from_str(&ledger).unwrap();
+    let figures = ledger["figures"].as_object().unwrap();
+    assert!(figures.len() > 5);
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for (name, figure) in figures {
+        let sentence = words(figure["text"].as_str().unwrap());
+        for document in figure["documents"].as_array().unwrap() {
+            let document = document.as_str().unwrap();
+            let text = std::fs::read_to_string(repository(document)).unwrap();
+            assert!(
+                words(&text).contains(&sentence),
+                "{document} does not contain the figure \"{name}\": {sentence:?}; see cad/benches/ledger.py"
+            );
+        }
+    }
+}

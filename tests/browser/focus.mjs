@@ -46,7 +46,7 @@ export async function focusAfterFixes(visit, site) {
   await visit.settled();
   await visit.drop('a.png', 'PNG');
   await visit.page.waitForSelector('#notice .tiny', { visible: true });
-  await focusMoves(visit, 'closing a notice', '#notice .tiny', /^apart$/);
+  await focusMoves(visit, 'closing a notice', '#notice .tiny', /^explode$/);
   await visit.type('#f-silicone-thickness_mm', '3');
   await visit.click('#only-changed');
   await focusMoves(visit, 'resetting a field that is then hidden', '#f-silicone-thickness_mm-field [aria-label^="Reset"]', /^(f-layout-pins|Reset pins in)$/);
@@ -75,8 +75,8 @@ export async function focusAfterSearch(visit, site, { table }) {
   await focusMoves(visit, 'stopping a search', '#stop', /^(designs|search)$/);
   await visit.drop('plateaus.csv', table);
   await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
-  await focusMoves(visit, 'using a model', '#use-model', /^drop-model$/);
+  await focusMoves(visit, 'using a model', '#use-model', /^remove-model$/);
   await visit.settled();
-  await focusMoves(visit, 'going back to the published constants', '#remove-model', /^take-model$/);
+  await focusMoves(visit, 'going back to the published constants', '#remove-model', /^use-model$/);
   await visit.settled();
 }

@@ -25,7 +25,7 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.focus('#explode');
   await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
   const verdict = await visit.text('#verdict');
-  visit.findings.check('a table gets a verdict', /^plateaus\.csv: the published model lacks an effect/.test(verdict) && /Held-out error .* before/.test(verdict), verdict);
+  visit.findings.check('a table gets a verdict', /^plateaus\.csv: the published model lacks an effect/.test(verdict) && /Held-out error: .* before/.test(verdict), verdict);
   visit.findings.check('it names the effect once, in words', verdict.split('coating_ploughing').length === 2 && /pins plough the coating/.test(verdict) && !/attributed/i.test(verdict), verdict);
   await visit.check('its curve is shown next to the design', () => /with your model/.test(document.querySelector('#legend').textContent));
   await visit.click('#use-model');

@@ -1,0 +1,204 @@
+//! Expected error of a new session.
+//!
+//! Each series is predicted from the others. A hypothesis counts by its probability without that
+//! series, so that the choice of effects is held out too. New mounts and what a session draws again
+//! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
+//! sessions.
+
+use nalgebra::DVector;
+
+use crate::design::Component;
+use crate::fit::Fit;
+use crate::hypothesis::Member;
+use crate::leave_out::Linearised;
+use crate::problem::Problem;
+use crate::quadrature::log_sum_exp;
+use crate::random::Random;
+
+/// Weight below which a row is an outlier, which a new session is not judged by.
+const OUTLIER_WEIGHT: f64 = 0.12;
+/// Most hypotheses that are averaged.
+const MOST_HYPOTHESES: usize = 12;
+/// Simulated sessions, and resamples of the series.
+const SIMULATIONS: usize = 300;
+
+/// Root mean square error expected on a new session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedError {
+    /// Expected value.
+    pub value: f64,
+    /// 90 % interval.
+    pub interval: [f64; 2],
+}
+
+/// Returns the expected error of the average over a window of fits with these probabilities; `None`
+/// if no fit can be linearised.
+pub(crate) fn expected_error(
+    problem: &Problem,
+    window: &[Fit],
+    probabilities: &[f64],
+    seed: u64,
+) -> Option<ExpectedError> {
+    let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
+    let mut parts = Vec::new();
+    for (fit, probability) in fits {
+        let Some(linearised) = Linearised::new(problem, fit) else { continue };
+        if let Some(left_out) = linearised.leave_series_out() {
+            parts.push((libm::log(*probability), fit, linearised, left_out));
+        }
+    }
+    let mut residuals = vec![0.0; problem.len()];
+    for (series, range) in problem.ranges.iter().enumerate() {
+        let logs: Vec<f64> = parts.iter().map(|(p, _, _, out)| p - out.log_predictive[series]).collect();
+        let total = log_sum_exp(&logs);
+        for ((_, _, _, out), log) in parts.iter().zip(&logs) {
+            let share = libm::exp(log - total);
+            range.clone().for_each(|row| residuals[row] += share * out.residuals[row]);
+        }
+    }
+    let (_, fit, linearised, _) = parts.first()?;
+    let sound: Vec<usize> =
+        (0..problem.len()).filter(|row| fit.mode.weights[*row] > OUTLIER_WEIGHT).collect();
+    let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
+    for row in &sound {
+        let (sum, count) = &mut squares[problem.rows.series[*row]];
+        *sum += residuals[*row].powi(2);
+        *count += 1.0;
+    }
+    squares.retain(|(_, count)| *count > 0.0);
+    let mut random = Random::new(seed);
+    let session = session_variance(problem, fit, linearised, &sound);
+    let simulated = Simulation::new(problem, fit, linearised).run(&mut random, &sound);
+    let added = simulated.mount_variance + session;
+    let mut errors: Vec<f64> = (0..SIMULATIONS)
+        .map(|i| {
+            let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
+            let square = mean_square(drawn) + added;
+            (square * simulated.relative_squares[i]).sqrt()
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    let quantile = |share: usize| errors[(share * (SIMULATIONS - 1)) / 100];
+    let value = (mean_square(squares.iter().copied()) + added).sqrt();
+    Some(ExpectedError { value, interval: [quantile(5), quantile(95)] })
+}
+
+fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (sum, count) = series.fold((0.0, 0.0), |(s, n), (square, rows)| (s + square, n + rows));
+    sum / f64::max(count, 1.0)
+}
+
+/// Returns the mean square of what a session draws again: effects and kernels of its time, about
+/// their mean over the session, which predictions use.
+fn session_variance(problem: &Problem, fit: &Fit, linearised: &Linearised, sound: &[usize]) -> f64 {
+    let effects = fit.hypothesis.sized(&fit.mode.sizes);
+    let forward = &problem.rows.forward;
+    let at = forward.readings(&fit.mode.constants, &effects);
+    let mean = forward.session_mean(&fit.mode.constants, &effects);
+    let mut deviation: Vec<f64> = at.iter().zip(&mean).map(|(a, b)| a - b).collect();
+    for member in fit.hypothesis.members() {
+        let Member::Kernel(kernel) = member else { continue };
+        if !problem.space.kernels[kernel].is_session_bound {
+            continue;
+        }
+        let channel = &linearised.design.channels[problem.space.kernels[kernel].channel];
+        let columns = linearised.design.columns_of(Component::Kernel(kernel));
+        let curve = kernel_curve(problem, fit, kernel, &columns, &linearised.point.solution.mean);
+        let mean = curve.iter().sum::<f64>() / curve.len() as f64;
+        deviation.iter_mut().zip(channel).zip(&curve).for_each(|((d, c), w)| *d += c * (w - mean));
+    }
+    sound.iter().map(|row| deviation[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
+}
+
+/// Returns the posterior mean of a kernel's function at each row, in the unit of its channel.
+pub(crate) fn kernel_curve(
+    problem: &Problem,
+    fit: &Fit,
+    kernel: usize,
+    columns: &[usize],
+    mean: &DVector<f64>,
+) -> Vec<f64> {
+    let Some(element) = fit.element(Member::Kernel(kernel)) else { return vec![0.0; problem.len()] };
+    let basis = &problem.rows.bases[kernel][element.form];
+    let coefficients = mean.select_rows(columns);
+    (basis * coefficients).iter().copied().collect()
+}
+
+/// Sessions of the rows of a problem, drawn from a fit.
+struct Simulation<'a> {
+    problem: &'a Problem,
+    fit: &'a Fit,
+    linearised: &'a Linearised,
+}
+
+/// Results of a simulation.
+struct Simulated {
+    /// Mean square of each session over the median one.
+    relative_squares: Vec<f64>,
+    /// Mean square that new levels of random effects add.
+    mount_variance: f64,
+}
+
+impl<'a> Simulation<'a> {
+    fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
+        Self { problem, fit, linearised }
+    }
+
+    fn run(&self, random: &mut Random, sound: &[usize]) -> Simulated {
+        let mean = |errors: &[f64]| -> f64 {
+            sound.iter().map(|row| errors[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
+        };
+        let (mut squares, mut mounts) = (Vec::new(), Vec::new());
+        for _ in 0..SIMULATIONS {
+            let mut errors = self.session(random);
+            let before = mean(&errors);
+            self.add_new_levels(random, &mut errors);
+            squares.push(mean(&errors));
+            mounts.push(mean(&errors) - before);
+        }
+        let median = crate::quadrature::median(&squares).max(1e-300);
+        Simulated {
+            relative_squares: squares.iter().map(|s| s / median).collect(),
+            mount_variance: crate::quadrature::median(&mounts).max(0.0),
+        }
+    }
+
+    /// Returns errors of a session: uncertainty of constants and sizes, and noise.
+    fn session(&self, random: &mut Random) -> Vec<f64> {
+        let (problem, solution) = (self.problem, &self.linearised.point.solution);
+        let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
+        let mut coefficients = solution.root.tr_mul(&normal);
+        for (i, role) in self.linearised.design.roles.iter().enumerate() {
+            if !matches!(role, crate::design::Role::Constant(_) | crate::design::Role::Size(_)) {
+                coefficients[i] = 0.0;
+            }
+        }
+        let mut errors: Vec<f64> = (&self.linearised.design.matrix * coefficients).iter().copied().collect();
+        let [sigma, growth, direction, series, scale] = self.fit.scales().values();
+        let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
+        for range in &problem.ranges {
+            let offset = series * random.normal();
+            let sides = [direction * random.normal(), direction * random.normal()];
+            let factor = scale * random.normal();
+            for row in range.clone() {
+                let load = growth * problem.rows.load[row] / problem.reference.mean_load;
+                let own = sigma * (1.0 + load * load).sqrt() * random.student();
+                let side = sides[usize::from(problem.rows.direction[row])];
+                errors[row] += offset + side + factor * friction[row] + own;
+            }
+        }
+        errors
+    }
+
+    /// Adds new levels of the random effects that a new session draws again.
+    fn add_new_levels(&self, random: &mut Random, errors: &mut [f64]) {
+        for (i, effect) in self.problem.space.random_effects.iter().enumerate() {
+            let Some(sd) = self.fit.random_effect_sd(i).filter(|_| effect.is_redrawn) else { continue };
+            let values: Vec<f64> = (0..effect.levels).map(|_| sd * random.normal()).collect();
+            let channel = &self.linearised.design.channels[effect.channel];
+            for (row, level) in self.problem.rows.levels[i].iter().enumerate() {
+                errors[row] += level.map_or(0.0, |level| values[level] * channel[row]);
+            }
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Mode of a hypothesis by Gauss-Newton steps, with the weights of Student's t noise.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use crate::design::{Component, Design, Mode, Role};
+use crate::evidence::{Integrals, SizePosterior, log_evidence};
+use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::noise::Scales;
+use crate::problem::{Problem, Space};
+use crate::scales::{ScalePoint, ScaleProblem};
+
+/// Degrees of freedom of Student's t distribution of the repetition noise.
+pub(crate) const DEGREES_OF_FREEDOM: f64 = 5.0;
+/// Range of the weights of the scale mixture.
+const WEIGHT_RANGE: (f64, f64) = (1e-3, 1.2);
+/// Start of a size without a hint, as a share of the typical one.
+const START_SHARE: f64 = 0.3;
+/// Prior standard deviation of a size while its mode is searched, in typical sizes: practically
+/// free, since a prior that is tight about a bad start keeps a fit there.
+const FREE_SIZE_SD: f64 = 300.0;
+/// Largest step of a constant in its coordinate.
+const MOST_CONSTANT_STEP: f64 = 0.5;
+/// Smallest size of a one-sided effect, as a share of the typical one.
+const LEAST_SHARE: f64 = 0.02;
+/// Rounds with free sizes: from scratch, and from the mode of a similar hypothesis.
+const FREE_ROUNDS: (usize, usize) = (6, 2);
+/// Most rounds after these.
+const FINAL_ROUNDS: usize = 5;
+/// Newton steps of the scales in a round.
+const SCALE_STEPS: usize = 3;
+/// Change of the objective in nats below which the last rounds have converged.
+const CONVERGED: f64 = 0.05;
+
+/// A fitted hypothesis.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The hypothesis.
+    pub hypothesis: Hypothesis,
+    /// `ln p(y | H)`.
+    pub log_evidence: f64,
+    /// `ln p(y | H) + ln p(H)`.
+    pub score: f64,
+    /// Posterior of the size of each effect that has one.
+    pub sizes: BTreeMap<usize, SizePosterior>,
+    /// Posterior mean of the variance of each component.
+    pub(crate) variances: BTreeMap<Component, f64>,
+    /// Constants, sizes, weights and scales at the mode.
+    pub(crate) mode: Mode,
+}
+
+/// Where a fit starts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Start<'a> {
+    /// Mode of a similar hypothesis.
+    pub(crate) mode: Option<&'a Mode>,
+    /// Size of an added effect, from its first-order score.
+    pub(crate) hint: Option<(usize, f64)>,
+}
+
+impl Fit {
+    /// Fits a hypothesis; `None` if its readings are not finite at any mode.
+    pub(crate) fn new(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Option<Self> {
+        let mut mode = start_mode(problem, hypothesis, start);
+        let free = if start.mode.is_none() { FREE_ROUNDS.0 } else { FREE_ROUNDS.1 };
+        let mut before = f64::NEG_INFINITY;
+        for round in 0..free + FINAL_ROUNDS {
+            let is_final = round >= free;
+            let size_variances = size_variances(&problem.space, hypothesis, &mode, is_final);
+            let design = Design::new(problem, hypothesis, &mode)?;
+            let scale_problem = ScaleProblem {
+                problem,
+                design: &design,
+                weights: &mode.weights,
+                size_variances: &size_variances,
+            };
+            let mut point = scale_problem.maximum(&mode, SCALE_STEPS)?;
+            if round == free {
+                point = scale_problem.best_autoregression(point);
+            }
+            let objective = point.log_posterior + log_weight_term(&mode.weights);
+            let is_last =
+                round + 1 == free + FINAL_ROUNDS || (round > free && (objective - before).abs() < CONVERGED);
+            if is_last {
+                return Some(Self::of_point(hypothesis, &scale_problem, mode.clone(), point));
+            }
+            before = if is_final { objective } else { f64::NEG_INFINITY };
+            let weights = student_weights(&scale_problem, &point);
+            move_coefficients(&problem.space, &design, &point, &mut mode);
+            mode.scales = point.scales;
+            mode.log_sd = point.log_sd;
+            mode.weights = weights;
+        }
+        None
+    }
+
+    fn of_point(hypothesis: &Hypothesis, at: &ScaleProblem<'_>, mut mode: Mode, point: ScalePoint) -> Self {
+        let (problem, design) = (at.problem, at.design);
+        let integrals = log_evidence(at, &point, log_weight_term(&mode.weights));
+        move_coefficients(&problem.space, design, &point, &mut mode);
+        mode.scales = point.scales;
+        mode.log_sd = point.log_sd;
+        let Integrals { log_evidence, sizes, variances } = integrals;
+        let score = log_evidence + hypothesis.log_prior_odds(&problem.space);
+        Self { hypothesis: hypothesis.clone(), log_evidence, score, sizes, variances, mode }
+    }
+
+    /// Returns the scales of the noise.
+    pub fn scales(&self) -> Scales {
+        self.mode.scales
+    }
+
+    /// Returns the standard deviation of a random effect of the space, the root of its posterior mean
+    /// variance.
+    pub fn random_effect_sd(&self, index: usize) -> Option<f64> {
+        self.variances.get(&Component::Random(index)).map(|variance| variance.sqrt())
+    }
+
+    /// Returns the standard deviation of a kernel of the hypothesis.
+    pub fn kernel_sd(&self, index: usize) -> Option<f64> {
+        self.variances.get(&Component::Kernel(index)).map(|variance| variance.sqrt())
+    }
+
+    /// Returns the baseline's constants.
+    pub fn constants(&self) -> &[f64] {
+        &self.mode.constants
+    }
+
+    /// Returns the weight of each row under the heavy-tailed noise; small for outliers.
+    pub fn weights(&self) -> impl Iterator<Item = f64> + '_ {
+        self.mode.weights.iter().copied()
+    }
+}
+
+/// Returns the prior variance of each size: practically free, or about twice the square of the
+/// size, which the evidence replaces by the Cauchy prior.
+pub(crate) fn size_variances(
+    space: &Space,
+    hypothesis: &Hypothesis,
+    mode: &Mode,
+    is_final: bool,
+) -> BTreeMap<usize, f64> {
+    let mut variances = BTreeMap::new();
+    for (effect, _) in hypothesis.effects() {
+        let Some(typical) = space.effects[effect].typical_size else { continue };
+        let size = mode.sizes.get(&effect).copied().unwrap_or(typical);
+        let variance = if is_final {
+            2.0 * size.powi(2).max((0.5 * typical).powi(2))
+        } else {
+            (FREE_SIZE_SD * typical).powi(2)
+        };
+        variances.insert(effect, variance);
+    }
+    variances
+}
+
+fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Mode {
+    let space = &problem.space;
+    let mut mode = start.mode.cloned().unwrap_or_else(|| Mode {
+        constants: space.constants.iter().map(|c| c.mean).collect(),
+        sizes: BTreeMap::new(),
+        weights: DVector::from_element(problem.len(), 1.0),
+        scales: Scales::typical(&problem.reference),
+        log_sd: BTreeMap::new(),
+    });
+    mode.scales = mode.scales.raised(&problem.reference);
+    let mut sizes = BTreeMap::new();
+    for (effect, shape) in hypothesis.effects() {
+        let Some(typical) = space.effects[effect].typical_size else { continue };
+        let hint = start.hint.filter(|(of, _)| *of == effect).map(|(_, size)| size);
+        let cold = if space.effects[effect].has_shapes_between || space.effects[effect].starts.len() == 1 {
+            START_SHARE * typical
+        } else {
+            space.effects[effect].starts.get(shape).copied().unwrap_or(typical)
+        };
+        sizes.insert(effect, hint.or(mode.sizes.get(&effect).copied()).unwrap_or(cold));
+    }
+    mode.sizes = sizes;
+    let mut log_sd = BTreeMap::new();
+    let random = (0..space.random_effects.len()).map(Component::Random);
+    let kernels = hypothesis.kernels().map(|(kernel, _)| Component::Kernel(kernel));
+    for component in random.chain(kernels) {
+        let scale = component.scale(space);
+        let cold = libm::log(if matches!(component, Component::Random(_)) { 0.5 * scale } else { scale });
+        let warm = mode.log_sd.get(&component).map_or(cold, |log| log.max(cold - 2.0));
+        log_sd.insert(component, warm);
+    }
+    mode.log_sd = log_sd;
+    mode
+}
+
+/// Returns the logarithm of the mixing density of the weights, relative to weights of 1. With the
+/// weights at their mode the mixture is Student's t distribution.
+fn log_weight_term(weights: &DVector<f64>) -> f64 {
+    weights.iter().map(|w| DEGREES_OF_FREEDOM / 2.0 * (libm::log(*w) - w + 1.0)).sum()
+}
+
+/// Returns the weights that maximise the posterior, given the part of each residual that a row
+/// shares with no other row.
+fn student_weights(at: &ScaleProblem<'_>, point: &ScalePoint) -> DVector<f64> {
+    let noise = at.noise(&point.scales);
+    let white = point.marginal.white_residual(&point.solution.mean);
+    let precision_residual = point.marginal.whitening.unwhiten_transposed(&white);
+    let quantum = noise.quantum_variance();
+    DVector::from_fn(at.problem.len(), |row, _| {
+        let variance = noise.independent_variance(row);
+        let own = (variance / at.weights[row] + quantum) * precision_residual[row];
+        student_weight(own * own / (variance + quantum).max(1e-12))
+    })
+}
+
+/// Returns the weight of a row whose residual has this square, in units of its variance.
+fn student_weight(square: f64) -> f64 {
+    let weight = (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + square);
+    weight.clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1)
+}
+
+/// Moves constants and sizes to the mean of their posterior, by limited steps.
+fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &mut Mode) {
+    for (i, role) in design.roles.iter().enumerate() {
+        let value = point.solution.mean[i] + design.prior_mean[i];
+        match role {
+            Role::Constant(constant) => {
+                let step = value - mode.constants[*constant];
+                mode.constants[*constant] += step.clamp(-MOST_CONSTANT_STEP, MOST_CONSTANT_STEP);
+            }
+            Role::Size(effect) => {
+                let prior = &space.effects[*effect];
+                let typical = prior.typical_size.unwrap_or(1.0);
+                let value = if prior.is_one_sided { value.max(LEAST_SHARE * typical) } else { value };
+                let size = mode.sizes.entry(*effect).or_insert(value);
+                let most = (FREE_SIZE_SD * typical).max(2.0 * size.abs());
+                *size += (value - *size).clamp(-most, most);
+            }
+            Role::Discrepancy(_) | Role::Variance(_) => {}
+        }
+    }
+}
+
+impl Fit {
+    /// Returns the element of a member of the hypothesis.
+    pub(crate) fn element(&self, member: Member) -> Option<Element> {
+        self.hypothesis.elements().find(|element| element.member == member)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With the weight at its mode, the log density of the mixture is that of Student's t, up to
+    /// a constant.
+    #[test]
+    fn weights_give_student_density() {
+        let nu = DEGREES_OF_FREEDOM;
+        let mixture = |z: f64| {
+            let w = student_weight(z * z);
+            0.5 * libm::log(w) - 0.5 * w * z * z + nu / 2.0 * (libm::log(w) - w + 1.0)
+        };
+        let student = |z: f64| -(nu + 1.0) / 2.0 * libm::log1p(z * z / nu);
+        for z in [0.5, 1.0, 3.0, 10.0] {
+            let difference = mixture(z) - mixture(0.0) - student(z);
+            assert!(difference.abs() < 1e-9, "{z}: {difference}");
+        }
+    }
+}

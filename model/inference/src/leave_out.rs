@@ -1,0 +1,61 @@
+//! Prediction of each series from the others, exact for the linear model at the mode.
+//!
+//! With `H = I - A_s C A_s'` for the white columns `A_s` of a series and the posterior covariance
+//! `C`, the residual of the series given all others is `L H^-1 L^-1 (r - A b)`, where `V = L L'` is its
+//! noise covariance. Nothing is fitted again.
+
+use nalgebra::DMatrix;
+
+use crate::design::Design;
+use crate::fit::{Fit, size_variances};
+use crate::problem::Problem;
+use crate::scales::{ScalePoint, ScaleProblem};
+
+/// Series predicted from the others.
+#[derive(Clone, Debug)]
+pub(crate) struct LeftOut {
+    /// Reading minus prediction of each row.
+    pub(crate) residuals: Vec<f64>,
+    /// `ln p(y_s | y_-s, H)` of each series.
+    pub(crate) log_predictive: Vec<f64>,
+}
+
+/// Linear model of a fit at its mode.
+pub(crate) struct Linearised {
+    pub(crate) design: Design,
+    pub(crate) point: ScalePoint,
+}
+
+impl Linearised {
+    pub(crate) fn new(problem: &Problem, fit: &Fit) -> Option<Self> {
+        let variances = size_variances(&problem.space, &fit.hypothesis, &fit.mode, true);
+        let design = Design::new(problem, &fit.hypothesis, &fit.mode)?;
+        let at =
+            ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &variances };
+        let point = at.at(fit.mode.scales, &fit.mode.log_sd)?;
+        Some(Self { design, point })
+    }
+
+    /// Predicts each series from the others; `None` if a series determines a coefficient alone, to
+    /// rounding.
+    pub(crate) fn leave_series_out(&self) -> Option<LeftOut> {
+        let (marginal, solution) = (&self.point.marginal, &self.point.solution);
+        let residual = marginal.white_residual(&solution.mean);
+        let mut left_out = LeftOut { residuals: vec![0.0; residual.len()], log_predictive: Vec::new() };
+        for (range, factor) in marginal.whitening.ranges.iter().zip(&marginal.whitening.factors) {
+            let (first, length) = (range.start, range.len());
+            let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
+            let share = DMatrix::identity(length, length) * (1.0 + 1e-10) - &part * part.transpose();
+            let share = share.cholesky()?;
+            let own = residual.rows(first, length).into_owned();
+            let scaled = share.solve(&own);
+            let unscaled = factor * &scaled;
+            left_out.residuals[range.clone()].copy_from_slice(unscaled.as_slice());
+            let noise = factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let precision = share.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let normaliser = 0.5 * length as f64 * libm::log(2.0 * std::f64::consts::PI);
+            left_out.log_predictive.push(-0.5 * own.dot(&scaled) + precision - noise - normaliser);
+        }
+        Some(left_out)
+    }
+}

@@ -1,0 +1,84 @@
+//! Prediction of the rows of a new session: new series and mounts, the same constants and effects.
+
+use crate::design::{Component, Design, Role};
+use crate::fit::{DEGREES_OF_FREEDOM, Fit};
+use crate::leave_out::Linearised;
+use crate::noise::Noise;
+use crate::posterior::Posterior;
+use crate::problem::{Problem, ProblemError, Rows, check_rows};
+
+/// Most hypotheses that are averaged.
+const MOST_HYPOTHESES: usize = 12;
+
+/// Prediction of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation of a reading about it.
+    pub sd: f64,
+}
+
+impl Posterior {
+    /// Predicts rows of a new session, as the average over the window. The bases of kernels that a
+    /// new session draws again must contain their mean over the fitted session.
+    ///
+    /// # Errors
+    /// [`ProblemError`] if the rows do not fit the space of the problem.
+    pub fn predict(&self, problem: &Problem, rows: &Rows) -> Result<Vec<Prediction>, ProblemError> {
+        check_rows(&problem.space, rows)?;
+        let mut parts = Vec::new();
+        for (fit, probability) in self.window.iter().zip(&self.probabilities).take(MOST_HYPOTHESES) {
+            if let Some(predictions) = predictions_of_fit(problem, fit, rows) {
+                parts.push((*probability, predictions));
+            }
+        }
+        let total: f64 = parts.iter().map(|(p, _)| p).sum();
+        let average = |value: &dyn Fn(&Prediction) -> f64, row: usize| -> f64 {
+            parts.iter().map(|(p, predictions)| p * value(&predictions[row])).sum::<f64>() / total
+        };
+        Ok((0..rows.len())
+            .map(|row| {
+                let mean = average(&|p| p.mean, row);
+                let variance = average(&|p| p.sd.powi(2) + (p.mean - mean).powi(2), row);
+                Prediction { mean, sd: variance.sqrt() }
+            })
+            .collect())
+    }
+}
+
+fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<Prediction>> {
+    let space = &problem.space;
+    let solution = Linearised::new(problem, fit)?.point.solution;
+    let mut design = Design::of_rows(space, rows, &fit.hypothesis, &fit.mode)?;
+    let mut new_variance = vec![0.0; rows.len()];
+    for (i, role) in design.roles.clone().iter().enumerate() {
+        let Role::Variance(Component::Random(random)) = role else { continue };
+        if !space.random_effects[*random].is_redrawn {
+            continue;
+        }
+        let variance = fit.random_effect_sd(*random).unwrap_or(0.0).powi(2);
+        for (row, x) in design.matrix.column(i).iter().enumerate() {
+            new_variance[row] += variance * x * x;
+        }
+        design.matrix.column_mut(i).fill(0.0);
+    }
+    let mean = &design.matrix * &solution.mean - &design.target;
+    let spread = &design.matrix * solution.root.transpose();
+    let ones = nalgebra::DVector::from_element(rows.len(), 1.0);
+    let scales = fit.scales();
+    let friction = &design.channels[space.series_scale_channel];
+    let noise = Noise { rows, reference: &problem.reference, scales: &scales, weights: &ones, friction };
+    // The variance of Student's t distribution is larger than the square of its scale.
+    let tails = 2.0 / (DEGREES_OF_FREEDOM - 2.0);
+    Some(
+        (0..rows.len())
+            .map(|row| {
+                let own = noise.covariance(&(row..row + 1))[(0, 0)];
+                let heavy = tails * noise.independent_variance(row);
+                let variance = spread.row(row).norm_squared() + new_variance[row] + own + heavy;
+                Prediction { mean: mean[row], sd: variance.sqrt() }
+            })
+            .collect(),
+    )
+}

@@ -1,0 +1,173 @@
+//! Mode of the scales: those of the noise, and the standard deviations of components.
+//!
+//! Newton's method in the logarithms of the scales, with the average information matrix (Gilmour,
+//! Thompson and Cullis 1995) in place of the second derivatives of the marginal likelihood.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::design::{Component, Design, Mode};
+use crate::marginal::{Marginal, Solution};
+use crate::noise::{AUTOREGRESSIONS, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
+use crate::problem::Problem;
+
+/// Information that is added to each scale, so that a step is finite where the data have none.
+const DAMPING: f64 = 0.05;
+/// Largest step of the logarithm of a scale.
+const MOST_STEP: f64 = 1.2;
+/// Range of the logarithm of a scale.
+const LOG_RANGE: (f64, f64) = (-12.0, 8.0);
+/// Times that a step is halved before the search gives up.
+const HALVINGS: usize = 3;
+/// Gain in nats below which a step is the last one.
+const CONVERGED: f64 = 0.02;
+
+/// Scales of a hypothesis, with its design, weights and prior variances of sizes fixed.
+pub(crate) struct ScaleProblem<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) design: &'a Design,
+    pub(crate) weights: &'a DVector<f64>,
+    pub(crate) size_variances: &'a BTreeMap<usize, f64>,
+}
+
+/// Value of the scales.
+#[derive(Clone, Debug)]
+pub(crate) struct ScalePoint {
+    pub(crate) scales: Scales,
+    pub(crate) log_sd: BTreeMap<Component, f64>,
+    pub(crate) variances: Vec<f64>,
+    pub(crate) marginal: Marginal,
+    pub(crate) solution: Solution,
+    /// Marginal likelihood plus the prior density of all scales.
+    pub(crate) log_posterior: f64,
+}
+
+impl ScaleProblem<'_> {
+    pub(crate) fn noise<'b>(&'b self, scales: &'b Scales) -> Noise<'b> {
+        Noise {
+            rows: &self.problem.rows,
+            reference: &self.problem.reference,
+            scales,
+            weights: self.weights,
+            friction: &self.design.channels[self.problem.space.series_scale_channel],
+        }
+    }
+
+    /// Evaluates the scales of a mode.
+    pub(crate) fn at(&self, scales: Scales, log_sd: &BTreeMap<Component, f64>) -> Option<ScalePoint> {
+        let (problem, design) = (self.problem, self.design);
+        let noise = self.noise(&scales);
+        let marginal = Marginal::new(&design.matrix, &design.target, &noise, &problem.ranges)?;
+        let size = |effect: usize| self.size_variances.get(&effect).copied().unwrap_or(0.0);
+        let variances = design.prior_variances(&problem.space, log_sd, size);
+        let solution = marginal.solve(&variances)?;
+        let mut log_posterior = solution.log_likelihood + scales.log_prior(&problem.reference).0;
+        for (component, log) in log_sd {
+            log_posterior += self.component_prior(*component, *log).0;
+        }
+        Some(ScalePoint { scales, log_sd: log_sd.clone(), variances, marginal, solution, log_posterior })
+    }
+
+    fn component_prior(&self, component: Component, log_sd: f64) -> (f64, f64, f64) {
+        let scale = component.scale(&self.problem.space);
+        match component {
+            Component::Random(_) => log_half_normal(log_sd, scale),
+            Component::Kernel(_) => log_half_cauchy(log_sd, scale),
+        }
+    }
+
+    /// Takes Newton steps from a mode until they gain little, at most `steps`.
+    pub(crate) fn maximum(&self, mode: &Mode, steps: usize) -> Option<ScalePoint> {
+        let mut point = self.at(mode.scales, &mode.log_sd)?;
+        for _ in 0..steps {
+            let Some(step) = self.newton_step(&point) else { break };
+            let Some(better) = self.line_search(&point, &step) else { break };
+            let gain = better.log_posterior - point.log_posterior;
+            point = better;
+            if gain < CONVERGED {
+                break;
+            }
+        }
+        Some(point)
+    }
+
+    /// Returns the best of the autoregressions at the scales of a point.
+    pub(crate) fn best_autoregression(&self, point: ScalePoint) -> ScalePoint {
+        let current = point.scales.autoregression;
+        (0..AUTOREGRESSIONS.len()).filter(|a| *a != current).fold(point, |best, autoregression| {
+            let other = self.at(Scales { autoregression, ..best.scales }, &best.log_sd);
+            other.filter(|other| other.log_posterior > best.log_posterior).unwrap_or(best)
+        })
+    }
+
+    /// Shortens a step until it gains.
+    fn line_search(&self, point: &ScalePoint, step: &[f64]) -> Option<ScalePoint> {
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            let mut scales = point.scales;
+            let mut log_sd = point.log_sd.clone();
+            let logs = scales.log.iter_mut().chain(log_sd.values_mut());
+            for (log, step) in logs.zip(step) {
+                *log = (*log + share * step.clamp(-MOST_STEP, MOST_STEP)).clamp(LOG_RANGE.0, LOG_RANGE.1);
+            }
+            let moved = self.at(scales, &log_sd).filter(|moved| moved.log_posterior > point.log_posterior);
+            if moved.is_some() {
+                return moved;
+            }
+            share *= 0.35;
+        }
+        None
+    }
+
+    /// Returns the Newton step of all scales: the noise's, then the components'.
+    fn newton_step(&self, point: &ScalePoint) -> Option<Vec<f64>> {
+        let (mut gradient, tangents) = self.likelihood_gradient(point);
+        let white = point.marginal.whitening.whiten(&tangents);
+        let projected = point.marginal.white_matrix.transpose() * &white;
+        let explained = &point.solution.root * &projected;
+        let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
+        let (_, prior_gradient, prior_curvature) = point.scales.log_prior(&self.problem.reference);
+        let components = point.log_sd.iter().map(|(c, log)| self.component_prior(*c, *log));
+        let noise = prior_gradient.into_iter().zip(prior_curvature);
+        for (i, (slope, curvature)) in noise.chain(components.map(|(_, g, c)| (g, c))).enumerate() {
+            gradient[i] += slope;
+            information[(i, i)] += curvature + DAMPING;
+        }
+        let step = information.cholesky()?.solve(&gradient);
+        step.iter().all(|x| x.is_finite()).then(|| step.iter().copied().collect())
+    }
+
+    /// Returns the gradient of the marginal likelihood, and the column `dV P r` of each scale.
+    fn likelihood_gradient(&self, point: &ScalePoint) -> (DVector<f64>, DMatrix<f64>) {
+        let count = SCALES + point.log_sd.len();
+        let mut gradient = DVector::zeros(count);
+        let mut tangents = DMatrix::zeros(self.problem.len(), count);
+        let noise = self.noise(&point.scales);
+        let (marginal, solution) = (&point.marginal, &point.solution);
+        let white_residual = marginal.white_residual(&solution.mean);
+        let leverage = &marginal.white_matrix * solution.root.transpose();
+        for (range, inverse) in marginal.whitening.ranges.iter().zip(&marginal.whitening.inverses) {
+            let (first, length) = (range.start, range.len());
+            let alpha = inverse.tr_mul(&white_residual.rows(first, length));
+            let part = inverse.transpose() * leverage.rows(first, length);
+            let precision = inverse.transpose() * inverse - &part * part.transpose();
+            for scale in 0..SCALES {
+                let derivative = noise.derivative(range, scale);
+                let tangent = &derivative * &alpha;
+                gradient[scale] += 0.5 * (alpha.dot(&tangent) - precision.dot(&derivative));
+                tangents.view_mut((first, scale), (length, 1)).copy_from(&tangent);
+            }
+        }
+        for (i, (component, log)) in point.log_sd.iter().enumerate() {
+            let columns = self.design.columns_of(*component);
+            let precision = libm::exp(-2.0 * log);
+            for column in columns {
+                let (mean, variance) = (solution.mean[column], solution.covariance[(column, column)]);
+                gradient[SCALES + i] += (mean * mean + variance) * precision - 1.0;
+                tangents.column_mut(SCALES + i).axpy(2.0 * mean, &self.design.matrix.column(column), 1.0);
+            }
+        }
+        (gradient, tangents)
+    }
+}

@@ -32,6 +32,13 @@ impl Default for SearchOptions {
     }
 }
 
+impl SearchOptions {
+    /// Returns the extent of a search that fits only the hypothesis without members.
+    pub fn baseline() -> Self {
+        Self { members: 0, ..Self::default() }
+    }
+}
+
 /// Rows above which first-order scores are trusted more, and fewer hypotheses are fitted.
 const LARGE_TABLE: usize = 1000;
 /// Score below the best, in nats, within which a hypothesis is expanded.
@@ -85,6 +92,9 @@ impl<'a> Search<'a> {
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
     pub(crate) fn run(&mut self) -> Vec<Fit> {
         self.fit(&Hypothesis::default(), Start::default());
+        if self.options.members == 0 {
+            return self.fits.values().cloned().collect();
+        }
         self.start_from_usual_effects();
         let mut expanded = BTreeSet::new();
         for _ in 0..self.options.expansions {

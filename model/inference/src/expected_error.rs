@@ -202,3 +202,29 @@ impl<'a> Simulation<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::test_problem::problem;
+    use crate::{SearchOptions, infer};
+
+    /// Series differ by 0.05 and readings by 0.03, so a new session differs by their root sum of
+    /// squares.
+    #[test]
+    fn expected_error_covers_series_offsets() {
+        let problem = problem(24, 0.0);
+        let posterior = infer(&problem, SearchOptions::default(), 5).unwrap();
+        let error = posterior.expected_error.unwrap();
+        let truth = (0.05f64.powi(2) + 0.03f64.powi(2)).sqrt();
+        assert!(error.interval[0] < truth && truth < error.interval[1], "{error:?}");
+        assert!((error.value / truth - 1.0).abs() < 0.3, "{error:?}");
+    }
+
+    #[test]
+    fn equal_seeds_give_equal_intervals() {
+        let problem = problem(8, 0.3);
+        let error = |seed| infer(&problem, SearchOptions::default(), seed).unwrap().expected_error.unwrap();
+        assert_eq!(error(3), error(3));
+        assert_ne!(error(3).interval, error(4).interval);
+    }
+}

@@ -59,3 +59,42 @@ impl Linearised {
         Some(left_out)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marginal::Marginal;
+    use crate::noise::Noise;
+    use crate::test_problem::{ROWS_PER_SERIES, fitted, full_hypothesis, problem, rows};
+
+    /// Prediction of the last series equals that of a solution without its rows.
+    #[test]
+    fn left_out_residuals_match_a_refit() {
+        let problem = problem(7, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, point) = fitted(&problem, &hypothesis);
+        let left_out = Linearised::new(&problem, &fit).unwrap().leave_series_out().unwrap();
+
+        let kept = problem.len() - ROWS_PER_SERIES;
+        let fewer = rows(6);
+        let weights = fit.mode.weights.rows(0, kept).into_owned();
+        let noise = Noise {
+            rows: &fewer,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &weights,
+            friction: &design.channels[1],
+        };
+        let matrix = design.matrix.rows(0, kept).into_owned();
+        let target = design.target.rows(0, kept).into_owned();
+        let marginal = Marginal::new(&matrix, &target, &noise, &fewer.ranges()).unwrap();
+        let solution = marginal.solve(&point.variances).unwrap();
+        let predicted = &design.matrix * &solution.mean;
+        for row in kept..problem.len() {
+            let expected = design.target[row] - predicted[row];
+            assert!((left_out.residuals[row] - expected).abs() < 1e-7, "{row}");
+        }
+        let difference = point.solution.log_likelihood - solution.log_likelihood;
+        assert!((left_out.log_predictive[6] - difference).abs() < 1e-6);
+    }
+}

@@ -111,6 +111,8 @@ mod random;
 mod scales;
 mod score;
 mod search;
+#[cfg(test)]
+mod test_problem;
 
 pub use design::Mode;
 pub use evidence::SizePosterior;

@@ -93,3 +93,67 @@ impl Marginal {
         &self.white_target - &self.white_matrix * mean
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Noise;
+    use crate::test_problem::{fitted, full_hypothesis, problem};
+
+    /// Density of a normal distribution with a dense covariance.
+    fn dense_log_likelihood(target: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
+        let factor = covariance.cholesky().unwrap();
+        let determinant = 2.0 * factor.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+        -0.5 * (target.dot(&factor.solve(target)) + determinant + target.len() as f64 * libm::log(2.0 * PI))
+    }
+
+    #[test]
+    fn woodbury_matches_dense_covariance() {
+        let problem = problem(6, 0.4);
+        let (fit, design, point) = fitted(&problem, &full_hypothesis());
+        let noise = Noise {
+            rows: &problem.rows,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &fit.mode.weights,
+            friction: &design.channels[1],
+        };
+        let mut covariance = DMatrix::zeros(problem.len(), problem.len());
+        for range in &problem.ranges {
+            let at = (range.start, range.start);
+            covariance.view_mut(at, (range.len(), range.len())).copy_from(&noise.covariance(range));
+        }
+        let prior = DMatrix::from_diagonal(&DVector::from_vec(point.variances.clone()));
+        covariance += &design.matrix * prior * design.matrix.transpose();
+        let dense = dense_log_likelihood(&design.target, covariance);
+        assert!((point.solution.log_likelihood - dense).abs() < 1e-7, "{dense}");
+    }
+
+    /// One coefficient, integrated on a grid.
+    #[test]
+    fn marginal_likelihood_matches_integration() {
+        let problem = problem(3, 0.0);
+        let (fit, design, point) = fitted(&problem, &crate::Hypothesis::default());
+        let noise = Noise {
+            rows: &problem.rows,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &fit.mode.weights,
+            friction: &design.channels[1],
+        };
+        let column = DMatrix::from_columns(&[design.matrix.column(0)]);
+        let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
+        let exact = marginal.log_likelihood(&[0.25]).unwrap();
+        let flat = |b: f64| {
+            let residual = marginal.white_residual(&DVector::from_element(1, b));
+            let likelihood = residual.norm_squared()
+                + marginal.whitening.log_determinant
+                + design.target.len() as f64 * libm::log(2.0 * PI);
+            -0.5 * likelihood - 0.5 * b * b / 0.25 - 0.5 * libm::log(2.0 * PI * 0.25)
+        };
+        let step = 1e-4;
+        let terms: Vec<f64> = (-30_000..30_000).map(|i| flat(f64::from(i) * step)).collect();
+        let sum = crate::quadrature::log_sum_exp(&terms) + libm::log(step);
+        assert!((exact - sum).abs() < 1e-6, "{exact} {sum}");
+    }
+}

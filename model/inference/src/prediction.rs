@@ -82,3 +82,20 @@ fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<P
             .collect(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::test_problem::{problem, rows};
+    use crate::{SearchOptions, infer};
+
+    #[test]
+    fn predictions_include_the_effect() {
+        let problem = problem(12, 0.6);
+        let posterior = infer(&problem, SearchOptions::default(), 1).unwrap();
+        let new = rows(3);
+        for (prediction, load) in posterior.predict(&problem, &new).unwrap().iter().zip(&new.load) {
+            assert!((prediction.mean - 2.0 * load - 0.6).abs() < 0.08, "{prediction:?}");
+            assert!(prediction.sd > 0.03 && prediction.sd < 0.15, "{prediction:?}");
+        }
+    }
+}

@@ -300,3 +300,28 @@ fn expect_finite(name: &'static str, values: &[f64]) -> Result<(), ProblemError>
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::{problem, rows};
+
+    #[test]
+    fn inconsistent_rows_are_refused() {
+        let space = problem(3, 0.0).space;
+        let readings = vec![1.0; 15];
+        let with = |change: &dyn Fn(&mut Rows)| {
+            let mut rows = rows(3);
+            change(&mut rows);
+            Problem::new(space.clone(), rows, readings.clone()).unwrap_err()
+        };
+        assert_eq!(
+            with(&|rows| rows.load.truncate(14)),
+            ProblemError::Length { name: "load", length: 14, expected: 15 }
+        );
+        assert_eq!(with(&|rows| rows.series[14] = 0), ProblemError::Series { row: 14 });
+        assert_eq!(with(&|rows| rows.load[3] = f64::NAN), ProblemError::NotFinite { name: "load", row: 3 });
+        let empty = with(&|rows| rows.series.clear());
+        assert_eq!(empty, ProblemError::Empty);
+    }
+}

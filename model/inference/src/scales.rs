@@ -171,3 +171,67 @@ impl ScaleProblem<'_> {
         (gradient, tangents)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::size_variances;
+    use crate::test_problem::{fitted, full_hypothesis, problem, unit_weights};
+
+    /// The gradient of the marginal likelihood matches central differences, with autocorrelation.
+    #[test]
+    fn gradient_matches_finite_differences() {
+        let problem = problem(6, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, _) = fitted(&problem, &hypothesis);
+        let weights = unit_weights(&problem);
+        let size_variances = size_variances(&problem.space, &hypothesis, &fit.mode, true);
+        let at = ScaleProblem {
+            problem: &problem,
+            design: &design,
+            weights: &weights,
+            size_variances: &size_variances,
+        };
+        let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0], autoregression: 2 };
+        let log_sd: BTreeMap<Component, f64> =
+            [(Component::Random(0), -4.0), (Component::Kernel(0), -2.0)].into();
+        let (gradient, _) = at.likelihood_gradient(&at.at(scales, &log_sd).unwrap());
+        let likelihood = |index: usize, step: f64| {
+            let (mut scales, mut log_sd) = (scales, log_sd.clone());
+            if let Some(log) = scales.log.iter_mut().chain(log_sd.values_mut()).nth(index) {
+                *log += step;
+            }
+            at.at(scales, &log_sd).unwrap().solution.log_likelihood
+        };
+        for index in 0..gradient.len() {
+            let slope = (likelihood(index, 1e-4) - likelihood(index, -1e-4)) / 2e-4;
+            assert!((gradient[index] - slope).abs() < 1e-4 * (1.0 + slope.abs()), "{index}: {slope}");
+        }
+    }
+
+    /// No step of a tenth in any scale gains after the Newton steps.
+    #[test]
+    fn newton_steps_reach_the_maximum() {
+        let problem = problem(12, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, _) = fitted(&problem, &hypothesis);
+        let size_variances = size_variances(&problem.space, &hypothesis, &fit.mode, true);
+        let at = ScaleProblem {
+            problem: &problem,
+            design: &design,
+            weights: &fit.mode.weights,
+            size_variances: &size_variances,
+        };
+        let best = at.maximum(&fit.mode, 30).unwrap();
+        for index in 0..SCALES + best.log_sd.len() {
+            for step in [-0.1, 0.1] {
+                let (mut scales, mut log_sd) = (best.scales, best.log_sd.clone());
+                if let Some(log) = scales.log.iter_mut().chain(log_sd.values_mut()).nth(index) {
+                    *log += step;
+                }
+                let moved = at.at(scales, &log_sd).unwrap().log_posterior;
+                assert!(moved < best.log_posterior + 0.02, "{index} {step}");
+            }
+        }
+    }
+}

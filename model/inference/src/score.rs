@@ -240,3 +240,22 @@ fn relevance(columns: &DMatrix<f64>, relevant: &[f64]) -> f64 {
     let column = columns.column(0);
     column.iter().zip(relevant).map(|(x, least)| x.abs() / least).fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::{fitted, problem};
+
+    /// The expected score of a small linear effect is close to that of its fit. A large one gains more
+    /// than expected, since the noise then shrinks.
+    #[test]
+    fn first_order_score_predicts_the_fit() {
+        let problem = problem(12, 0.02);
+        let (null, ..) = fitted(&problem, &Hypothesis::default());
+        let additions = Scores::new(&problem, &null).unwrap().additions(None);
+        let offset = additions.iter().find(|a| a.element.member == Member::Effect(0)).unwrap();
+        let (fit, ..) = fitted(&problem, &offset.hypothesis);
+        let expected = null.log_evidence + offset.score;
+        assert!((expected - fit.score).abs() < 0.5, "{expected} {}", fit.score);
+    }
+}

@@ -236,3 +236,22 @@ impl<'a> Search<'a> {
 fn start_of<'a>(fit: &'a Fit, addition: &Addition) -> Start<'a> {
     Start { mode: Some(&fit.mode), hint: addition.hint }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::problem;
+
+    #[test]
+    fn a_large_effect_wins() {
+        let window = Search::new(&problem(12, 0.6), SearchOptions::default()).run();
+        assert!(window[0].hypothesis.contains(Member::Effect(0)));
+        assert_eq!(window[0].hypothesis.len(), 1);
+    }
+
+    #[test]
+    fn nothing_wins_without_effects() {
+        let window = Search::new(&problem(12, 0.0), SearchOptions::default()).run();
+        assert!(window[0].hypothesis.is_empty());
+    }
+}

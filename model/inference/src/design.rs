@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::hypothesis::{Hypothesis, Member};
 use crate::noise::Scales;
-use crate::problem::{Problem, Rows, SizedEffect, Space};
+use crate::problem::{MOST_SHAPE_CONSTANTS, Problem, Rows, SizedEffect, Space};
 
 /// Standard deviation of the discrepancy of an effect, relative to its contribution.
 pub(crate) const DISCREPANCY_SD: f64 = 0.15;
-/// Standard deviation of a shape between two discrete ones, as a share of their distance.
-const BETWEEN_SHAPES_SD: f64 = 0.5;
 /// Step of a constant for its finite difference.
 const CONSTANT_STEP: f64 = 1e-5;
+/// Step of a shift of a shape for its finite difference.
+const SHIFT_STEP: f64 = 1e-3;
 /// Steps of a size for its finite difference, relative to the typical size and to the size.
 const SIZE_STEPS: (f64, f64) = (1e-3, 1e-4);
 
@@ -24,6 +24,8 @@ pub(crate) enum Role {
     Constant(usize),
     /// The size of an effect.
     Size(usize),
+    /// A constant of the shape of an effect.
+    Shape(usize, usize),
     /// The discrepancy of an effect.
     Discrepancy(usize),
     /// A level of a random effect or a coefficient of a kernel.
@@ -55,9 +57,26 @@ impl Component {
 pub struct Mode {
     pub(crate) constants: Vec<f64>,
     pub(crate) sizes: BTreeMap<usize, f64>,
+    /// Shifts of the shape of each effect.
+    pub(crate) shifts: BTreeMap<usize, [f64; MOST_SHAPE_CONSTANTS]>,
     pub(crate) weights: DVector<f64>,
     pub(crate) scales: Scales,
     pub(crate) log_sd: BTreeMap<Component, f64>,
+}
+
+impl Mode {
+    /// Returns the effects of a hypothesis with sizes and shapes.
+    pub(crate) fn sized(&self, hypothesis: &Hypothesis) -> Vec<SizedEffect> {
+        let effects = hypothesis.effects();
+        effects
+            .map(|(effect, shape)| SizedEffect {
+                effect,
+                shape,
+                size: self.sizes.get(&effect).copied().unwrap_or(1.0),
+                shifts: self.shifts.get(&effect).copied().unwrap_or_default(),
+            })
+            .collect()
+    }
 }
 
 /// Columns of a hypothesis at a mode, and what they leave to explain.
@@ -83,7 +102,7 @@ impl Design {
 
     /// Linearises a hypothesis at rows without readings, which count as zero.
     pub(crate) fn of_rows(space: &Space, rows: &Rows, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
-        let effects = hypothesis.sized(&mode.sizes);
+        let effects = mode.sized(hypothesis);
         let forward = &rows.forward;
         let baseline = forward.readings(&mode.constants, &effects);
         let channels = forward.channels(&mode.constants, &effects);
@@ -104,20 +123,19 @@ impl Design {
             contributions.push((*effect, column.iter().map(|x| x * effect.size).collect::<Vec<f64>>()));
             builder.push(Role::Size(effect.effect), 0.0, column);
         }
+        for (effect, _) in &contributions {
+            for i in 0..space.effects[effect.effect].shape_constants {
+                let moved = |e: &SizedEffect| if e == effect { shifted(*e, i) } else { *e };
+                let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
+                let column = slope(&forward.readings(&mode.constants, &moved), &baseline, SHIFT_STEP);
+                add_scaled(&mut target, &column, effect.shifts[i]);
+                builder.push(Role::Shape(effect.effect, i), 0.0, column);
+            }
+        }
         for (effect, contribution) in &contributions {
             for factor in &rows.discrepancies[effect.effect] {
                 let column = contribution.iter().zip(factor).map(|(x, z)| x * z).collect();
                 builder.push(Role::Discrepancy(effect.effect), 0.0, column);
-            }
-            if space.effects[effect.effect].has_shapes_between {
-                for shape in (0..space.effects[effect.effect].starts.len()).filter(|s| *s != effect.shape) {
-                    let other =
-                        effects.iter().map(|e| if e == effect { SizedEffect { shape, ..*e } } else { *e });
-                    let other: Vec<SizedEffect> = other.collect();
-                    let step = DISCREPANCY_SD / BETWEEN_SHAPES_SD;
-                    let column = slope(&forward.readings(&mode.constants, &other), &baseline, step);
-                    builder.push(Role::Discrepancy(effect.effect), 0.0, column);
-                }
             }
         }
         for (i, random) in space.random_effects.iter().enumerate() {
@@ -149,6 +167,7 @@ impl Design {
         let variance = |role: &Role| match role {
             Role::Constant(i) => space.constants[*i].sd.powi(2),
             Role::Size(effect) => size_variance(*effect),
+            Role::Shape(..) => 1.0,
             Role::Discrepancy(_) => DISCREPANCY_SD.powi(2),
             Role::Variance(component) => log_sd.get(component).map_or(0.0, |log| libm::exp(2.0 * log)),
         };
@@ -204,6 +223,11 @@ impl Builder {
     }
 }
 
+fn shifted(mut effect: SizedEffect, index: usize) -> SizedEffect {
+    effect.shifts[index] += SHIFT_STEP;
+    effect
+}
+
 fn slope(moved: &[f64], baseline: &[f64], step: f64) -> Vec<f64> {
     moved.iter().zip(baseline).map(|(a, b)| (a - b) / step).collect()
 }
@@ -238,13 +262,12 @@ pub(crate) fn added_column(
     effect: usize,
     shape: usize,
 ) -> Option<DVector<f64>> {
-    let rest = hypothesis.without(Member::Effect(effect)).sized(&mode.sizes);
-    let with = hypothesis.with(Element { member: Member::Effect(effect), form: shape });
+    let rest = mode.sized(&hypothesis.without(Member::Effect(effect)));
     let start = space.effects[effect].starts.get(shape).copied()?;
-    let mut sizes = mode.sizes.clone();
-    sizes.insert(effect, start);
+    let mut with = rest.clone();
+    with.push(SizedEffect { effect, shape, size: start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
     let before = rows.forward.readings(&mode.constants, &rest);
-    let after = rows.forward.readings(&mode.constants, &with.sized(&sizes));
+    let after = rows.forward.readings(&mode.constants, &with);
     let column = slope(&after, &before, start);
     let most = column.iter().fold(0.0f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { f64::NAN });
     (most > 1e-9).then(|| DVector::from_vec(column))

@@ -7,7 +7,7 @@
 
 use nalgebra::DVector;
 
-use crate::design::Component;
+use crate::design::{Component, Role};
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
@@ -91,7 +91,7 @@ fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {
 /// Returns the mean square of what a session draws again: effects and kernels of its time, about
 /// their mean over the session, which predictions use.
 fn session_variance(problem: &Problem, fit: &Fit, linearised: &Linearised, sound: &[usize]) -> f64 {
-    let effects = fit.hypothesis.sized(&fit.mode.sizes);
+    let effects = fit.mode.sized(&fit.hypothesis);
     let forward = &problem.rows.forward;
     let at = forward.readings(&fit.mode.constants, &effects);
     let mean = forward.session_mean(&fit.mode.constants, &effects);
@@ -169,7 +169,7 @@ impl<'a> Simulation<'a> {
         let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
         let mut coefficients = solution.root.tr_mul(&normal);
         for (i, role) in self.linearised.design.roles.iter().enumerate() {
-            if !matches!(role, crate::design::Role::Constant(_) | crate::design::Role::Size(_)) {
+            if !matches!(role, Role::Constant(_) | Role::Size(_) | Role::Shape(..)) {
                 coefficients[i] = 0.0;
             }
         }

@@ -15,13 +15,13 @@ use crate::scales::{ScalePoint, ScaleProblem};
 pub(crate) const DEGREES_OF_FREEDOM: f64 = 5.0;
 /// Range of the weights of the scale mixture.
 const WEIGHT_RANGE: (f64, f64) = (1e-3, 1.2);
-/// Start of a size without a hint, as a share of the typical one.
-const START_SHARE: f64 = 0.3;
 /// Prior standard deviation of a size while its mode is searched, in typical sizes: practically
 /// free, since a prior that is tight about a bad start keeps a fit there.
 const FREE_SIZE_SD: f64 = 300.0;
 /// Largest step of a constant in its coordinate.
 const MOST_CONSTANT_STEP: f64 = 0.5;
+/// Largest step of a shift of a shape, and its largest value.
+const MOST_SHIFT: (f64, f64) = (0.7, 4.0);
 /// Smallest size of a one-sided effect, as a share of the typical one.
 const LEAST_SHARE: f64 = 0.02;
 /// Rounds with free sizes: from scratch, and from the mode of a similar hypothesis.
@@ -55,8 +55,17 @@ pub struct Fit {
 pub(crate) struct Start<'a> {
     /// Mode of a similar hypothesis.
     pub(crate) mode: Option<&'a Mode>,
+    /// That hypothesis.
+    pub(crate) hypothesis: Option<&'a Hypothesis>,
     /// Size of an added effect, from its first-order score.
     pub(crate) hint: Option<(usize, f64)>,
+}
+
+impl<'a> Start<'a> {
+    /// Returns a start at the mode of a fit.
+    pub(crate) fn at(fit: &'a Fit, hint: Option<(usize, f64)>) -> Self {
+        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), hint }
+    }
 }
 
 impl Fit {
@@ -160,23 +169,26 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
     let mut mode = start.mode.cloned().unwrap_or_else(|| Mode {
         constants: space.constants.iter().map(|c| c.mean).collect(),
         sizes: BTreeMap::new(),
+        shifts: BTreeMap::new(),
         weights: DVector::from_element(problem.len(), 1.0),
         scales: Scales::typical(&problem.reference),
         log_sd: BTreeMap::new(),
     });
     mode.scales = mode.scales.raised(&problem.reference);
-    let mut sizes = BTreeMap::new();
+    let (mut sizes, mut shifts) = (BTreeMap::new(), BTreeMap::new());
     for (effect, shape) in hypothesis.effects() {
         let Some(typical) = space.effects[effect].typical_size else { continue };
         let hint = start.hint.filter(|(of, _)| *of == effect).map(|(_, size)| size);
-        let cold = if space.effects[effect].has_shapes_between || space.effects[effect].starts.len() == 1 {
-            START_SHARE * typical
-        } else {
-            space.effects[effect].starts.get(shape).copied().unwrap_or(typical)
-        };
+        let cold = space.effects[effect].starts.get(shape).copied().unwrap_or(typical);
+        // Shifts are relative to the shape, so that those of another shape do not apply.
+        let is_same = start.hypothesis.is_some_and(|h| h.effects().any(|known| known == (effect, shape)));
+        if let Some(known) = mode.shifts.get(&effect).filter(|_| is_same) {
+            shifts.insert(effect, *known);
+        }
         sizes.insert(effect, hint.or(mode.sizes.get(&effect).copied()).unwrap_or(cold));
     }
     mode.sizes = sizes;
+    mode.shifts = shifts;
     let mut log_sd = BTreeMap::new();
     let random = (0..space.random_effects.len()).map(Component::Random);
     let kernels = hypothesis.kernels().map(|(kernel, _)| Component::Kernel(kernel));
@@ -232,6 +244,11 @@ fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &
                 let size = mode.sizes.entry(*effect).or_insert(value);
                 let most = (FREE_SIZE_SD * typical).max(2.0 * size.abs());
                 *size += (value - *size).clamp(-most, most);
+            }
+            Role::Shape(effect, i) => {
+                let shift = &mut mode.shifts.entry(*effect).or_default()[*i];
+                *shift += (value - *shift).clamp(-MOST_SHIFT.0, MOST_SHIFT.0);
+                *shift = shift.clamp(-MOST_SHIFT.1, MOST_SHIFT.1);
             }
             Role::Discrepancy(_) | Role::Variance(_) => {}
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::problem::{SizedEffect, Space};
+use crate::problem::Space;
 
 /// A named effect or a kernel, without regard to its discrete form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -79,12 +79,6 @@ impl Hypothesis {
         })
     }
 
-    /// Returns its effects with sizes.
-    pub(crate) fn sized(&self, sizes: &BTreeMap<usize, f64>) -> Vec<SizedEffect> {
-        let size = |effect| sizes.get(&effect).copied().unwrap_or(1.0);
-        self.effects().map(|(effect, shape)| SizedEffect { effect, shape, size: size(effect) }).collect()
-    }
-
     /// Returns the number of its members.
     pub fn len(&self) -> usize {
         self.0.len()
@@ -130,7 +124,7 @@ mod tests {
             is_one_sided: false,
             probability: 0.2,
             starts: starts.to_vec(),
-            has_shapes_between: false,
+            shape_constants: 0,
         };
         let space = Space { effects: vec![effect(&[1.0]), effect(&[1.0, 2.0])], ..Space::default() };
         let one = |index| Element { member: Member::Effect(index), form: 0 };

@@ -17,7 +17,8 @@
 //! | `f` | forward model | | [`ForwardModel::readings`] |
 //! | `q` | constants of the baseline | normal | [`Constant`] |
 //! | `s_e` | size of an effect, for each of its discrete shapes | Cauchy with quartiles at the typical size; half-Cauchy if one-sided | [`Effect`] |
-//! | `B_e b_e` | discrepancy of an effect: its contribution times columns where its form may be wrong, and shapes between the discrete ones | normal, sd 0.15 | [`Rows::discrepancies`] |
+//! | | shifts of the constants of its shape | normal, sd 1 | [`SizedEffect::shifts`] |
+//! | `B_e b_e` | discrepancy of an effect: its contribution times columns where its form may be wrong | normal, sd 0.15 | [`Rows::discrepancies`] |
 //! | `Phi_k w_k` | unnamed structure over one covariate | normal with sd `tau_k`, half-Cauchy | [`Kernel`], [`kernel`] |
 //! | `c_k` | sensitivity of the reading to a channel, such as friction | | [`ForwardModel::channels`] |
 //! | `Z_j m_j` | random effects, such as mounts | normal with sd half-normal | [`RandomEffect`] |
@@ -69,7 +70,7 @@
 //!         is_one_sided: false,
 //!         probability: 0.05,
 //!         starts: vec![0.1],
-//!         has_shapes_between: false,
+//!         shape_constants: 0,
 //!     }],
 //!     ..Space::default()
 //! };
@@ -123,6 +124,7 @@ pub use noise::{NoiseReference, Scales};
 pub use posterior::{Posterior, Reported, SizeEstimate, Verdict, infer};
 pub use prediction::Prediction;
 pub use problem::{
-    Constant, Effect, ForwardModel, Kernel, Problem, ProblemError, RandomEffect, Rows, SizedEffect, Space,
+    Constant, Effect, ForwardModel, Kernel, MOST_SHAPE_CONSTANTS, Problem, ProblemError, RandomEffect, Rows,
+    SizedEffect, Space,
 };
 pub use search::SearchOptions;

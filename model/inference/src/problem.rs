@@ -31,9 +31,13 @@ pub struct Effect {
     pub probability: f64,
     /// Size at which each shape is scored first, one per shape.
     pub starts: Vec<f64>,
-    /// Whether a true shape may lie between the discrete ones.
-    pub has_shapes_between: bool,
+    /// Number of constants of a shape, at most [`MOST_SHAPE_CONSTANTS`]. A fit shifts them from
+    /// their discrete values.
+    pub shape_constants: usize,
 }
+
+/// Most constants of a shape.
+pub const MOST_SHAPE_CONSTANTS: usize = 3;
 
 /// Unnamed structure over one covariate, which a hypothesis may contain.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +99,8 @@ pub struct SizedEffect {
     pub shape: usize,
     /// Size; 1 for an effect without a free size.
     pub size: f64,
+    /// Shifts of the constants of its shape, in standard deviations of their priors.
+    pub shifts: [f64; MOST_SHAPE_CONSTANTS],
 }
 
 /// The expected readings of some rows, as a function of constants and effects.
@@ -206,7 +212,7 @@ impl fmt::Display for ProblemError {
         match self {
             Self::Empty => write!(f, "there are no rows"),
             Self::Length { name, length, expected } => {
-                write!(f, "{name} has {length} entries, but {expected} are needed")
+                write!(f, "{name}: {length} entries, but {expected} are expected")
             }
             Self::Series { row } => {
                 write!(f, "row {row}: the rows of a series are not consecutive")
@@ -272,6 +278,12 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
         expect_length("bases of a kernel", bases.len(), kernel.variants)?;
         for basis in bases {
             expect_length("rows of a basis", basis.nrows(), count)?;
+        }
+    }
+    for effect in &space.effects {
+        if effect.shape_constants > MOST_SHAPE_CONSTANTS {
+            let (length, expected) = (effect.shape_constants, MOST_SHAPE_CONSTANTS);
+            return Err(ProblemError::Length { name: "constants of a shape", length, expected });
         }
     }
     expect_length("relevant", rows.relevant.len(), space.effects.len())?;

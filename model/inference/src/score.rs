@@ -134,7 +134,10 @@ impl<'a> Scores<'a> {
     pub(crate) fn additions(&self, removed: Option<Member>) -> Vec<Addition> {
         let rest = removed.map_or_else(|| self.hypothesis.clone(), |member| self.hypothesis.without(member));
         let is_kept = |role: &Role| match (role, removed) {
-            (Role::Size(effect) | Role::Discrepancy(effect), Some(Member::Effect(gone))) => *effect != gone,
+            (
+                Role::Size(effect) | Role::Shape(effect, _) | Role::Discrepancy(effect),
+                Some(Member::Effect(gone)),
+            ) => *effect != gone,
             (Role::Variance(Component::Kernel(kernel)), Some(Member::Kernel(gone))) => *kernel != gone,
             _ => true,
         };

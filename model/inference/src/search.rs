@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     /// Fits a hypothesis again from another mode, and keeps the better fit.
     fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit) {
         self.fit_count += 1;
-        let start = Start { mode: Some(&start.mode), hint: None };
+        let start = Start::at(start, None);
         let Some(again) = Fit::new(self.problem, hypothesis, start) else { return };
         let known = self.fits.get(hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
         if again.score > known {
@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
         while !fit.hypothesis.is_empty() {
             let mut best: Option<Fit> = None;
             for member in fit.hypothesis.members().collect::<Vec<_>>() {
-                let start = Start { mode: Some(&fit.mode), hint: None };
+                let start = Start::at(&fit, None);
                 let reduced = self.fit(&fit.hypothesis.without(member), start);
                 if let Some(reduced) = reduced.filter(|r| best.as_ref().is_none_or(|b| r.score > b.score)) {
                     best = Some(reduced.clone());
@@ -206,7 +206,7 @@ impl<'a> Search<'a> {
     /// Fits a hypothesis without a member, and the best exchanges of the member.
     fn exchange(&mut self, fit: &Fit, element: Element, exchanges: &[Addition]) {
         let reduced = fit.hypothesis.without(element.member);
-        let start = Start { mode: Some(&fit.mode), hint: None };
+        let start = Start::at(fit, None);
         let Some(reduced) = self.fit(&reduced, start).cloned() else { return };
         let Some(top) = exchanges.first().map(|a| a.score) else { return };
         for exchange in exchanges.iter().take(EXCHANGES) {
@@ -234,7 +234,7 @@ impl<'a> Search<'a> {
 }
 
 fn start_of<'a>(fit: &'a Fit, addition: &Addition) -> Start<'a> {
-    Start { mode: Some(&fit.mode), hint: addition.hint }
+    Start::at(fit, addition.hint)
 }
 
 #[cfg(test)]

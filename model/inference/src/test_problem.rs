@@ -57,7 +57,7 @@ fn space() -> Space {
             is_one_sided: false,
             probability: 0.1,
             starts: vec![0.15],
-            has_shapes_between: false,
+            shape_constants: 0,
         }],
         kernels: vec![Kernel {
             name: "load levels".to_owned(),

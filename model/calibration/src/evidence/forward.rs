@@ -163,10 +163,8 @@ impl FrictionModel {
         effects: &[SizedEffect],
         factors: Factors,
     ) -> Vec<f64> {
-        let mut acting: Vec<(&EffectPrior, Vec<f64>)> = effects
-            .iter()
-            .map(|e| (&self.priors[e.effect], self.priors[e.effect].values(e.shape, e.size)))
-            .collect();
+        let mut acting: Vec<(&EffectPrior, Vec<f64>)> =
+            effects.iter().map(|e| (&self.priors[e.effect], self.priors[e.effect].values(e))).collect();
         acting.sort_by_key(|(prior, _)| prior.effect.description().stage);
         let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
         let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);

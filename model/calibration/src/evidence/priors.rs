@@ -1,6 +1,6 @@
 //! Priors of the effects: typical sizes, prior odds, discrete shapes, and where a form may be wrong.
 
-use pinswitch_inference::Effect as EffectSpace;
+use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
 use crate::effects::{Covariate, Effect, Vocabulary};
 use crate::table::Frame;
@@ -15,6 +15,12 @@ const USUAL: [&str; 3] = ["guide_drag", "load_cell_offset", "load_cell_gain"];
 const START_SHARE: f64 = 0.3;
 /// Distance in newtons of the limit of the load cell above the highest reading at size zero.
 const LIMIT_MARGIN_N: f64 = 0.1;
+
+/// Prior standard deviation of a constant of a shape about its start, as a share of its range.
+const SHIFT_SHARE: f64 = 0.25;
+/// The same in logarithms, for a constant whose bounds have at least this ratio.
+const LOG_SHIFT_SHARE: f64 = 1.0 / 6.0;
+const LOG_RANGE: f64 = 5.0;
 
 /// Typical size of a built-in effect in its unit, and its discrete shapes.
 struct Typical {
@@ -104,12 +110,22 @@ impl EffectPrior {
     }
 
     /// Returns the constants of the effect for a shape and a size.
-    pub(super) fn values(&self, shape: usize, size: f64) -> Vec<f64> {
+    pub(super) fn values(&self, sized: &SizedEffect) -> Vec<f64> {
         match (self.typical_size, self.limit_from_n) {
             (None, _) => Vec::new(),
-            (Some(_), Some(from)) => vec![from - size],
-            (Some(_), None) => std::iter::once(size).chain(self.shapes[shape].iter().copied()).collect(),
+            (Some(_), Some(from)) => vec![from - sized.size],
+            (Some(_), None) => {
+                let bounds = self.effect.parameters().iter().skip(1).map(|parameter| parameter.bounds);
+                let shape = self.shapes[sized.shape].iter().zip(bounds).zip(sized.shifts);
+                let shape = shape.map(|((start, bounds), shift)| shifted(*start, bounds, shift));
+                std::iter::once(sized.size).chain(shape).collect()
+            }
         }
+    }
+
+    /// Returns the number of constants of a shape that a fit shifts.
+    fn shape_constants(&self) -> usize {
+        self.shapes.first().map_or(0, Vec::len).min(MOST_SHAPE_CONSTANTS)
     }
 
     /// Returns the effect for the space of hypotheses.
@@ -124,7 +140,7 @@ impl EffectPrior {
             typical_size: self.typical_size,
             is_one_sided: self.effect.description().one_sided || self.limit_from_n.is_some(),
             probability: if self.is_usual() { USUAL_PROBABILITY } else { OTHER_PROBABILITY },
-            has_shapes_between: self.limit_from_n.is_none() && starts.len() > 1,
+            shape_constants: self.shape_constants(),
             starts,
         }
     }
@@ -149,6 +165,19 @@ impl EffectPrior {
             _ => vec![Covariate::Load, description.covariate],
         }
     }
+}
+
+/// Returns a constant of a shape that is shifted from its start by standard deviations of its prior:
+/// shares of its range, of the logarithm for a constant whose range covers much more than its lower
+/// end.
+fn shifted(start: f64, bounds: Option<(f64, f64)>, shift: f64) -> f64 {
+    let Some((low, high)) = bounds else { return start };
+    let value = if low > 0.0 && high > LOG_RANGE * low {
+        start * libm::exp(shift * LOG_SHIFT_SHARE * libm::log(high / low))
+    } else {
+        start + shift * SHIFT_SHARE * (high - low)
+    };
+    value.clamp(low, high)
 }
 
 /// Returns size and shapes of a user-defined effect: those of its starts.

@@ -28,8 +28,8 @@ const LEAST_SHARE: f64 = 0.02;
 const FREE_ROUNDS: (usize, usize) = (6, 2);
 /// Most rounds after these.
 const FINAL_ROUNDS: usize = 5;
-/// Newton steps of the scales in a round.
-const SCALE_STEPS: usize = 3;
+/// Newton steps of the scales in a round: from scratch, and from the mode of a similar hypothesis.
+const SCALE_STEPS: (usize, usize) = (3, 2);
 /// Change of the objective in nats below which the last rounds have converged.
 const CONVERGED: f64 = 0.05;
 
@@ -57,6 +57,8 @@ pub(crate) struct Start<'a> {
     pub(crate) mode: Option<&'a Mode>,
     /// That hypothesis.
     pub(crate) hypothesis: Option<&'a Hypothesis>,
+    /// Whether the fit is the last one of its hypothesis, for which every autoregression is tried.
+    pub(crate) is_final: bool,
     /// Size of an added effect, from its first-order score.
     pub(crate) hint: Option<(usize, f64)>,
 }
@@ -64,7 +66,7 @@ pub(crate) struct Start<'a> {
 impl<'a> Start<'a> {
     /// Returns a start at the mode of a fit.
     pub(crate) fn at(fit: &'a Fit, hint: Option<(usize, f64)>) -> Self {
-        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), hint }
+        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), is_final: false, hint }
     }
 }
 
@@ -72,7 +74,9 @@ impl Fit {
     /// Fits a hypothesis; `None` if its readings are not finite at any mode.
     pub(crate) fn new(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Option<Self> {
         let mut mode = start_mode(problem, hypothesis, start);
-        let free = if start.mode.is_none() { FREE_ROUNDS.0 } else { FREE_ROUNDS.1 };
+        let is_cold = start.mode.is_none();
+        let free = if is_cold { FREE_ROUNDS.0 } else { FREE_ROUNDS.1 };
+        let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
         let mut before = f64::NEG_INFINITY;
         for round in 0..free + FINAL_ROUNDS {
             let is_final = round >= free;
@@ -84,8 +88,8 @@ impl Fit {
                 weights: &mode.weights,
                 size_variances: &size_variances,
             };
-            let mut point = scale_problem.maximum(&mode, SCALE_STEPS)?;
-            if round == free {
+            let mut point = scale_problem.maximum(&mode, steps)?;
+            if round == free && (is_cold || start.is_final) {
                 point = scale_problem.best_autoregression(point);
             }
             let objective = point.log_posterior + log_weight_term(&mode.weights);

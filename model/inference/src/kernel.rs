@@ -25,13 +25,6 @@ pub fn smooth(u: &[f64], rank: usize, decay: f64) -> DMatrix<f64> {
     })
 }
 
-/// Returns steps: column `j` is 1 where the covariate is at least the `j`-th edge. This is Brownian
-/// motion that moves only at the edges.
-pub fn steps(u: &[f64], edges: &[f64]) -> DMatrix<f64> {
-    let size = 1.0 / (edges.len().max(1) as f64).sqrt();
-    DMatrix::from_fn(u.len(), edges.len(), |row, column| if u[row] >= edges[column] { size } else { 0.0 })
-}
-
 /// Returns independent levels of a factor: column `j` is 1 for rows at level `j`. Rows without a
 /// level are zero.
 pub fn levels(level_of: &[Option<usize>], count: usize) -> DMatrix<f64> {
@@ -67,17 +60,6 @@ mod tests {
                 assert!((covariance[(i, j)] - u[i].min(u[j])).abs() < 2e-4, "{i} {j}");
             }
         }
-    }
-
-    /// Steps at 100 equal edges approximate Brownian motion.
-    #[test]
-    fn steps_approximate_brownian_motion() {
-        let edges: Vec<f64> = (1..=100).map(|i| f64::from(i) / 100.0).collect();
-        let u = [0.2, 0.7];
-        let basis = steps(&u, &edges);
-        let covariance = &basis * basis.transpose();
-        assert!((covariance[(0, 1)] - 0.2).abs() < 0.011);
-        assert!((covariance[(1, 1)] - 0.7).abs() < 0.011);
     }
 
     #[test]

@@ -77,7 +77,7 @@
 //! let rows = Rows {
 //!     series: (0..40).map(|i| i / 10).collect(),
 //!     direction: vec![false; 40],
-//!     order: (0..40).map(|i| f64::from(i % 10)).collect(),
+//!     order: (0..40).map(|i| i % 10).collect(),
 //!     load: load.clone(),
 //!     levels: vec![],
 //!     bases: vec![],

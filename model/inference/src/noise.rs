@@ -191,6 +191,7 @@ impl Noise<'_> {
         let (share, correlation) = self.scales.autoregression();
         let first = range.start;
         let sd: Vec<f64> = range.clone().map(|row| self.repetition_sd(row).0).collect();
+        let powers = powers(correlation, range.len());
         DMatrix::from_fn(range.len(), range.len(), |i, j| {
             let (a, b) = (first + i, first + j);
             let mut sum = series + scale * self.friction[a] * self.friction[b];
@@ -198,7 +199,7 @@ impl Noise<'_> {
                 sum += direction;
             }
             if share > 0.0 {
-                sum += share * sd[i] * sd[j] * libm::pow(correlation, self.lag(a, b));
+                sum += share * sd[i] * sd[j] * powers[self.lag(a, b).min(range.len())];
             }
             if i == j {
                 sum += (1.0 - share) * sd[i] * sd[i] / self.weights[a] + self.quantum_variance();
@@ -207,8 +208,9 @@ impl Noise<'_> {
         })
     }
 
-    fn lag(&self, a: usize, b: usize) -> f64 {
-        (self.rows.order[a] - self.rows.order[b]).abs()
+    /// Returns the distance of two rows in the order of their series.
+    fn lag(&self, a: usize, b: usize) -> usize {
+        self.rows.order[a].abs_diff(self.rows.order[b])
     }
 
     /// Returns the derivative of the covariance with respect to the logarithm of a scale.
@@ -216,6 +218,7 @@ impl Noise<'_> {
         let square = 2.0 * libm::exp(2.0 * self.scales.log[scale]);
         let (share, correlation) = self.scales.autoregression();
         let sd: Vec<(f64, f64)> = range.clone().map(|row| self.repetition_sd(row)).collect();
+        let powers = powers(correlation, range.len());
         DMatrix::from_fn(range.len(), range.len(), |i, j| {
             let (a, b) = (range.start + i, range.start + j);
             match scale {
@@ -227,7 +230,7 @@ impl Noise<'_> {
                     let relative = if scale == REPETITION { 2.0 } else { sd[i].1 + sd[j].1 };
                     let mut sum = 0.0;
                     if share > 0.0 {
-                        sum += share * sd[i].0 * sd[j].0 * libm::pow(correlation, self.lag(a, b));
+                        sum += share * sd[i].0 * sd[j].0 * powers[self.lag(a, b).min(range.len())];
                     }
                     if i == j {
                         sum += (1.0 - share) * sd[i].0 * sd[i].0 / self.weights[a];
@@ -257,6 +260,11 @@ impl Noise<'_> {
         }
         whitening.log_determinant.is_finite().then_some(whitening)
     }
+}
+
+/// Returns the powers of a number from 0 to `most`.
+fn powers(base: f64, most: usize) -> Vec<f64> {
+    std::iter::successors(Some(1.0), |power| Some(power * base)).take(most + 1).collect()
 }
 
 /// Cholesky factors of the covariance `V = L L'` of all series.

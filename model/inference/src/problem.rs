@@ -124,7 +124,7 @@ pub struct Rows {
     /// Whether each row belongs to the second of the two directions.
     pub direction: Vec<bool>,
     /// Order of each row in its series, as a lag: 0, 1, 2, ...
-    pub order: Vec<f64>,
+    pub order: Vec<usize>,
     /// Load of each row, with which the repetition noise grows.
     pub load: Vec<f64>,
     /// Level of each row for each random effect of the space.
@@ -298,8 +298,7 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
             return Err(ProblemError::Series { row: range.start });
         }
     }
-    expect_finite("load", &rows.load)?;
-    expect_finite("order", &rows.order)
+    expect_finite("load", &rows.load)
 }
 
 fn expect_length(name: &'static str, length: usize, expected: usize) -> Result<(), ProblemError> {

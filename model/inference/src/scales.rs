@@ -81,7 +81,10 @@ impl ScaleProblem<'_> {
     pub(crate) fn maximum(&self, mode: &Mode, steps: usize) -> Option<ScalePoint> {
         let mut point = self.at(mode.scales, &mode.log_sd)?;
         for _ in 0..steps {
-            let Some(step) = self.newton_step(&point) else { break };
+            let Some((step, expected_gain)) = self.newton_step(&point) else { break };
+            if expected_gain < CONVERGED {
+                break;
+            }
             let Some(better) = self.line_search(&point, &step) else { break };
             let gain = better.log_posterior - point.log_posterior;
             point = better;
@@ -120,8 +123,9 @@ impl ScaleProblem<'_> {
         None
     }
 
-    /// Returns the Newton step of all scales: the noise's, then the components'.
-    fn newton_step(&self, point: &ScalePoint) -> Option<Vec<f64>> {
+    /// Returns the Newton step of all scales, the noise's, then the components', and its expected
+    /// gain.
+    fn newton_step(&self, point: &ScalePoint) -> Option<(Vec<f64>, f64)> {
         let (mut gradient, tangents) = self.likelihood_gradient(point);
         let white = point.marginal.whitening.whiten(&tangents);
         let projected = point.marginal.white_matrix.transpose() * &white;
@@ -135,7 +139,8 @@ impl ScaleProblem<'_> {
             information[(i, i)] += curvature + DAMPING;
         }
         let step = information.cholesky()?.solve(&gradient);
-        step.iter().all(|x| x.is_finite()).then(|| step.iter().copied().collect())
+        let gain = 0.5 * step.dot(&gradient);
+        gain.is_finite().then(|| (step.iter().copied().collect(), gain))
     }
 
     /// Returns the gradient of the marginal likelihood, and the column `dV P r` of each scale.

@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     /// Fits a hypothesis again from another mode, and keeps the better fit.
     fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit) {
         self.fit_count += 1;
-        let start = Start::at(start, None);
+        let start = Start { is_final: true, ..Start::at(start, None) };
         let Some(again) = Fit::new(self.problem, hypothesis, start) else { return };
         let known = self.fits.get(hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
         if again.score > known {

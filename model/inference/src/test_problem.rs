@@ -37,7 +37,7 @@ pub(crate) fn rows(count: usize) -> Rows {
     let level: Vec<Option<usize>> = series.iter().map(|s| Some(s % 3)).collect();
     Rows {
         direction: (0..total).map(|i| i % 2 == 1).collect(),
-        order: (0..total).map(|i| (i % ROWS_PER_SERIES) as f64).collect(),
+        order: (0..total).map(|i| i % ROWS_PER_SERIES).collect(),
         levels: vec![series.iter().map(|s| Some(s / 2 % 2)).collect()],
         bases: vec![vec![kernel::levels(&level, 3)]],
         discrepancies: vec![vec![load.iter().map(|f| f - 2.0).collect()]],

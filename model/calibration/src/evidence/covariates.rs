@@ -16,7 +16,7 @@ pub(super) struct Covariates {
     /// Number of the series of each row, in the order of their first rows.
     pub(super) series: Vec<usize>,
     /// Rank in time within the series, from 0.
-    pub(super) order: Vec<f64>,
+    pub(super) order: Vec<usize>,
     /// Seconds since the series began.
     pub(super) series_time_s: Vec<f64>,
     /// Time of the first row of the series in seconds.
@@ -74,7 +74,7 @@ impl Covariates {
         let wrap_deg = source.iter().map(|i| rows[*i].wrap_angle_deg).collect();
         let mut covariates = Self {
             source,
-            order: vec![0.0; points.len()],
+            order: vec![0; points.len()],
             series_time_s: vec![0.0; points.len()],
             series_start_s: vec![0.0; points.len()],
             points,
@@ -95,7 +95,7 @@ impl Covariates {
             sort_by_number(&mut rows, |i| self.points[*i].time_s);
             let start = rows.first().map_or(0.0, |i| self.points[*i].time_s);
             for (rank, row) in rows.iter().enumerate() {
-                self.order[*row] = rank as f64;
+                self.order[*row] = rank;
                 self.series_time_s[*row] = self.points[*row].time_s - start;
                 self.series_start_s[*row] = start;
             }

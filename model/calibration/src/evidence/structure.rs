@@ -13,8 +13,10 @@ const FORCE_SCALE_N: f64 = 0.3;
 const RELATIVE_SCALE: f64 = 0.08;
 /// The same for the scale of the load cell, which is more exact than friction.
 const GAIN_SCALE: f64 = 0.02;
-/// Most steps between series that are columns of their own; a longer table has a smooth basis.
-const MOST_STEPS: usize = 80;
+/// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
+const TIME_RANK: usize = 24;
+/// Series up to which time also varies within them.
+const FEW_SERIES: usize = 4;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
@@ -145,11 +147,14 @@ impl Collector<'_> {
         let edges: Vec<f64> = starts.into_iter().skip(1).collect();
         let time = |rows: &Covariates| rows.column(|p| p.time_s);
         let scale = Interval::of(&time(self.rows));
-        let basis: Basis = if edges.len() > 3 && edges.len() <= MOST_STEPS {
-            Box::new(move |rows| kernel::steps(&time(rows), &edges))
+        let basis: Basis = if edges.len() < FEW_SERIES {
+            Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12))
         } else {
-            let rank = if edges.len() > MOST_STEPS { 32 } else { 12 };
-            Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), rank))
+            // Between series time moves by steps, equal ones: pauses are not known.
+            let rank = edges.len().min(TIME_RANK);
+            let share =
+                move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
+            Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
         self.add_bound("time", "time", &channels, vec![basis], true);
     }

@@ -24,7 +24,7 @@ const MOST_CONSTANT_STEP: f64 = 0.5;
 const MOST_SHIFT: (f64, f64) = (0.7, 4.0);
 /// Smallest size of a one-sided effect, as a share of the typical one.
 const LEAST_SHARE: f64 = 0.02;
-/// Rounds with free sizes: from scratch, and from the mode of a similar hypothesis.
+/// Rounds with free sizes: from scratch, and for an effect that is added to a mode.
 const FREE_ROUNDS: (usize, usize) = (6, 2);
 /// Most rounds after these.
 const FINAL_ROUNDS: usize = 5;
@@ -75,7 +75,11 @@ impl Fit {
     pub(crate) fn new(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Option<Self> {
         let mut mode = start_mode(problem, hypothesis, start);
         let is_cold = start.mode.is_none();
-        let free = if is_cold { FREE_ROUNDS.0 } else { FREE_ROUNDS.1 };
+        let free = match (is_cold, start.hint) {
+            (true, _) => FREE_ROUNDS.0,
+            (false, Some(_)) => FREE_ROUNDS.1,
+            (false, None) => 0,
+        };
         let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
         let mut before = f64::NEG_INFINITY;
         for round in 0..free + FINAL_ROUNDS {

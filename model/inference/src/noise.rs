@@ -213,33 +213,44 @@ impl Noise<'_> {
         self.rows.order[a].abs_diff(self.rows.order[b])
     }
 
-    /// Returns the derivative of the covariance with respect to the logarithm of a scale.
-    pub(crate) fn derivative(&self, range: &std::ops::Range<usize>, scale: usize) -> DMatrix<f64> {
-        let square = 2.0 * libm::exp(2.0 * self.scales.log[scale]);
-        let (share, correlation) = self.scales.autoregression();
-        let sd: Vec<(f64, f64)> = range.clone().map(|row| self.repetition_sd(row)).collect();
-        let powers = powers(correlation, range.len());
-        DMatrix::from_fn(range.len(), range.len(), |i, j| {
-            let (a, b) = (range.start + i, range.start + j);
-            match scale {
-                DIRECTION_OFFSET if self.rows.direction[a] == self.rows.direction[b] => square,
-                DIRECTION_OFFSET => 0.0,
-                SERIES_OFFSET => square,
-                SERIES_SCALE => square * self.friction[a] * self.friction[b],
-                REPETITION | LOAD_GROWTH => {
-                    let relative = if scale == REPETITION { 2.0 } else { sd[i].1 + sd[j].1 };
-                    let mut sum = 0.0;
-                    if share > 0.0 {
-                        sum += share * sd[i].0 * sd[j].0 * powers[self.lag(a, b).min(range.len())];
-                    }
-                    if i == j {
-                        sum += (1.0 - share) * sd[i].0 * sd[i].0 / self.weights[a];
-                    }
-                    relative * sum
-                }
-                _ => 0.0,
+    /// Returns the derivative of the covariance of a series with respect to the logarithm of a scale.
+    pub(crate) fn derivative(&self, range: &std::ops::Range<usize>, scale: usize) -> Derivative {
+        let root = std::f64::consts::SQRT_2 * libm::exp(self.scales.log[scale]);
+        let (first, length) = (range.start, range.len());
+        let is_second =
+            |i: usize, second: bool| if self.rows.direction[first + i] == second { root } else { 0.0 };
+        match scale {
+            DIRECTION_OFFSET => {
+                Derivative::Factor(DMatrix::from_fn(length, 2, |i, side| is_second(i, side == 1)))
             }
-        })
+            SERIES_OFFSET => Derivative::Factor(DMatrix::from_element(length, 1, root)),
+            SERIES_SCALE => {
+                Derivative::Factor(DMatrix::from_fn(length, 1, |i, _| root * self.friction[first + i]))
+            }
+            _ => self.repetition_derivative(range, scale),
+        }
+    }
+
+    fn repetition_derivative(&self, range: &std::ops::Range<usize>, scale: usize) -> Derivative {
+        let (share, correlation) = self.scales.autoregression();
+        let first = range.start;
+        let sd: Vec<(f64, f64)> = range
+            .clone()
+            .map(|row| {
+                let (sd, growth) = self.repetition_sd(row);
+                (sd, if scale == LOAD_GROWTH { growth } else { 1.0 })
+            })
+            .collect();
+        let own = |i: usize| 2.0 * sd[i].1 * (1.0 - share) * sd[i].0 * sd[i].0 / self.weights[first + i];
+        if share == 0.0 {
+            return Derivative::Diagonal(DVector::from_fn(range.len(), |i, _| own(i)));
+        }
+        let powers = powers(correlation, range.len());
+        Derivative::Dense(DMatrix::from_fn(range.len(), range.len(), |i, j| {
+            let power = powers[self.lag(first + i, first + j).min(range.len())];
+            let shared = share * (sd[i].1 + sd[j].1) * sd[i].0 * sd[j].0 * power;
+            if i == j { shared + own(i) } else { shared }
+        }))
     }
 
     /// Returns the Cholesky factors of the covariance; `None` if it is not positive definite.
@@ -259,6 +270,28 @@ impl Noise<'_> {
             whitening.inverses.push(inverse);
         }
         whitening.log_determinant.is_finite().then_some(whitening)
+    }
+}
+
+/// Derivative of the covariance of a series.
+#[derive(Clone, Debug)]
+pub(crate) enum Derivative {
+    /// `F F'`.
+    Factor(DMatrix<f64>),
+    /// A diagonal matrix.
+    Diagonal(DVector<f64>),
+    /// Any matrix.
+    Dense(DMatrix<f64>),
+}
+
+impl Derivative {
+    /// Returns the product with a vector.
+    pub(crate) fn times(&self, vector: &DVector<f64>) -> DVector<f64> {
+        match self {
+            Self::Factor(factor) => factor * factor.tr_mul(vector),
+            Self::Diagonal(diagonal) => diagonal.component_mul(vector),
+            Self::Dense(dense) => dense * vector,
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
-use crate::noise::{AUTOREGRESSIONS, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
+use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
 use crate::problem::Problem;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
@@ -155,12 +155,11 @@ impl ScaleProblem<'_> {
         for (range, inverse) in marginal.whitening.ranges.iter().zip(&marginal.whitening.inverses) {
             let (first, length) = (range.start, range.len());
             let alpha = inverse.tr_mul(&white_residual.rows(first, length));
-            let part = inverse.transpose() * leverage.rows(first, length);
-            let precision = inverse.transpose() * inverse - &part * part.transpose();
+            let series = SeriesPrecision { inverse, leverage: leverage.rows(first, length).into_owned() };
             for scale in 0..SCALES {
                 let derivative = noise.derivative(range, scale);
-                let tangent = &derivative * &alpha;
-                gradient[scale] += 0.5 * (alpha.dot(&tangent) - precision.dot(&derivative));
+                let tangent = derivative.times(&alpha);
+                gradient[scale] += 0.5 * (alpha.dot(&tangent) - series.trace_with(&derivative));
                 tangents.view_mut((first, scale), (length, 1)).copy_from(&tangent);
             }
         }
@@ -177,13 +176,44 @@ impl ScaleProblem<'_> {
     }
 }
 
+/// Precision `P = L'^-1 (I - Z Z') L^-1` of a series, with the coefficients integrated.
+struct SeriesPrecision<'a> {
+    inverse: &'a DMatrix<f64>,
+    /// `Z`.
+    leverage: DMatrix<f64>,
+}
+
+impl SeriesPrecision<'_> {
+    /// Returns the trace of the product with the derivative of a covariance.
+    fn trace_with(&self, derivative: &Derivative) -> f64 {
+        match derivative {
+            Derivative::Factor(factor) => {
+                let white = self.inverse * factor;
+                white.norm_squared() - self.leverage.tr_mul(&white).norm_squared()
+            }
+            Derivative::Diagonal(diagonal) => {
+                let leverage = self.inverse.transpose() * &self.leverage;
+                let precision =
+                    |i: usize| self.inverse.column(i).norm_squared() - leverage.row(i).norm_squared();
+                diagonal.iter().enumerate().map(|(i, d)| d * precision(i)).sum()
+            }
+            Derivative::Dense(dense) => {
+                let leverage = self.inverse.transpose() * &self.leverage;
+                let precision = self.inverse.transpose() * self.inverse - &leverage * leverage.transpose();
+                precision.dot(dense)
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fit::size_variances;
     use crate::test_problem::{fitted, full_hypothesis, problem, unit_weights};
 
-    /// The gradient of the marginal likelihood matches central differences, with autocorrelation.
+    /// The gradient of the marginal likelihood matches central differences, without and with
+    /// autocorrelation.
     #[test]
     fn gradient_matches_finite_differences() {
         let problem = problem(6, 0.4);
@@ -197,7 +227,13 @@ mod tests {
             weights: &weights,
             size_variances: &size_variances,
         };
-        let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0], autoregression: 2 };
+        for autoregression in [0, 2] {
+            let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0], autoregression };
+            assert_gradient(&at, scales);
+        }
+    }
+
+    fn assert_gradient(at: &ScaleProblem<'_>, scales: Scales) {
         let log_sd: BTreeMap<Component, f64> =
             [(Component::Random(0), -4.0), (Component::Kernel(0), -2.0)].into();
         let (gradient, _) = at.likelihood_gradient(&at.at(scales, &log_sd).unwrap());

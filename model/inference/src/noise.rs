@@ -19,8 +19,7 @@ use crate::problem::Rows;
 
 /// Number of scales of the noise.
 pub(crate) const SCALES: usize = 5;
-/// Indices of the scales: `sigma`, `c`, `o_d`, `o_s`, `s`.
-pub(crate) const REPETITION: usize = 0;
+/// Indices of the scales `c`, `o_d`, `o_s` and `s`; that of `sigma` is 0.
 pub(crate) const LOAD_GROWTH: usize = 1;
 pub(crate) const DIRECTION_OFFSET: usize = 2;
 pub(crate) const SERIES_OFFSET: usize = 3;

@@ -29,6 +29,8 @@ const NORMAL_95: f64 = 1.96;
 pub(crate) struct Addition {
     /// Expected `ln p(y | H) + ln p(H)` of the hypothesis minus `ln p(y | H0)` of the fit.
     pub(crate) score: f64,
+    /// Expected change of the score by this element.
+    pub(crate) gain: f64,
     pub(crate) hypothesis: Hypothesis,
     pub(crate) element: Element,
     /// Expected size, for an effect that has one.
@@ -102,9 +104,6 @@ impl<'a> Scores<'a> {
         for (index, effect) in space.effects.iter().enumerate() {
             for form in 0..effect.starts.len() {
                 let element = Element { member: Member::Effect(index), form };
-                if fit.hypothesis.elements().any(|known| known == element) {
-                    continue;
-                }
                 let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
                 if let Some(column) = added {
                     candidates.push(candidate(element, DMatrix::from_columns(&[column])));
@@ -114,9 +113,6 @@ impl<'a> Scores<'a> {
         for (index, kernel) in space.kernels.iter().enumerate() {
             for form in 0..kernel.variants {
                 let element = Element { member: Member::Kernel(index), form };
-                if fit.hypothesis.elements().any(|known| known == element) {
-                    continue;
-                }
                 let columns = kernel_columns(space, &problem.rows, &design.channels, index, form);
                 if columns.amax() > 1e-9 {
                     candidates.push(candidate(element, columns));
@@ -130,7 +126,8 @@ impl<'a> Scores<'a> {
         Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, cauchy })
     }
 
-    /// Returns the additions, best first; with `removed`, those that take the place of a member.
+    /// Returns the additions, best first; with `removed`, those that take the place of a member,
+    /// including its own elements.
     pub(crate) fn additions(&self, removed: Option<Member>) -> Vec<Addition> {
         let rest = removed.map_or_else(|| self.hypothesis.clone(), |member| self.hypothesis.without(member));
         let is_kept = |role: &Role| match (role, removed) {
@@ -179,6 +176,7 @@ impl<'a> Scores<'a> {
                 };
                 Some(Addition {
                     score: gain + prior + odds,
+                    gain: gain + odds,
                     hypothesis: rest.with(element),
                     element,
                     hint,

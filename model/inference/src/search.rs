@@ -60,14 +60,16 @@ struct Selectivity {
     form: f64,
     /// Below the best exchange.
     exchange: f64,
+    /// Loss by the removal of a member, or by its exchange.
+    loss: f64,
 }
 
 impl Selectivity {
     fn of_rows(rows: usize) -> Self {
         if rows > LARGE_TABLE {
-            Self { addition: 8.0, certain: f64::INFINITY, form: 2.0, exchange: 6.0 }
+            Self { addition: 8.0, certain: f64::INFINITY, form: 2.0, exchange: 6.0, loss: 15.0 }
         } else {
-            Self { addition: 25.0, certain: 60.0, form: 4.0, exchange: f64::INFINITY }
+            Self { addition: 25.0, certain: 60.0, form: 4.0, exchange: f64::INFINITY, loss: f64::INFINITY }
         }
     }
 }
@@ -205,13 +207,21 @@ impl<'a> Search<'a> {
 
     /// Fits a hypothesis without a member, and the best exchanges of the member.
     fn exchange(&mut self, fit: &Fit, element: Element, exchanges: &[Addition]) {
-        let reduced = fit.hypothesis.without(element.member);
-        let start = Start::at(fit, None);
-        let Some(reduced) = self.fit(&reduced, start).cloned() else { return };
-        let Some(top) = exchanges.first().map(|a| a.score) else { return };
-        for exchange in exchanges.iter().take(EXCHANGES) {
-            if exchange.score > top - self.selectivity.exchange {
-                self.fit(&exchange.hypothesis, start_of(&reduced, exchange));
+        // The noise of the fit applies to the removed element too, whose gain is then its worth.
+        let own = exchanges.iter().find(|exchange| exchange.element == element);
+        let worth = own.map_or(0.0, |own| own.gain);
+        let mut start = fit.clone();
+        if worth < self.selectivity.loss {
+            let reduced = fit.hypothesis.without(element.member);
+            let Some(reduced) = self.fit(&reduced, Start::at(fit, None)) else { return };
+            start = reduced.clone();
+        }
+        let others: Vec<&Addition> = exchanges.iter().filter(|e| e.element != element).collect();
+        let Some(top) = others.first().map(|a| a.score) else { return };
+        let least = worth - self.selectivity.loss;
+        for exchange in others.into_iter().take(EXCHANGES) {
+            if exchange.score > top - self.selectivity.exchange && exchange.gain > least {
+                self.fit(&exchange.hypothesis, start_of(&start, exchange));
             }
         }
     }
@@ -228,7 +238,11 @@ impl<'a> Search<'a> {
         }
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
         for member in best.hypothesis.members() {
-            self.fit_again(&best.hypothesis.without(member), &best);
+            let reduced = best.hypothesis.without(member);
+            let known = self.fits.get(&reduced).map(|fit| fit.score);
+            if known.is_some_and(|score| score > best.score - self.selectivity.loss) {
+                self.fit_again(&reduced, &best);
+            }
         }
     }
 }

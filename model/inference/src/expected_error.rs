@@ -1,6 +1,7 @@
 //! Expected error of a new session.
 //!
-//! Each series is predicted from the others. A hypothesis counts by its probability without that
+//! Each series is predicted from the others, and its residual gets the spread of a new series at
+//! the same conditions. A hypothesis counts by its probability without that
 //! series, so that the choice of effects is held out too. New mounts and what a session draws again
 //! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
 //! sessions.
@@ -53,7 +54,7 @@ pub(crate) fn expected_error(
         let total = log_sum_exp(&logs);
         for ((_, _, _, out), log) in parts.iter().zip(&logs) {
             let share = libm::exp(log - total);
-            range.clone().for_each(|row| residuals[row] += share * out.residuals[row]);
+            range.clone().for_each(|row| residuals[row] += share * out.of_new_series[row]);
         }
     }
     let (_, fit, linearised, _) = parts.first()?;

@@ -3,6 +3,10 @@
 //! With `H = I - A_s C A_s'` for the white columns `A_s` of a series and the posterior covariance
 //! `C`, the residual of the series given all others is `L H^-1 L^-1 (r - A b)`, where `V = L L'` is its
 //! noise covariance. Nothing is fitted again.
+//!
+//! A series that alone determines a coefficient is predicted worse from the others than a new series
+//! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
+//! `I + A_s C A_s'` gives it the spread of a new series.
 
 use nalgebra::DMatrix;
 
@@ -16,6 +20,9 @@ use crate::scales::{ScalePoint, ScaleProblem};
 pub(crate) struct LeftOut {
     /// Reading minus prediction of each row.
     pub(crate) residuals: Vec<f64>,
+    /// The same residuals, with the spread that they have for a new series at the same conditions:
+    /// the series itself then helps to predict it.
+    pub(crate) of_new_series: Vec<f64>,
     /// `ln p(y_s | y_-s, H)` of each series.
     pub(crate) log_predictive: Vec<f64>,
 }
@@ -41,16 +48,24 @@ impl Linearised {
     pub(crate) fn leave_series_out(&self) -> Option<LeftOut> {
         let (marginal, solution) = (&self.point.marginal, &self.point.solution);
         let residual = marginal.white_residual(&solution.mean);
-        let mut left_out = LeftOut { residuals: vec![0.0; residual.len()], log_predictive: Vec::new() };
+        let zeros = vec![0.0; residual.len()];
+        let mut left_out =
+            LeftOut { residuals: zeros.clone(), of_new_series: zeros, log_predictive: Vec::new() };
         for (range, factor) in marginal.whitening.ranges.iter().zip(&marginal.whitening.factors) {
             let (first, length) = (range.start, range.len());
             let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
-            let share = DMatrix::identity(length, length) * (1.0 + 1e-10) - &part * part.transpose();
+            let explained = &part * part.transpose();
+            let share = DMatrix::identity(length, length) * (1.0 + 1e-10) - &explained;
+            let again = (DMatrix::identity(length, length) + explained).cholesky()?;
             let share = share.cholesky()?;
             let own = residual.rows(first, length).into_owned();
             let scaled = share.solve(&own);
             let unscaled = factor * &scaled;
             left_out.residuals[range.clone()].copy_from_slice(unscaled.as_slice());
+            // Standard normal under the model, whatever the leverage of the series.
+            let standard = share.l_dirty().lower_triangle().tr_mul(&scaled);
+            let new = factor * (again.l() * standard);
+            left_out.of_new_series[range.clone()].copy_from_slice(new.as_slice());
             let noise = factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
             let precision = share.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
             let normaliser = 0.5 * length as f64 * libm::log(2.0 * std::f64::consts::PI);

@@ -90,15 +90,15 @@ impl Hypothesis {
     }
 
     /// Returns `ln p(H)` relative to the empty hypothesis: the prior odds of each member, spread
-    /// evenly over its forms.
+    /// over its forms.
     pub fn log_prior_odds(&self, space: &Space) -> f64 {
-        self.members().map(|member| log_prior_odds(space, member)).sum()
+        self.elements().map(|element| log_prior_odds(space, element)).sum()
     }
 }
 
-/// Returns the logarithm of the prior odds of one form of a member.
-pub(crate) fn log_prior_odds(space: &Space, member: Member) -> f64 {
-    match member {
+/// Returns the logarithm of the prior odds of an element.
+pub(crate) fn log_prior_odds(space: &Space, element: Element) -> f64 {
+    match element.member {
         Member::Effect(index) => {
             let effect = &space.effects[index];
             let odds = effect.probability / (1.0 - effect.probability);
@@ -106,7 +106,8 @@ pub(crate) fn log_prior_odds(space: &Space, member: Member) -> f64 {
         }
         Member::Kernel(index) => {
             let share = space.structure_probability / space.kernels.len() as f64;
-            libm::log(share / space.kernels[index].variants.max(1) as f64)
+            let variant = space.kernels[index].variants.get(element.form).copied().unwrap_or(0.0);
+            libm::log(share * variant)
         }
     }
 }

@@ -50,8 +50,8 @@ pub struct Kernel {
     pub channel: usize,
     /// Scale of the half-Cauchy prior of its standard deviation, in the unit of the channel.
     pub scale: f64,
-    /// Number of variants: discrete forms, each a hypothesis of its own.
-    pub variants: usize,
+    /// Prior probabilities of its variants: discrete forms, each a hypothesis of its own.
+    pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
 }
@@ -275,7 +275,7 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
         expect_length("levels of a random effect", levels.len(), count)?;
     }
     for (bases, kernel) in rows.bases.iter().zip(&space.kernels) {
-        expect_length("bases of a kernel", bases.len(), kernel.variants)?;
+        expect_length("bases of a kernel", bases.len(), kernel.variants.len())?;
         for basis in bases {
             expect_length("rows of a basis", basis.nrows(), count)?;
         }

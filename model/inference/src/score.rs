@@ -111,7 +111,7 @@ impl<'a> Scores<'a> {
             }
         }
         for (index, kernel) in space.kernels.iter().enumerate() {
-            for form in 0..kernel.variants {
+            for form in 0..kernel.variants.len() {
                 let element = Element { member: Member::Kernel(index), form };
                 let columns = kernel_columns(space, &problem.rows, &design.channels, index, form);
                 if columns.amax() > 1e-9 {
@@ -169,7 +169,7 @@ impl<'a> Scores<'a> {
                     }
                 };
                 let element = candidate.element;
-                let odds = log_prior_odds(&self.problem.space, element.member);
+                let odds = log_prior_odds(&self.problem.space, element);
                 let hint = match element.member {
                     Member::Effect(effect) => size.map(|size| (effect, size)),
                     Member::Kernel(_) => None,

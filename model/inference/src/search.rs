@@ -45,6 +45,8 @@ const LARGE_TABLE: usize = 1000;
 const EXPANSION_WINDOW: f64 = 3.0;
 /// Loss in nats up to which a usual effect is removed at the start.
 const THINNING_LOSS: f64 = 1.0;
+/// Forms of a member that are fitted in an expansion.
+const MOST_FORMS: usize = 8;
 /// Exchanges that are fitted for each member.
 const EXCHANGES: usize = 4;
 /// Hypotheses near the best one that are fitted again, and their distance in nats.
@@ -198,8 +200,12 @@ impl<'a> Search<'a> {
             }
         }
         let least = (top - self.selectivity.form).max(base - 2.0);
+        let mut forms: BTreeMap<Member, usize> = BTreeMap::new();
         for addition in additions.iter().filter(|a| a.score > least) {
-            if effects.contains(&addition.element.member) || kernels.contains(&addition.element.member) {
+            let member = addition.element.member;
+            let count = forms.entry(member).or_insert(0);
+            *count += 1;
+            if *count <= MOST_FORMS && (effects.contains(&member) || kernels.contains(&member)) {
                 self.fit(&addition.hypothesis, start_of(fit, addition));
             }
         }

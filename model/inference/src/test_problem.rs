@@ -64,7 +64,7 @@ fn space() -> Space {
             covariate: "load".to_owned(),
             channel: 0,
             scale: 0.3,
-            variants: 1,
+            variants: vec![1.0],
             is_session_bound: false,
         }],
         random_effects: vec![RandomEffect {

@@ -18,7 +18,7 @@ const PLAIN_MU: f64 = 0.3;
 /// Relative step of a channel for its finite difference.
 const CHANNEL_STEP: f64 = 1e-4;
 
-/// Channels through which structure acts on a reading.
+/// Channels through which structure acts on a reading, in the order of the forward model's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Channel {
     /// A force on the load cell.
@@ -38,17 +38,6 @@ pub(super) enum Channel {
 }
 
 impl Channel {
-    /// All channels, in the order of the forward model's columns.
-    pub(super) const ALL: [Self; 7] = [
-        Self::Reading,
-        Self::Drag,
-        Self::Friction,
-        Self::Pins,
-        Self::Silicone,
-        Self::Gain,
-        Self::DirectionFriction,
-    ];
-
     /// Returns its index among the columns.
     pub(super) fn index(self) -> usize {
         self as usize

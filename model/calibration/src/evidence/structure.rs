@@ -7,6 +7,7 @@ use pinswitch_inference::{Kernel, kernel};
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
 use crate::effects::REFERENCE_LOAD_N;
+use crate::table::Point;
 
 /// Scale of the standard deviation of structure: a force in newtons, and relative.
 const FORCE_SCALE_N: f64 = 0.3;
@@ -17,6 +18,10 @@ const GAIN_SCALE: f64 = 0.02;
 const TIME_RANK: usize = 24;
 /// Series up to which time also varies within them.
 const FEW_SERIES: usize = 4;
+/// Probability that structure over time acts in one interval, rather than as Brownian motion.
+const INTERVAL_PROBABILITY: f64 = 0.5;
+/// Series up to which every interval is a variant; in a longer table, only those up to its end.
+const MOST_INTERVAL_SERIES: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
@@ -28,6 +33,20 @@ const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction]
 /// A function of the rows that returns a basis.
 type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
 
+/// A discrete form of a kernel.
+struct Variant {
+    basis: Basis,
+    /// Factor of the basis.
+    factor: f64,
+    probability: f64,
+}
+
+impl Variant {
+    fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
+        (self.basis)(rows) * self.factor
+    }
+}
+
 /// A kernel that a table supports, for one channel.
 pub(super) struct Structure {
     pub(super) covariate: &'static str,
@@ -35,8 +54,7 @@ pub(super) struct Structure {
     pub(super) channel: Channel,
     is_session_bound: bool,
     scale: f64,
-    /// Bases of its variants, and the factors that give them unit variance on the fitted table.
-    bases: std::rc::Rc<Vec<(Basis, f64)>>,
+    bases: std::rc::Rc<Vec<Variant>>,
     /// Mean rows of the bases on the fitted table.
     means: Vec<Vec<f64>>,
 }
@@ -49,14 +67,14 @@ impl Structure {
             covariate: self.covariate.to_owned(),
             channel: self.channel.index(),
             scale: self.scale,
-            variants: self.bases.len(),
+            variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
         }
     }
 
     /// Returns the bases at the rows of the fitted table.
     pub(super) fn bases(&self, rows: &Covariates) -> Vec<DMatrix<f64>> {
-        self.bases.iter().map(|(basis, factor)| basis(rows) * *factor).collect()
+        self.bases.iter().map(|variant| variant.columns(rows)).collect()
     }
 
     /// Returns the bases at the rows of a new session: what a session draws again has its mean.
@@ -90,33 +108,38 @@ pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit
 }
 
 impl Collector<'_> {
+    /// Adds a kernel whose bases are scaled to unit variance.
     fn add(&mut self, name: &str, covariate: &'static str, channels: &[Channel], bases: Vec<Basis>) {
-        self.add_bound(name, covariate, channels, bases, false);
+        let variants = self.variants(bases, 1.0);
+        self.add_variants(name, covariate, channels, variants, false);
     }
 
-    fn add_bound(
+    /// Returns the variants of bases that are scaled to unit variance, of this total probability.
+    fn variants(&self, bases: Vec<Basis>, probability: f64) -> Vec<Variant> {
+        let probability = probability / bases.len().max(1) as f64;
+        bases
+            .into_iter()
+            .filter_map(|basis| {
+                let norm = kernel::rms_norm(&basis(self.rows));
+                (norm > 1e-9).then(|| Variant { basis, factor: 1.0 / norm, probability })
+            })
+            .collect()
+    }
+
+    fn add_variants(
         &mut self,
         name: &str,
         covariate: &'static str,
         channels: &[Channel],
-        bases: Vec<Basis>,
+        variants: Vec<Variant>,
         is_session_bound: bool,
     ) {
-        let mut scaled = Vec::new();
-        let mut means = Vec::new();
-        for basis in bases {
-            let columns = basis(self.rows);
-            let norm = kernel::rms_norm(&columns);
-            if norm > 1e-9 {
-                let mean = columns.row_mean() / norm;
-                means.push(mean.iter().copied().collect());
-                scaled.push((basis, 1.0 / norm));
-            }
-        }
-        if scaled.is_empty() {
+        if variants.is_empty() {
             return;
         }
-        let bases = std::rc::Rc::new(scaled);
+        let mean = |variant: &Variant| variant.columns(self.rows).row_mean().iter().copied().collect();
+        let means: Vec<Vec<f64>> = variants.iter().map(mean).collect();
+        let bases = std::rc::Rc::new(variants);
         for channel in channels {
             // Without two materials their friction is the friction.
             if !self.has_both_materials && matches!(channel, Channel::Pins | Channel::Silicone) {
@@ -144,7 +167,7 @@ impl Collector<'_> {
         let mut starts: Vec<f64> = self.rows.series_start_s.clone();
         starts.sort_by(f64::total_cmp);
         starts.dedup();
-        let edges: Vec<f64> = starts.into_iter().skip(1).collect();
+        let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
         let time = |rows: &Covariates| rows.column(|p| p.time_s);
         let scale = Interval::of(&time(self.rows));
         let basis: Basis = if edges.len() < FEW_SERIES {
@@ -156,7 +179,11 @@ impl Collector<'_> {
                 move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
             Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
-        self.add_bound("time", "time", &channels, vec![basis], true);
+        let intervals = intervals(&starts);
+        let share = if intervals.is_empty() { 0.0 } else { INTERVAL_PROBABILITY };
+        let mut variants = self.variants(vec![basis], 1.0 - share);
+        variants.extend(intervals);
+        self.add_variants("time", "time", &channels, variants, true);
     }
 
     fn along_a_series(&mut self) {
@@ -174,7 +201,7 @@ impl Collector<'_> {
             let scale = Interval::of(&at);
             let settling: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
             self.add("repetition", "repetition", COMMON, vec![settling]);
-            let sign = |p: &crate::table::Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
+            let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
             let alternation: Basis = Box::new(move |rows| kernel::single(&rows.column(sign)));
             self.add("alternate repetitions", "repetition", COMMON, vec![alternation]);
             let scale = Interval::of(&self.rows.series_time_s);
@@ -203,7 +230,7 @@ impl Collector<'_> {
         if (4..=MOST_LOADS).contains(&distinct(&loads)) {
             self.levels("weight", "load", &[Channel::Reading, Channel::Gain], load_level);
         }
-        let memory = |p: &crate::table::Point| {
+        let memory = |p: &Point| {
             let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
             (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
         };
@@ -243,18 +270,12 @@ impl Collector<'_> {
             let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
             self.levels("wrap angle", "condition", &[Channel::Reading, Channel::Friction], wrap);
         }
-        let label: [(&str, fn(&RowLabels) -> &String); 4] = [
-            ("mount", |label| &label.mount),
-            ("specimen", |label| &label.specimen),
-            ("operator", |label| &label.operator),
-            ("session", |label| &label.session),
-        ];
-        for (name, of) in label {
-            // The mount effect on friction is in every hypothesis.
-            let channels: &[Channel] =
-                if name == "mount" { &[Channel::Reading, Channel::Drag] } else { COMMON };
-            self.levels(name, name, channels, move |_, label| of(label).clone());
-        }
+        // The mount effect on friction is in every hypothesis.
+        let forces = &[Channel::Reading, Channel::Drag];
+        self.levels("mount", "mount", forces, |_, label| label.mount.clone());
+        self.levels("specimen", "specimen", COMMON, |_, label| label.specimen.clone());
+        self.levels("operator", "operator", COMMON, |_, label| label.operator.clone());
+        self.levels("session", "session", COMMON, |_, label| label.session.clone());
     }
 
     /// Adds independent levels of a factor that has several.
@@ -280,6 +301,25 @@ impl Collector<'_> {
         });
         self.add(name, covariate, channels, vec![basis]);
     }
+}
+
+/// Returns structure that acts in one interval of series with these starts: a change, or a fault that
+/// lasts for a while. Brownian motion prices one large step as many small ones.
+fn intervals(starts: &[f64]) -> Vec<Variant> {
+    let count = starts.len();
+    let is_long = count > MOST_INTERVAL_SERIES;
+    let mut bases: Vec<Basis> = Vec::new();
+    for from in 0..count {
+        for until in (if is_long { count } else { from + 1 })..=count {
+            if until - from < count {
+                let (low, high) = (starts[from], starts.get(until).copied().unwrap_or(f64::INFINITY));
+                let is_in = move |p: &Point| f64::from(u8::from(p.time_s >= low && p.time_s < high));
+                bases.push(Box::new(move |rows| kernel::single(&rows.column(is_in))));
+            }
+        }
+    }
+    let probability = INTERVAL_PROBABILITY / bases.len().max(1) as f64;
+    bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
 }
 
 /// Numbers of a row that may be levels of a factor.

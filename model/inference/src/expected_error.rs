@@ -68,7 +68,11 @@ pub(crate) fn expected_error(
     }
     squares.retain(|(_, count)| *count > 0.0);
     let mut random = Random::new(seed);
-    let session = session_variance(problem, fit, linearised, &sound);
+    let views: Vec<(f64, SessionView)> = parts
+        .iter()
+        .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
+        .collect();
+    let session = session_variance(&views, &sound);
     let simulated = Simulation::new(problem, fit, linearised).run(&mut random, &sound);
     let added = simulated.mount_variance + session;
     let mut errors: Vec<f64> = (0..SIMULATIONS)
@@ -89,26 +93,63 @@ fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {
     sum / f64::max(count, 1.0)
 }
 
-/// Returns the mean square of what a session draws again: effects and kernels of its time, about
-/// their mean over the session, which predictions use.
-fn session_variance(problem: &Problem, fit: &Fit, linearised: &Linearised, sound: &[usize]) -> f64 {
-    let effects = fit.mode.sized(&fit.hypothesis);
-    let forward = &problem.rows.forward;
-    let at = forward.readings(&fit.mode.constants, &effects);
-    let mean = forward.session_mean(&fit.mode.constants, &effects);
-    let mut deviation: Vec<f64> = at.iter().zip(&mean).map(|(a, b)| a - b).collect();
-    for member in fit.hypothesis.members() {
-        let Member::Kernel(kernel) = member else { continue };
-        if !problem.space.kernels[kernel].is_session_bound {
-            continue;
+/// A hypothesis at the rows of the fitted session.
+struct SessionView {
+    /// What a new session is predicted to read, without its own mounts and noise.
+    prediction: Vec<f64>,
+    /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
+    deviation: Vec<f64>,
+}
+
+impl SessionView {
+    fn new(problem: &Problem, fit: &Fit, linearised: &Linearised) -> Self {
+        let effects = fit.mode.sized(&fit.hypothesis);
+        let forward = &problem.rows.forward;
+        let at = forward.readings(&fit.mode.constants, &effects);
+        let mut prediction = forward.session_mean(&fit.mode.constants, &effects);
+        let mut deviation: Vec<f64> = at.iter().zip(&prediction).map(|(a, b)| a - b).collect();
+        let (design, mean) = (&linearised.design, &linearised.point.solution.mean);
+        for (i, role) in design.roles.iter().enumerate() {
+            let is_lasting = match role {
+                Role::Constant(_) | Role::Size(_) | Role::Shape(..) => false,
+                Role::Discrepancy(_) => true,
+                Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
+                Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
+            };
+            if is_lasting {
+                let column = design.matrix.column(i);
+                prediction.iter_mut().zip(column.iter()).for_each(|(p, x)| *p += x * mean[i]);
+            }
         }
-        let channel = &linearised.design.channels[problem.space.kernels[kernel].channel];
-        let columns = linearised.design.columns_of(Component::Kernel(kernel));
-        let curve = kernel_curve(problem, fit, kernel, &columns, &linearised.point.solution.mean);
-        let mean = curve.iter().sum::<f64>() / curve.len() as f64;
-        deviation.iter_mut().zip(channel).zip(&curve).for_each(|((d, c), w)| *d += c * (w - mean));
+        for (kernel, _) in fit.hypothesis.kernels() {
+            if !problem.space.kernels[kernel].is_session_bound {
+                continue;
+            }
+            let channel = &design.channels[problem.space.kernels[kernel].channel];
+            let curve =
+                kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
+            let level = curve.iter().sum::<f64>() / curve.len() as f64;
+            for (row, value) in curve.iter().enumerate() {
+                prediction[row] += channel[row] * level;
+                deviation[row] += channel[row] * (value - level);
+            }
+        }
+        Self { prediction, deviation }
     }
-    sound.iter().map(|row| deviation[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
+}
+
+/// Returns the mean square of what a session draws again, and of the difference between hypotheses
+/// in the prediction of a new session.
+fn session_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f64 {
+    let total: f64 = views.iter().map(|(p, _)| p).sum();
+    let average = |value: &dyn Fn(&SessionView) -> f64| -> f64 {
+        views.iter().map(|(p, view)| p * value(view)).sum::<f64>() / total
+    };
+    let of_row = |row: &usize| {
+        let mean = average(&|view| view.prediction[*row]);
+        average(&|view| view.deviation[*row].powi(2) + (view.prediction[*row] - mean).powi(2))
+    };
+    sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
 }
 
 /// Returns the posterior mean of a kernel's function at each row, in the unit of its channel.

@@ -216,17 +216,18 @@ impl<'a> Simulation<'a> {
             }
         }
         let mut errors: Vec<f64> = (&self.linearised.design.matrix * coefficients).iter().copied().collect();
-        let [sigma, growth, direction, series, scale] = self.fit.scales().values();
+        let [sigma, growth, direction, series, scale, by_load] = self.fit.scales().values();
         let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
         for range in &problem.ranges {
             let offset = series * random.normal();
             let sides = [direction * random.normal(), direction * random.normal()];
+            let slopes = [by_load * random.normal(), by_load * random.normal()];
             let factor = scale * random.normal();
             for row in range.clone() {
-                let load = growth * problem.rows.load[row] / problem.reference.mean_load;
-                let own = sigma * (1.0 + load * load).sqrt() * random.student();
-                let side = sides[usize::from(problem.rows.direction[row])];
-                errors[row] += offset + side + factor * friction[row] + own;
+                let load = problem.rows.load[row] / problem.reference.mean_load;
+                let own = sigma * (1.0 + (growth * load).powi(2)).sqrt() * random.student();
+                let side = usize::from(problem.rows.direction[row]);
+                errors[row] += offset + sides[side] + load * slopes[side] + factor * friction[row] + own;
             }
         }
         errors

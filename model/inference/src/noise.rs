@@ -4,13 +4,13 @@
 //!
 //! ```text
 //! V_ij = [i = j] ((1 - a) h_i^2 / w_i + quantum^2 / 12)  +  a h_i h_j rho^|i - j|
-//!      + o_d^2 [same direction]  +  o_s^2  +  s^2 g_i g_j
+//!      + (o_d^2 + o_l^2 F_i F_j / mean F^2) [same direction]  +  o_s^2  +  s^2 g_i g_j
 //! h_i  = sigma sqrt(1 + (c F_i / mean F)^2)
 //! ```
 //!
 //! with the repetition noise `sigma` that grows with the load `F` by the ratio `c`, the weights `w`
-//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset `o_d` per
-//! series and direction, an offset `o_s` per series, and a scale of friction `s` per series, where
+//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset per
+//! series and direction with a constant part `o_d` and a part `o_l` that grows with load, an offset `o_s` per series, and a scale of friction `s` per series, where
 //! `g` is the reading's sensitivity to friction. Rows of different series are independent.
 
 use nalgebra::{DMatrix, DVector};
@@ -18,12 +18,13 @@ use nalgebra::{DMatrix, DVector};
 use crate::problem::Rows;
 
 /// Number of scales of the noise.
-pub(crate) const SCALES: usize = 5;
-/// Indices of the scales `c`, `o_d`, `o_s` and `s`; that of `sigma` is 0.
+pub(crate) const SCALES: usize = 6;
+/// Indices of the scales `c`, `o_d`, `o_s`, `s` and `o_l`; that of `sigma` is 0.
 pub(crate) const LOAD_GROWTH: usize = 1;
 pub(crate) const DIRECTION_OFFSET: usize = 2;
 pub(crate) const SERIES_OFFSET: usize = 3;
 pub(crate) const SERIES_SCALE: usize = 4;
+pub(crate) const LOAD_OFFSET: usize = 5;
 
 /// Share and correlation of the AR(1) processes; the first is none.
 pub(crate) const AUTOREGRESSIONS: [(f64, f64); 4] = [(0.0, 0.0), (0.5, 0.5), (0.5, 0.85), (0.8, 0.85)];
@@ -91,7 +92,8 @@ impl Scales {
     /// Returns typical scales, from which a fit starts.
     pub(crate) fn typical(reference: &NoiseReference) -> Self {
         let sd = libm::log(reference.repetition_sd);
-        Self { log: [sd, LOG_LOAD_GROWTH, sd, sd - libm::log(2.0), libm::log(0.01)], autoregression: 0 }
+        let half = sd - libm::log(2.0);
+        Self { log: [sd, LOG_LOAD_GROWTH, sd, half, libm::log(0.01), half], autoregression: 0 }
     }
 
     /// Raises scales that have vanished, since a fit would not find them again.
@@ -104,7 +106,8 @@ impl Scales {
     }
 
     /// Returns repetition noise, its growth with load, offset per series and direction, offset per
-    /// series (in the unit of the readings), and scale of friction per series.
+    /// series, scale of friction per series, and offset per series and direction at the mean load
+    /// that is proportional to the load. Noise and offsets are in the unit of the readings.
     pub fn values(&self) -> [f64; SCALES] {
         self.log.map(libm::exp)
     }
@@ -118,7 +121,8 @@ impl Scales {
     /// and the negative second derivatives.
     pub(crate) fn log_prior(&self, reference: &NoiseReference) -> (f64, [f64; SCALES], [f64; SCALES]) {
         let center = [libm::log(reference.repetition_sd), LOG_LOAD_GROWTH];
-        let half_cauchy = [reference.repetition_sd, reference.repetition_sd, SERIES_SCALE_PRIOR];
+        let sd = reference.repetition_sd;
+        let half_cauchy = [sd, sd, SERIES_SCALE_PRIOR, sd];
         let (mut value, mut gradient, mut curvature) = (0.0, [0.0; SCALES], [0.0; SCALES]);
         for (i, center) in center.iter().enumerate() {
             let distance = self.log[i] - center;
@@ -186,7 +190,7 @@ impl Noise<'_> {
 
     /// Returns the covariance of the rows of a series.
     pub(crate) fn covariance(&self, range: &std::ops::Range<usize>) -> DMatrix<f64> {
-        let [_, _, direction, series, scale] = self.scales.values().map(|x| x * x);
+        let [_, _, direction, series, scale, by_load] = self.scales.values().map(|x| x * x);
         let (share, correlation) = self.scales.autoregression();
         let first = range.start;
         let sd: Vec<f64> = range.clone().map(|row| self.repetition_sd(row).0).collect();
@@ -195,7 +199,7 @@ impl Noise<'_> {
             let (a, b) = (first + i, first + j);
             let mut sum = series + scale * self.friction[a] * self.friction[b];
             if self.rows.direction[a] == self.rows.direction[b] {
-                sum += direction;
+                sum += direction + by_load * self.relative_load(a) * self.relative_load(b);
             }
             if share > 0.0 {
                 sum += share * sd[i] * sd[j] * powers[self.lag(a, b).min(range.len())];
@@ -205,6 +209,10 @@ impl Noise<'_> {
             }
             sum
         })
+    }
+
+    fn relative_load(&self, row: usize) -> f64 {
+        self.rows.load[row] / self.reference.mean_load
     }
 
     /// Returns the distance of two rows in the order of their series.
@@ -222,6 +230,9 @@ impl Noise<'_> {
             DIRECTION_OFFSET => {
                 Derivative::Factor(DMatrix::from_fn(length, 2, |i, side| is_second(i, side == 1)))
             }
+            LOAD_OFFSET => Derivative::Factor(DMatrix::from_fn(length, 2, |i, side| {
+                is_second(i, side == 1) * self.relative_load(first + i)
+            })),
             SERIES_OFFSET => Derivative::Factor(DMatrix::from_element(length, 1, root)),
             SERIES_SCALE => {
                 Derivative::Factor(DMatrix::from_fn(length, 1, |i, _| root * self.friction[first + i]))

@@ -228,7 +228,7 @@ mod tests {
             size_variances: &size_variances,
         };
         for autoregression in [0, 2] {
-            let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0], autoregression };
+            let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0, -3.6], autoregression };
             assert_gradient(&at, scales);
         }
     }

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::time::Instant;
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::evidence::Evidence;
+use pinswitch_calibration::evidence::{Evidence, Session};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_inference::Member;
 
@@ -62,7 +62,7 @@ fn print_posterior(evidence: &Evidence) {
 
 /// Returns the root mean square error in newtons of the predictions of a table.
 fn rmse_n(evidence: &Evidence, table: &PlateauTable) -> Result<f64, Box<dyn std::error::Error>> {
-    let predictions = evidence.predict(&table.rows)?;
+    let predictions = evidence.predict(&table.rows, Session::New)?;
     let squares = predictions.iter().zip(&table.rows).map(|(p, row)| (row.force_n - p.mean).powi(2));
     Ok((squares.sum::<f64>() / table.rows.len() as f64).sqrt())
 }

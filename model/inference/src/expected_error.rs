@@ -2,7 +2,7 @@
 //!
 //! Each series is predicted from the others, and its residual gets the spread of a new series at
 //! the same conditions. A hypothesis counts by its probability without that
-//! series, so that the choice of effects is held out too. New mounts and what a session draws again
+//! series, so that it is held out of the choice of effects too. New mounts and what a session draws again
 //! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
 //! sessions.
 

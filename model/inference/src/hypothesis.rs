@@ -84,7 +84,7 @@ impl Hypothesis {
         self.0.len()
     }
 
-    /// Returns whether it has no member.
+    /// Returns whether it is the baseline alone.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

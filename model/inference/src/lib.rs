@@ -1,9 +1,10 @@
-//! Bayesian comparison of hypotheses about series of readings: which effects act, which structure
-//! has no name, and what error a new session will have.
+//! Bayesian comparison of hypotheses about series of readings: the probability of named effects and
+//! of unnamed structure, and the expected error of a new session.
 //!
 //! The crate knows statistics only. The caller supplies a forward model, named effects with typical
 //! sizes, and bases of kernels; every hypothesis is a set of effects and kernels and gets one number,
-//! `ln p(y | H) + ln p(H)`. There are no thresholds on gains and no corrections for multiple tests.
+//! `ln p(y | H) + ln p(H)`. The Occam factor in the evidence and the prior odds replace thresholds on
+//! gains and corrections for multiple tests.
 //!
 //! # Model
 //!

@@ -56,7 +56,7 @@ impl Marginal {
         Some(Self { gram, moment, constant, whitening, white_matrix, white_target })
     }
 
-    /// Returns `ln p(r)` for prior variances `l`, of which some may be zero.
+    /// Returns `ln p(r)` for prior variances `l`, each zero or positive.
     pub(crate) fn log_likelihood(&self, variances: &[f64]) -> Option<f64> {
         Some(self.factor(variances)?.2)
     }

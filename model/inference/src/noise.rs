@@ -71,7 +71,8 @@ impl NoiseReference {
     }
 }
 
-/// Returns the distance of which nine tenths of the steps between sorted readings are multiples.
+/// Returns the smallest step between sorted readings if nine tenths of the steps are multiples of it,
+/// and 0 otherwise.
 fn quantum(readings: &[f64]) -> f64 {
     let mut sorted = readings.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -14,7 +14,8 @@ use crate::search::{Search, SearchOptions};
 
 /// Probability above which a member of the best hypothesis is reported, with its rivals.
 const REPORTED_PROBABILITY: f64 = 0.9;
-/// The same for an effect next to a kernel, which has no exact form and may leave a remainder.
+/// The same threshold for an effect next to a kernel: the basis of a kernel is approximate, and an
+/// effect could fit what it leaves.
 const REPORTED_NEXT_TO_KERNEL: f64 = 0.99;
 /// Probability above which another member is a rival.
 const RIVAL_PROBABILITY: f64 = 0.05;
@@ -86,7 +87,7 @@ pub struct Posterior {
     pub fit_count: usize,
 }
 
-/// Searches the hypotheses of a problem; `None` if its forward model has no finite readings. The
+/// Searches the hypotheses of a problem; `None` if no reading of its forward model is finite. The
 /// seed is that of the interval of the expected error.
 pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Posterior> {
     let mut search = Search::new(problem, options);
@@ -169,8 +170,8 @@ impl Posterior {
         fits.filter(move |(fit, _)| fit.hypothesis.contains(member))
     }
 
-    /// Returns the size of an effect, given that it acts: a mixture over the window. `None` if no
-    /// hypothesis has it, or it has no size.
+    /// Returns the size of an effect, given that it acts: a mixture over the window. `None` for an effect
+    /// without a size, or outside the window.
     pub fn size(&self, effect: usize) -> Option<SizeEstimate> {
         let parts: Vec<(f64, f64, f64)> = self
             .containing(Member::Effect(effect))

@@ -1,6 +1,6 @@
-//! Prediction of the rows of a new session: new series and mounts, the same constants and effects.
+//! Prediction of the rows of new series, with the constants and effects of the fitted ones.
 
-use crate::design::{Component, Design, Role};
+use crate::design::Design;
 use crate::fit::{DEGREES_OF_FREEDOM, Fit};
 use crate::leave_out::Linearised;
 use crate::noise::Noise;
@@ -20,8 +20,9 @@ pub struct Prediction {
 }
 
 impl Posterior {
-    /// Predicts rows of a new session, as the average over the window. The bases of kernels that a
-    /// new session draws again must contain their mean over the fitted session.
+    /// Predicts rows of new series, as the average over the window. Rows of a new session have no
+    /// level of random effects that it draws again, and for kernels of its time the mean of their
+    /// bases over the fitted session.
     ///
     /// # Errors
     /// [`ProblemError`] if the rows do not fit the space of the problem.
@@ -50,18 +51,14 @@ impl Posterior {
 fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<Prediction>> {
     let space = &problem.space;
     let solution = Linearised::new(problem, fit)?.point.solution;
-    let mut design = Design::of_rows(space, rows, &fit.hypothesis, &fit.mode)?;
+    let design = Design::of_rows(space, rows, &fit.hypothesis, &fit.mode)?;
     let mut new_variance = vec![0.0; rows.len()];
-    for (i, role) in design.roles.clone().iter().enumerate() {
-        let Role::Variance(Component::Random(random)) = role else { continue };
-        if !space.random_effects[*random].is_redrawn {
-            continue;
+    for (i, random) in space.random_effects.iter().enumerate() {
+        let variance = fit.random_effect_sd(i).unwrap_or(0.0).powi(2);
+        let channel = &design.channels[random.channel];
+        for row in (0..rows.len()).filter(|row| random.levels > 0 && rows.levels[i][*row].is_none()) {
+            new_variance[row] += variance * channel[row].powi(2);
         }
-        let variance = fit.random_effect_sd(*random).unwrap_or(0.0).powi(2);
-        for (row, x) in design.matrix.column(i).iter().enumerate() {
-            new_variance[row] += variance * x * x;
-        }
-        design.matrix.column_mut(i).fill(0.0);
     }
     let mean = &design.matrix * &solution.mean - &design.target;
     let spread = &design.matrix * solution.root.transpose();
@@ -87,6 +84,18 @@ fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<P
 mod tests {
     use crate::test_problem::{problem, rows};
     use crate::{SearchOptions, infer};
+
+    /// Rows without a mount are less certain by the variance between mounts.
+    #[test]
+    fn unknown_mounts_add_variance() {
+        let problem = problem(12, 0.0);
+        let posterior = infer(&problem, SearchOptions::default(), 1).unwrap();
+        let known = posterior.predict(&problem, &rows(3)).unwrap();
+        let mut new = rows(3);
+        new.levels[0].fill(None);
+        let unknown = posterior.predict(&problem, &new).unwrap();
+        assert!(known.iter().zip(&unknown).all(|(known, unknown)| unknown.sd > known.sd));
+    }
 
     #[test]
     fn predictions_include_the_effect() {

@@ -151,7 +151,7 @@ impl Rows {
         self.series.len()
     }
 
-    /// Returns whether there is no row.
+    /// Returns whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.series.is_empty()
     }
@@ -182,7 +182,7 @@ pub struct Problem {
 /// Why a problem is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProblemError {
-    /// There are no rows.
+    /// The list of rows is empty.
     Empty,
     /// A list has a wrong length.
     Length {
@@ -210,7 +210,7 @@ pub enum ProblemError {
 impl fmt::Display for ProblemError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => write!(f, "there are no rows"),
+            Self::Empty => write!(f, "the list of rows is empty"),
             Self::Length { name, length, expected } => {
                 write!(f, "{name}: {length} entries, but {expected} are expected")
             }
@@ -253,7 +253,7 @@ impl Problem {
         self.readings.len()
     }
 
-    /// Returns whether there are no readings; never true.
+    /// Returns whether the list of readings is empty; never true.
     pub fn is_empty(&self) -> bool {
         self.readings.is_empty()
     }

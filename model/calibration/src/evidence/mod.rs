@@ -9,6 +9,8 @@ mod covariates;
 mod forward;
 mod priors;
 mod structure;
+#[cfg(test)]
+mod tests;
 
 use std::fmt;
 use std::sync::Arc;
@@ -48,6 +50,16 @@ impl fmt::Debug for Evidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Evidence").field("verdict", &self.posterior.verdict).finish_non_exhaustive()
     }
+}
+
+/// Session of rows to predict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Session {
+    /// A later session: mounts are new, and a drift has its mean over the fitted session, since
+    /// another session may drift differently.
+    New,
+    /// The session of the fitted table, with its times and mounts.
+    Fitted,
 }
 
 /// Definitions from the fitted table, with which other tables of the rig are read.
@@ -96,10 +108,10 @@ impl Evidence {
         let rows = Covariates::new(&frame, &contacts, &table.rows)?;
         let setup = Setup::new(frame, contacts.conditions, has_angles, &rows, vocabulary);
         let space = setup.space(&rows);
-        let problem = Problem::new(space, setup.rows(&rows, false), rows.readings.clone())
+        let problem = Problem::new(space, setup.rows(&rows, Session::Fitted), rows.readings.clone())
             .map_err(|error| Diagnostic::new(error.to_string()))?;
         let posterior = infer(&problem, options, seed).ok_or_else(|| {
-            Diagnostic::new("the friction model has no finite readings on this table")
+            Diagnostic::new("the friction model is not finite on this table")
                 .with_help("check loads and readings for values that a rig cannot have")
         })?;
         Ok(Self { problem, posterior, setup })
@@ -131,11 +143,11 @@ impl Evidence {
         }
     }
 
-    /// Predicts the readings in newtons of a new session on the same rig, in the order of the rows.
+    /// Predicts the readings in newtons of new series on the same rig, in the order of the rows.
     ///
     /// # Errors
     /// A [`Diagnostic`] if a row has a device that the fitted table does not have.
-    pub fn predict(&self, rows: &[PlateauRow]) -> Result<Vec<Prediction>, Diagnostic> {
+    pub fn predict(&self, rows: &[PlateauRow], session: Session) -> Result<Vec<Prediction>, Diagnostic> {
         let mut frame = self.setup.frame.clone();
         rows.iter().for_each(|row| frame.extend(row));
         let contacts = Contacts::new(&frame, &self.setup.conditions, rows, self.setup.has_angles)?;
@@ -155,11 +167,15 @@ impl Evidence {
             structures: Vec::new(),
             mean_time: self.setup.mean_time,
             largest: self.setup.largest,
-            mounts: Vec::new(),
+            mounts: if session == Session::New { Vec::new() } else { self.setup.mounts.clone() },
             specimens: self.setup.specimens.clone(),
         };
-        let mut new_rows = setup.rows(&covariates, true);
-        new_rows.bases = self.setup.structures.iter().map(|s| s.bases_of_new_session(&covariates)).collect();
+        let mut new_rows = setup.rows(&covariates, session);
+        let bases = |structure: &Structure| match session {
+            Session::New => structure.bases_of_new_session(&covariates),
+            Session::Fitted => structure.bases(&covariates),
+        };
+        new_rows.bases = self.setup.structures.iter().map(bases).collect();
         let predicted = self
             .posterior
             .predict(&self.problem, &new_rows)
@@ -286,7 +302,7 @@ impl Setup {
 
     /// Returns rows for the inference; those of a new session have no known mounts and the mean
     /// time of the fitted session.
-    fn rows(&self, rows: &Covariates, is_new: bool) -> Rows {
+    fn rows(&self, rows: &Covariates, session: Session) -> Rows {
         let levels = |names: &[String], name: fn(&RowLabels) -> &String| -> Vec<Option<usize>> {
             rows.labels.iter().map(|label| names.binary_search(name(label)).ok()).collect()
         };
@@ -297,7 +313,7 @@ impl Setup {
             baseline: self.baseline.clone(),
             priors: Arc::clone(&self.priors),
         };
-        if is_new {
+        if session == Session::New {
             forward.points = forward.points_at_mean_time();
         }
         let discrepancies = self.priors.iter().map(|prior| self.discrepancies(prior, &forward.points));

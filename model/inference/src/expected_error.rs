@@ -94,15 +94,15 @@ fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {
 }
 
 /// A hypothesis at the rows of the fitted session.
-struct SessionView {
+pub(crate) struct SessionView {
     /// What a new session is predicted to read, without its own mounts and noise.
     prediction: Vec<f64>,
     /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
-    deviation: Vec<f64>,
+    pub(crate) deviation: Vec<f64>,
 }
 
 impl SessionView {
-    fn new(problem: &Problem, fit: &Fit, linearised: &Linearised) -> Self {
+    pub(crate) fn new(problem: &Problem, fit: &Fit, linearised: &Linearised) -> Self {
         let effects = fit.mode.sized(&fit.hypothesis);
         let forward = &problem.rows.forward;
         let at = forward.readings(&fit.mode.constants, &effects);

@@ -84,6 +84,7 @@
 //!     bases: vec![],
 //!     discrepancies: vec![vec![]],
 //!     relevant: vec![vec![0.05; 40]],
+//!     is_new_session: false,
 //!     forward: Box::new(Line(load)),
 //! };
 //! let problem = Problem::new(space, rows, readings)?;

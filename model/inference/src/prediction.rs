@@ -1,6 +1,7 @@
 //! Prediction of the rows of new series, with the constants and effects of the fitted ones.
 
 use crate::design::Design;
+use crate::expected_error::SessionView;
 use crate::fit::{DEGREES_OF_FREEDOM, Fit};
 use crate::leave_out::Linearised;
 use crate::noise::Noise;
@@ -50,9 +51,17 @@ impl Posterior {
 
 fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<Prediction>> {
     let space = &problem.space;
-    let solution = Linearised::new(problem, fit)?.point.solution;
+    let linearised = Linearised::new(problem, fit)?;
+    // A new session draws again what the fitted one drew for itself.
+    let redrawn = if rows.is_new_session {
+        let deviation = SessionView::new(problem, fit, &linearised).deviation;
+        deviation.iter().map(|d| d * d).sum::<f64>() / deviation.len() as f64
+    } else {
+        0.0
+    };
+    let solution = linearised.point.solution;
     let design = Design::of_rows(space, rows, &fit.hypothesis, &fit.mode)?;
-    let mut new_variance = vec![0.0; rows.len()];
+    let mut new_variance = vec![redrawn; rows.len()];
     for (i, random) in space.random_effects.iter().enumerate() {
         let variance = fit.random_effect_sd(i).unwrap_or(0.0).powi(2);
         let channel = &design.channels[random.channel];

@@ -135,6 +135,8 @@ pub struct Rows {
     pub discrepancies: Vec<Vec<Vec<f64>>>,
     /// Smallest relevant change of each reading by each effect of the space.
     pub relevant: Vec<Vec<f64>>,
+    /// Whether the rows belong to another session than the fitted one.
+    pub is_new_session: bool,
     /// Forward model of these rows.
     pub forward: Box<dyn ForwardModel>,
 }

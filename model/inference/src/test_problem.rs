@@ -42,6 +42,7 @@ pub(crate) fn rows(count: usize) -> Rows {
         bases: vec![vec![kernel::levels(&level, 3)]],
         discrepancies: vec![vec![load.iter().map(|f| f - 2.0).collect()]],
         relevant: vec![vec![0.05; total]],
+        is_new_session: false,
         forward: Box::new(Line(load.clone())),
         series,
         load,

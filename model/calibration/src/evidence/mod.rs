@@ -330,6 +330,7 @@ impl Setup {
             bases: self.structures.iter().map(|structure| structure.bases(rows)).collect(),
             discrepancies: discrepancies.collect(),
             relevant: relevant.collect(),
+            is_new_session: session == Session::New,
             forward: Box::new(forward),
         }
     }

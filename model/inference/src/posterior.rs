@@ -117,7 +117,10 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
 /// size.
 fn excludes_all(problem: &Problem, fit: &Fit) -> bool {
     let additions = Scores::new(problem, fit).map_or_else(Vec::new, |scores| scores.additions(None));
-    fit.hypothesis.is_empty() && additions.iter().all(|addition| addition.limit < 1.0)
+    // Without any score the data determine nothing.
+    fit.hypothesis.is_empty()
+        && !additions.is_empty()
+        && additions.iter().all(|addition| addition.limit < 1.0)
 }
 
 /// Returns the members of the best hypothesis that are probable, or that have only rivals instead.

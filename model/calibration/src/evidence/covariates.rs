@@ -6,6 +6,9 @@ use pinswitch_friction::sort_by_number;
 use super::Contacts;
 use crate::table::{Frame, PlateauRow, Point};
 
+/// Most rows of a series in the inference, whose time grows with their square.
+const MOST_SERIES_ROWS: usize = 60;
+
 /// Rows of a table with the covariates of kernels.
 #[derive(Clone, Debug)]
 pub(super) struct Covariates {
@@ -84,6 +87,7 @@ impl Covariates {
             labels,
         };
         covariates.order_series();
+        covariates.split_long_series();
         Ok(covariates)
     }
 
@@ -100,6 +104,21 @@ impl Covariates {
                 self.series_start_s[*row] = start;
             }
             first += rows.len();
+        }
+    }
+
+    /// Splits series of more than [`MOST_SERIES_ROWS`] rows. Their parts then have offsets of their
+    /// own, which is wider than one offset.
+    fn split_long_series(&mut self) {
+        let (mut number, mut rows) = (0, 0);
+        let old = self.series.clone();
+        for row in 0..old.len() {
+            let is_new = row > 0 && old[row] != old[row - 1];
+            if is_new || rows == MOST_SERIES_ROWS {
+                (number, rows) = (number + 1, 0);
+            }
+            self.series[row] = number;
+            rows += 1;
         }
     }
 

@@ -118,3 +118,23 @@ fn structure_is_reported_with_its_covariate() {
     assert_eq!(curve.len(), rows.len());
     assert!(curve.iter().all(|value| (value.abs() - 0.1).abs() < 0.01));
 }
+
+/// One reading determines nothing.
+#[test]
+fn one_row_is_inconclusive() {
+    let evidence = evidence(&session(9)[..1]);
+    assert_eq!(evidence.posterior().verdict, Verdict::Inconclusive);
+}
+
+/// A series of many rows is split, so that the time of an inference stays proportional to the rows.
+#[test]
+fn long_series_are_split() {
+    let mut rows = session(10);
+    rows.truncate(150);
+    for (i, row) in rows.iter_mut().enumerate() {
+        row.series = "0".to_owned();
+        row.repetition = 1 + u32::try_from(i).unwrap();
+    }
+    let evidence = evidence(&rows);
+    assert_eq!(evidence.problem().rows().series.last(), Some(&2));
+}

@@ -64,6 +64,7 @@ mod aliasing;
 mod beyond_range;
 mod calibrate;
 pub mod effects;
+pub mod evidence;
 pub mod experiment;
 mod extrapolation;
 mod forms;

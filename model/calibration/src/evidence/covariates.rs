@@ -1,0 +1,152 @@
+//! Covariates of the rows of a table, in the order of their series.
+
+use pinswitch_diagnostic::Diagnostic;
+use pinswitch_friction::sort_by_number;
+
+use super::Contacts;
+use crate::table::{Frame, PlateauRow, Point};
+
+/// Most rows of a series in the inference, whose time grows with their square.
+const MOST_SERIES_ROWS: usize = 60;
+
+/// Rows of a table with the covariates of kernels.
+#[derive(Clone, Debug)]
+pub(super) struct Covariates {
+    /// Index of each row in the table.
+    pub(super) source: Vec<usize>,
+    pub(super) points: Vec<Point>,
+    pub(super) readings: Vec<f64>,
+    /// Number of the series of each row, in the order of their first rows.
+    pub(super) series: Vec<usize>,
+    /// Rank in time within the series, from 0.
+    pub(super) order: Vec<usize>,
+    /// Seconds since the series began.
+    pub(super) series_time_s: Vec<f64>,
+    /// Time of the first row of the series in seconds.
+    pub(super) series_start_s: Vec<f64>,
+    /// Wrap angle in degrees.
+    pub(super) wrap_deg: Vec<f64>,
+    pub(super) labels: Vec<RowLabels>,
+}
+
+/// Names of the levels of factors at a row.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RowLabels {
+    pub(super) condition: String,
+    pub(super) mount: String,
+    pub(super) specimen: String,
+    pub(super) operator: String,
+    pub(super) session: String,
+}
+
+impl Covariates {
+    /// Sorts the rows of a table by series.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] if the frame lacks the condition of a row.
+    pub(super) fn new(frame: &Frame, contacts: &Contacts, rows: &[PlateauRow]) -> Result<Self, Diagnostic> {
+        let (series_of, _) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
+        let mut source: Vec<usize> = (0..rows.len()).collect();
+        sort_by_number(&mut source, |i| series_of[*i] as f64);
+        let missing = || Diagnostic::new("a row has a condition that the table lacks");
+        let all = frame.points(rows).ok_or_else(missing)?;
+        let at = |i: &usize| Point { condition: contacts.of_row[*i], ..all[*i] };
+        let points: Vec<Point> = source.iter().map(at).collect();
+        let series: Vec<usize> = source.iter().map(|i| series_of[*i]).collect();
+        let has_mounts = rows.iter().any(|row| !row.labels.mount.is_empty());
+        let labels = source.iter().zip(&points).map(|(i, point)| {
+            let row = &rows[*i];
+            // The angle of a `plain` contact belongs to the rig: it does not make another mount.
+            let kind = &frame.conditions[all[*i].condition];
+            let condition = contacts.conditions[point.condition].name();
+            let mount = if has_mounts {
+                format!("{}|{}", row.labels.session, row.labels.mount)
+            } else {
+                format!("{}|{}|{}", kind.name(), row.labels.session, row.labels.specimen)
+            };
+            RowLabels {
+                condition,
+                mount,
+                specimen: row.labels.specimen.clone(),
+                operator: row.labels.operator.clone(),
+                session: row.labels.session.clone(),
+            }
+        });
+        let labels = labels.collect();
+        let readings = source.iter().map(|i| rows[*i].force_n).collect();
+        let wrap_deg = source.iter().map(|i| rows[*i].wrap_angle_deg).collect();
+        let mut covariates = Self {
+            source,
+            order: vec![0; points.len()],
+            series_time_s: vec![0.0; points.len()],
+            series_start_s: vec![0.0; points.len()],
+            points,
+            readings,
+            series,
+            wrap_deg,
+            labels,
+        };
+        covariates.order_series();
+        covariates.split_long_series();
+        Ok(covariates)
+    }
+
+    fn order_series(&mut self) {
+        let mut first = 0;
+        while first < self.len() {
+            let end = (first..self.len()).find(|i| self.series[*i] != self.series[first]);
+            let mut rows: Vec<usize> = (first..end.unwrap_or(self.len())).collect();
+            sort_by_number(&mut rows, |i| self.points[*i].time_s);
+            let start = rows.first().map_or(0.0, |i| self.points[*i].time_s);
+            for (rank, row) in rows.iter().enumerate() {
+                self.order[*row] = rank;
+                self.series_time_s[*row] = self.points[*row].time_s - start;
+                self.series_start_s[*row] = start;
+            }
+            first += rows.len();
+        }
+    }
+
+    /// Splits series of more than [`MOST_SERIES_ROWS`] rows. Their parts then have offsets of their
+    /// own, which is wider than one offset.
+    fn split_long_series(&mut self) {
+        let (mut number, mut rows) = (0, 0);
+        let old = self.series.clone();
+        for row in 0..old.len() {
+            let is_new = row > 0 && old[row] != old[row - 1];
+            if is_new || rows == MOST_SERIES_ROWS {
+                (number, rows) = (number + 1, 0);
+            }
+            self.series[row] = number;
+            rows += 1;
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Returns the number of series.
+    pub(super) fn series_count(&self) -> usize {
+        self.series.last().map_or(0, |last| last + 1)
+    }
+
+    /// Returns a number of each row.
+    pub(super) fn column(&self, value: impl Fn(&Point) -> f64) -> Vec<f64> {
+        self.points.iter().map(value).collect()
+    }
+
+    /// Returns the sorted names of the levels of a factor.
+    pub(super) fn level_names(&self, name: impl Fn(&RowLabels) -> &str) -> Vec<String> {
+        let names: std::collections::BTreeSet<&str> = self.labels.iter().map(name).collect();
+        names.into_iter().map(str::to_owned).collect()
+    }
+}
+
+/// Returns the number of different values, to a thousandth.
+pub(super) fn distinct(values: &[f64]) -> usize {
+    let mut rounded: Vec<f64> = values.iter().map(|v| (v * 1e3).round()).collect();
+    rounded.sort_by(f64::total_cmp);
+    rounded.dedup();
+    rounded.len()
+}

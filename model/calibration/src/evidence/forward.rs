@@ -1,0 +1,239 @@
+//! The friction model of a table's rows, as a forward model of the inference.
+
+use std::sync::Arc;
+
+use pinswitch_inference::{Constant, ForwardModel, SizedEffect};
+
+use super::priors::EffectPrior;
+use crate::effects::{ContactState, Stage};
+use crate::table::{Condition, Point};
+
+/// Prior standard deviations of the baseline's constants, in logarithms.
+const LOG_MU_SD: f64 = 1.0;
+const LOG_PLAIN_SD: f64 = 1.5;
+const LOG_HALF_LOAD_SD: f64 = 0.5;
+const LOG_STEEPNESS_SD: f64 = 0.5;
+/// Prior mean of the friction coefficient of a `plain` contact.
+const PLAIN_MU: f64 = 0.3;
+/// Relative step of a channel for its finite difference.
+const CHANNEL_STEP: f64 = 1e-4;
+
+/// Channels through which structure acts on a reading, in the order of the forward model's columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    /// A force on the load cell.
+    Reading,
+    /// A force against the motion.
+    Drag,
+    /// Every friction exponent.
+    Friction,
+    /// The friction on the pins.
+    Pins,
+    /// The friction on silicone or on a `plain` contact.
+    Silicone,
+    /// The scale of the load cell.
+    Gain,
+    /// Every friction exponent, with the sign of the direction.
+    DirectionFriction,
+}
+
+impl Channel {
+    /// Returns its index among the columns.
+    pub(super) fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Returns its word in reports.
+    pub(super) fn as_str(self) -> &'static str {
+        match self {
+            Self::Reading => "reading",
+            Self::Drag => "drag",
+            Self::Friction => "friction",
+            Self::Pins => "friction on pins",
+            Self::Silicone => "friction on silicone",
+            Self::Gain => "gain",
+            Self::DirectionFriction => "friction by direction",
+        }
+    }
+
+    /// Returns whether its unit is the newton.
+    pub(super) fn is_force(self) -> bool {
+        matches!(self, Self::Reading | Self::Drag)
+    }
+}
+
+/// Indices of the baseline's constants, which are logarithms.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Baseline {
+    pins: Option<usize>,
+    silicone: Option<usize>,
+    plain: Option<usize>,
+    /// Index of the threshold of the first device; its steepness and the other devices follow.
+    devices: usize,
+    /// Prior means of thresholds and steepnesses of known devices, in logarithms.
+    device_means: Vec<f64>,
+}
+
+impl Baseline {
+    /// Returns the constants of some conditions, whose devices have these prior means.
+    pub(super) fn new(conditions: &[Condition], device_means: Vec<f64>) -> Self {
+        let mut next = 0;
+        let mut index = |is_present: bool| {
+            next += usize::from(is_present);
+            is_present.then(|| next - 1)
+        };
+        let silicone =
+            conditions.iter().any(|c| c.substrate == Some(pinswitch_friction::Substrate::Silicone));
+        let pins = index(conditions.iter().any(Condition::has_pins));
+        let silicone = index(silicone);
+        let plain = index(conditions.iter().any(|c| c.substrate.is_none()));
+        Self { pins, silicone, plain, devices: next, device_means }
+    }
+
+    /// Returns the constants with their priors.
+    pub(super) fn constants(&self) -> Vec<Constant> {
+        use pinswitch_friction::published::{MU_PINS, MU_SILICONE};
+        let coefficients = [
+            (self.pins, "ln mu_p", MU_PINS, LOG_MU_SD),
+            (self.silicone, "ln mu_s", MU_SILICONE, LOG_MU_SD),
+            (self.plain, "ln mu", PLAIN_MU, LOG_PLAIN_SD),
+        ];
+        let present = coefficients.into_iter().filter(|(index, ..)| index.is_some());
+        let mut constants: Vec<Constant> = present
+            .map(|(_, name, mean, sd)| Constant { name: name.to_owned(), mean: libm::log(mean), sd })
+            .collect();
+        for (i, mean) in self.device_means.iter().enumerate() {
+            let (name, sd) = if i % 2 == 0 {
+                (format!("ln F_half[{}]", i / 2), LOG_HALF_LOAD_SD)
+            } else {
+                (format!("ln s[{}]", i / 2), LOG_STEEPNESS_SD)
+            };
+            constants.push(Constant { name, mean: *mean, sd });
+        }
+        constants
+    }
+
+    fn device(&self, constants: &[f64], device: usize) -> [f64; 2] {
+        let at = self.devices + 2 * device;
+        [constants[at], constants[at + 1]].map(libm::exp)
+    }
+}
+
+/// Factors on quantities of the contact, for sensitivities.
+#[derive(Clone, Copy, Debug)]
+struct Factors {
+    exponent: f64,
+    pins: f64,
+    silicone: f64,
+}
+
+const NO_CHANGE: Factors = Factors { exponent: 1.0, pins: 1.0, silicone: 1.0 };
+
+/// The friction model of some rows.
+pub(super) struct FrictionModel {
+    pub(super) points: Vec<Point>,
+    /// Mean time and mean share of travel of the fitted session.
+    pub(super) mean_time: (f64, f64),
+    pub(super) conditions: Arc<[Condition]>,
+    pub(super) baseline: Baseline,
+    pub(super) priors: Arc<[EffectPrior]>,
+}
+
+impl FrictionModel {
+    /// Returns the readings in newtons.
+    fn evaluate(&self, constants: &[f64], effects: &[SizedEffect], factors: Factors) -> Vec<f64> {
+        self.evaluate_at(&self.points, constants, effects, factors)
+    }
+
+    fn evaluate_at(
+        &self,
+        points: &[Point],
+        constants: &[f64],
+        effects: &[SizedEffect],
+        factors: Factors,
+    ) -> Vec<f64> {
+        let mut acting: Vec<(&EffectPrior, Vec<f64>)> =
+            effects.iter().map(|e| (&self.priors[e.effect], self.priors[e.effect].values(e))).collect();
+        acting.sort_by_key(|(prior, _)| prior.effect.description().stage);
+        let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
+        let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
+        let states: Vec<ContactState> =
+            self.conditions.iter().map(|c| self.contact(c, mu, constants, factors)).collect();
+        points
+            .iter()
+            .map(|point| {
+                let condition = &self.conditions[point.condition];
+                let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
+                for (prior, values) in &acting {
+                    prior.effect.on_contact(values, point, condition, &mut state);
+                }
+                let mut reading = state.tension_n(condition, point);
+                for (prior, values) in &acting {
+                    reading = prior.effect.on_tension(values, point, condition, reading);
+                }
+                // The limit of the load cell is the last stage.
+                for (prior, values) in &acting {
+                    reading = prior.effect.on_reading(values, point, condition, reading);
+                }
+                reading
+            })
+            .collect()
+    }
+
+    /// Returns the contact of a condition before effects, at no load.
+    fn contact(&self, condition: &Condition, mu: [f64; 3], q: &[f64], factors: Factors) -> ContactState {
+        let [mu_pins, mu_silicone, mu_plain] = mu;
+        let high = if condition.substrate.is_none() { mu_plain } else { mu_silicone };
+        let device = condition.device.map(|device| self.baseline.device(q, device));
+        let [half_load_n, steepness] = device.unwrap_or([1.0, 1.0]);
+        ContactState {
+            load_n: 0.0,
+            wrap_rad: condition.wrap_rad,
+            mu_pins: mu_pins * factors.pins,
+            mu_silicone: high * factors.silicone,
+            extra_exponent_pins: 0.0,
+            exponent_factor: factors.exponent,
+            half_load_n,
+            steepness,
+            local_tension: false,
+            adhesion_n: 0.0,
+            drag_n: 0.0,
+        }
+    }
+
+    /// Returns the rows at the mean time of the fitted session.
+    pub(super) fn points_at_mean_time(&self) -> Vec<Point> {
+        let (time, travel) = self.mean_time;
+        self.points.iter().map(|point| Point { time, travel, ..*point }).collect()
+    }
+}
+
+impl ForwardModel for FrictionModel {
+    fn readings(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
+        self.evaluate(constants, effects, NO_CHANGE)
+    }
+
+    fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>> {
+        let before = self.evaluate(constants, effects, NO_CHANGE);
+        let slope = |factors: Factors| -> Vec<f64> {
+            let after = self.evaluate(constants, effects, factors);
+            after.iter().zip(&before).map(|(a, b)| (a - b) / CHANNEL_STEP).collect()
+        };
+        let up = 1.0 + CHANNEL_STEP;
+        let friction = slope(Factors { exponent: up, ..NO_CHANGE });
+        let pins = slope(Factors { pins: up, ..NO_CHANGE });
+        let silicone = slope(Factors { silicone: up, ..NO_CHANGE });
+        let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();
+        let by_direction = friction.iter().zip(&sign).map(|(f, d)| f * d).collect();
+        vec![vec![1.0; sign.len()], sign, friction, pins, silicone, before, by_direction]
+    }
+
+    fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
+        self.evaluate_at(&self.points_at_mean_time(), constants, effects, NO_CHANGE)
+    }
+}
+
+/// Returns whether a stage changes the friction, rather than the reading or the motion.
+pub(super) fn is_of_friction(stage: Stage) -> bool {
+    matches!(stage, Stage::AddedFriction | Stage::ScaledFriction | Stage::Switch)
+}

@@ -1,0 +1,190 @@
+//! Priors of the effects: typical sizes, prior odds, discrete shapes, and where a form may be wrong.
+
+use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
+
+use crate::effects::{Covariate, Effect, Vocabulary};
+use crate::table::Frame;
+
+/// Prior probability of the effects that most rigs have.
+const USUAL_PROBABILITY: f64 = 0.30;
+/// Prior probability of any other effect.
+const OTHER_PROBABILITY: f64 = 0.05;
+/// Effects that most rigs have.
+const USUAL: [&str; 3] = ["guide_drag", "load_cell_offset", "load_cell_gain"];
+/// Share of the typical size at which an effect is scored first.
+const START_SHARE: f64 = 0.3;
+/// Distance in newtons of the limit of the load cell above the highest reading at size zero.
+const LIMIT_MARGIN_N: f64 = 0.1;
+
+/// Prior standard deviation of a constant of a shape about its start, as a share of its range.
+const SHIFT_SHARE: f64 = 0.25;
+/// The same in logarithms, for a constant whose bounds have at least this ratio.
+const LOG_SHIFT_SHARE: f64 = 1.0 / 6.0;
+const LOG_RANGE: f64 = 5.0;
+
+/// Typical size of a built-in effect in its unit, and its discrete shapes.
+struct Typical {
+    id: &'static str,
+    size: f64,
+    /// Whether the size is a force, which is larger for heavier loads.
+    is_force: bool,
+    shapes: &'static [&'static [f64]],
+}
+
+/// Returns an entry of [`TYPICAL`].
+const fn typical(id: &'static str, size: f64, is_force: bool, shapes: &'static [&'static [f64]]) -> Typical {
+    Typical { id, size, is_force, shapes }
+}
+
+/// Typical sizes of the built-in effects: quartiles of a Cauchy prior.
+static TYPICAL: [Typical; 18] = [
+    typical("guide_drag", 0.3, true, &[]),
+    typical("load_cell_offset", 0.4, true, &[]),
+    typical("load_cell_gain", 0.02, false, &[]),
+    typical("coating_stiffening", 0.5, false, &[&[1.0], &[2.0]]),
+    typical("coating_ploughing", 0.02, false, &[]),
+    typical("polygon_bending", 0.6, false, &[]),
+    typical("substrate_saturation", 0.2, false, &[&[0.0], &[1.0]]),
+    typical("adhesion", 0.3, true, &[]),
+    typical("dwell_relaxation", 0.08, false, &[]),
+    typical("run_in", 0.2, false, &[&[1.0, 1.0], &[2.5, 1.0], &[6.0, 1.0], &[2.5, 0.0]]),
+    typical("wear_drift", 0.15, false, &[&[0.15], &[0.5], &[3.0]]),
+    typical("rate_dependence", 0.25, false, &[]),
+    typical("fixture_compliance", 0.12, false, &[]),
+    typical("stroke_position", 0.1, false, &[]),
+    typical("direction_asymmetry", 0.1, false, &[]),
+    typical("switching_hysteresis", 5.0, false, &[]),
+    typical("load_cell_nonlinearity", 0.5, true, &[]),
+    typical("thermal_drift", 0.5, true, &[]),
+];
+
+/// Typical distance in newtons of the limit of a load cell below the highest reading, and its starts.
+const LIMIT_SIZE_N: f64 = 4.0;
+const LIMIT_STARTS_N: [f64; 3] = [1.0, 3.0, 8.0];
+const LIMIT: &str = "load_cell_saturation";
+
+/// An effect with its prior.
+#[derive(Clone, Debug)]
+pub(super) struct EffectPrior {
+    pub(super) effect: &'static dyn Effect,
+    /// Typical size; `None` for an effect without a size.
+    typical_size: Option<f64>,
+    /// Discrete values of the constants after the size.
+    shapes: Vec<Vec<f64>>,
+    /// Reading in newtons from which the limit of the load cell is measured downwards.
+    limit_from_n: Option<f64>,
+}
+
+impl EffectPrior {
+    /// Returns the priors of a vocabulary for a table, whose readings are at most `highest_n`.
+    /// Forces are `force_unit` times larger than on the paper's rig.
+    pub(super) fn of_vocabulary(
+        vocabulary: &Vocabulary,
+        frame: &Frame,
+        highest_n: f64,
+        force_unit: f64,
+    ) -> Vec<Self> {
+        vocabulary
+            .effects()
+            .map(|effect| {
+                if effect.id() == LIMIT {
+                    let typical_size = Some(LIMIT_SIZE_N * force_unit);
+                    let limit_from_n = Some(highest_n + LIMIT_MARGIN_N);
+                    return Self { effect, typical_size, shapes: vec![vec![]; 3], limit_from_n };
+                }
+                if effect.parameters().is_empty() {
+                    return Self { effect, typical_size: None, shapes: vec![vec![]], limit_from_n: None };
+                }
+                let known = TYPICAL.iter().find(|typical| typical.id == effect.id());
+                let (size, shapes) = known.map_or_else(
+                    || starts(effect, frame),
+                    |t| {
+                        let size = t.size * if t.is_force { force_unit } else { 1.0 };
+                        (size, t.shapes.iter().map(|shape| shape.to_vec()).collect())
+                    },
+                );
+                let shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                Self { effect, typical_size: Some(size), shapes, limit_from_n: None }
+            })
+            .collect()
+    }
+
+    /// Returns the constants of the effect for a shape and a size.
+    pub(super) fn values(&self, sized: &SizedEffect) -> Vec<f64> {
+        match (self.typical_size, self.limit_from_n) {
+            (None, _) => Vec::new(),
+            (Some(_), Some(from)) => vec![from - sized.size],
+            (Some(_), None) => {
+                let bounds = self.effect.parameters().iter().skip(1).map(|parameter| parameter.bounds);
+                let shape = self.shapes[sized.shape].iter().zip(bounds).zip(sized.shifts);
+                let shape = shape.map(|((start, bounds), shift)| shifted(*start, bounds, shift));
+                std::iter::once(sized.size).chain(shape).collect()
+            }
+        }
+    }
+
+    /// Returns the number of constants of a shape that a fit shifts.
+    fn shape_constants(&self) -> usize {
+        self.shapes.first().map_or(0, Vec::len).min(MOST_SHAPE_CONSTANTS)
+    }
+
+    /// Returns the effect for the space of hypotheses.
+    pub(super) fn space(&self, force_unit: f64) -> EffectSpace {
+        let starts = match (self.typical_size, self.limit_from_n) {
+            (None, _) => vec![1.0],
+            (Some(_), Some(_)) => LIMIT_STARTS_N.map(|start| start * force_unit).to_vec(),
+            (Some(size), None) => vec![START_SHARE * size; self.shapes.len()],
+        };
+        EffectSpace {
+            name: self.effect.id().to_owned(),
+            typical_size: self.typical_size,
+            is_one_sided: self.effect.description().one_sided || self.limit_from_n.is_some(),
+            probability: if self.is_usual() { USUAL_PROBABILITY } else { OTHER_PROBABILITY },
+            shape_constants: self.shape_constants(),
+            starts,
+        }
+    }
+
+    /// Returns whether most rigs have it.
+    pub(super) fn is_usual(&self) -> bool {
+        USUAL.contains(&self.effect.id())
+    }
+
+    /// Returns the covariates along which its form may be wrong.
+    pub(super) fn discrepant_covariates(&self) -> Vec<Covariate> {
+        let description = self.effect.description();
+        if !description.bends || self.typical_size.is_none() {
+            return Vec::new();
+        }
+        match self.effect.id() {
+            "coating_stiffening" | "coating_ploughing" => vec![Covariate::Load, Covariate::Condition],
+            "polygon_bending" => vec![Covariate::Condition],
+            "thermal_drift" => vec![Covariate::Time],
+            "adhesion" | "switching_hysteresis" | "load_cell_nonlinearity" | LIMIT => Vec::new(),
+            _ if description.covariate == Covariate::Load => vec![Covariate::Load],
+            _ => vec![Covariate::Load, description.covariate],
+        }
+    }
+}
+
+/// Returns a constant of a shape that is shifted from its start by standard deviations of its prior:
+/// shares of its range, of the logarithm for a constant whose range covers much more than its lower
+/// end.
+fn shifted(start: f64, bounds: Option<(f64, f64)>, shift: f64) -> f64 {
+    let Some((low, high)) = bounds else { return start };
+    let value = if low > 0.0 && high > LOG_RANGE * low {
+        start * libm::exp(shift * LOG_SHIFT_SHARE * libm::log(high / low))
+    } else {
+        start + shift * SHIFT_SHARE * (high - low)
+    };
+    value.clamp(low, high)
+}
+
+/// Returns size and shapes of a user-defined effect: those of its starts.
+fn starts(effect: &dyn Effect, frame: &Frame) -> (f64, Vec<Vec<f64>>) {
+    let starts = effect.starts(frame);
+    let size = starts.iter().filter_map(|k| k.first()).map(|size| size.abs()).fold(0.0, f64::max);
+    let mut shapes: Vec<Vec<f64>> = starts.iter().map(|k| k.get(1..).unwrap_or_default().to_vec()).collect();
+    shapes.dedup();
+    (if size > 0.0 { size } else { 1.0 }, shapes)
+}

@@ -1,0 +1,360 @@
+//! Unnamed structure that a table can show: kernels over its covariates, none finer than the
+//! sampling.
+
+use nalgebra::DMatrix;
+use pinswitch_inference::{Kernel, kernel};
+
+use super::covariates::{Covariates, RowLabels, distinct};
+use super::forward::Channel;
+use crate::effects::REFERENCE_LOAD_N;
+use crate::table::Point;
+
+/// Scale of the standard deviation of structure: a force in newtons, and relative.
+const FORCE_SCALE_N: f64 = 0.3;
+const RELATIVE_SCALE: f64 = 0.08;
+/// The same for the scale of the load cell, which is more exact than friction.
+const GAIN_SCALE: f64 = 0.02;
+/// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
+const TIME_RANK: usize = 24;
+/// Series up to which time also varies within them.
+const FEW_SERIES: usize = 4;
+/// Probability that structure over time acts in one interval, rather than as Brownian motion.
+const INTERVAL_PROBABILITY: f64 = 0.5;
+/// Series up to which every interval is a variant; in a longer table, only those up to its end.
+const MOST_INTERVAL_SERIES: usize = 24;
+/// Most loads and most conditions that are levels of a factor.
+const MOST_LOADS: usize = 14;
+const MOST_LEVELS: usize = 20;
+/// Repetitions after which the memory of the previous load has decayed to 1/e.
+const MEMORY_REPETITIONS: f64 = 20.0;
+/// Channels of structure that may be a force or friction.
+const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
+
+/// A function of the rows that returns a basis.
+type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
+
+/// A discrete form of a kernel.
+struct Variant {
+    basis: Basis,
+    /// Factor of the basis.
+    factor: f64,
+    probability: f64,
+}
+
+impl Variant {
+    fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
+        (self.basis)(rows) * self.factor
+    }
+}
+
+/// A kernel that a table supports, for one channel.
+pub(super) struct Structure {
+    pub(super) covariate: &'static str,
+    pub(super) name: String,
+    pub(super) channel: Channel,
+    is_session_bound: bool,
+    scale: f64,
+    bases: std::rc::Rc<Vec<Variant>>,
+    /// Mean rows of the bases on the fitted table.
+    means: Vec<Vec<f64>>,
+}
+
+impl Structure {
+    /// Returns the kernel for the space of hypotheses.
+    pub(super) fn space(&self) -> Kernel {
+        Kernel {
+            name: self.name.clone(),
+            covariate: self.covariate.to_owned(),
+            channel: self.channel.index(),
+            scale: self.scale,
+            variants: self.bases.iter().map(|variant| variant.probability).collect(),
+            is_session_bound: self.is_session_bound,
+        }
+    }
+
+    /// Returns the bases at the rows of the fitted table.
+    pub(super) fn bases(&self, rows: &Covariates) -> Vec<DMatrix<f64>> {
+        self.bases.iter().map(|variant| variant.columns(rows)).collect()
+    }
+
+    /// Returns the bases at the rows of a new session: what a session draws again has its mean.
+    pub(super) fn bases_of_new_session(&self, rows: &Covariates) -> Vec<DMatrix<f64>> {
+        if !self.is_session_bound {
+            return self.bases(rows);
+        }
+        let repeated = |mean: &Vec<f64>| DMatrix::from_fn(rows.len(), mean.len(), |_, column| mean[column]);
+        self.means.iter().map(repeated).collect()
+    }
+}
+
+/// Collects the kernels of a table.
+struct Collector<'a> {
+    rows: &'a Covariates,
+    force_unit: f64,
+    has_both_materials: bool,
+    structures: Vec<Structure>,
+}
+
+/// Returns the kernels that a table supports. Forces are `force_unit` times larger than on the
+/// paper's rig.
+pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
+    let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
+    collector.time();
+    collector.along_a_series();
+    collector.load();
+    collector.protocol();
+    collector.factors();
+    collector.structures
+}
+
+impl Collector<'_> {
+    /// Adds a kernel whose bases are scaled to unit variance.
+    fn add(&mut self, name: &str, covariate: &'static str, channels: &[Channel], bases: Vec<Basis>) {
+        let variants = self.variants(bases, 1.0);
+        self.add_variants(name, covariate, channels, variants, false);
+    }
+
+    /// Returns the variants of bases that are scaled to unit variance, of this total probability.
+    fn variants(&self, bases: Vec<Basis>, probability: f64) -> Vec<Variant> {
+        let probability = probability / bases.len().max(1) as f64;
+        bases
+            .into_iter()
+            .filter_map(|basis| {
+                let norm = kernel::rms_norm(&basis(self.rows));
+                (norm > 1e-9).then(|| Variant { basis, factor: 1.0 / norm, probability })
+            })
+            .collect()
+    }
+
+    fn add_variants(
+        &mut self,
+        name: &str,
+        covariate: &'static str,
+        channels: &[Channel],
+        variants: Vec<Variant>,
+        is_session_bound: bool,
+    ) {
+        if variants.is_empty() {
+            return;
+        }
+        let mean = |variant: &Variant| variant.columns(self.rows).row_mean().iter().copied().collect();
+        let means: Vec<Vec<f64>> = variants.iter().map(mean).collect();
+        let bases = std::rc::Rc::new(variants);
+        for channel in channels {
+            // Without two materials their friction is the friction.
+            if !self.has_both_materials && matches!(channel, Channel::Pins | Channel::Silicone) {
+                continue;
+            }
+            let scale = match channel {
+                Channel::Gain => GAIN_SCALE,
+                channel if channel.is_force() => FORCE_SCALE_N * self.force_unit,
+                _ => RELATIVE_SCALE,
+            };
+            self.structures.push(Structure {
+                covariate,
+                name: format!("{} over {name}", channel.as_str()),
+                channel: *channel,
+                is_session_bound,
+                scale,
+                bases: bases.clone(),
+                means: means.clone(),
+            });
+        }
+    }
+
+    fn time(&mut self) {
+        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Silicone, Channel::Pins];
+        let mut starts: Vec<f64> = self.rows.series_start_s.clone();
+        starts.sort_by(f64::total_cmp);
+        starts.dedup();
+        let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
+        let time = |rows: &Covariates| rows.column(|p| p.time_s);
+        let scale = Interval::of(&time(self.rows));
+        let basis: Basis = if edges.len() < FEW_SERIES {
+            Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12))
+        } else {
+            // Between series time moves by steps, equal ones: pauses are not known.
+            let rank = edges.len().min(TIME_RANK);
+            let share =
+                move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
+            Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
+        };
+        let intervals = intervals(&starts);
+        let share = if intervals.is_empty() { 0.0 } else { INTERVAL_PROBABILITY };
+        let mut variants = self.variants(vec![basis], 1.0 - share);
+        variants.extend(intervals);
+        self.add_variants("time", "time", &channels, variants, true);
+    }
+
+    fn along_a_series(&mut self) {
+        let position = |rows: &Covariates| rows.column(|p| p.position);
+        let at = position(self.rows);
+        if distinct(&at) > 2 {
+            let scale = Interval::of(&at);
+            let waves: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
+            let steps: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
+            self.add("position", "position", COMMON, vec![waves, steps]);
+        }
+        let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
+        let at = repetition(self.rows);
+        if distinct(&at) > 2 {
+            let scale = Interval::of(&at);
+            let settling: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
+            self.add("repetition", "repetition", COMMON, vec![settling]);
+            let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
+            let alternation: Basis = Box::new(move |rows| kernel::single(&rows.column(sign)));
+            self.add("alternate repetitions", "repetition", COMMON, vec![alternation]);
+            let scale = Interval::of(&self.rows.series_time_s);
+            let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
+            self.add("time in a series", "repetition", COMMON, vec![creep]);
+        }
+    }
+
+    fn load(&mut self) {
+        let load = |rows: &Covariates| rows.column(|p| p.load_n);
+        let loads = load(self.rows);
+        if distinct(&loads) > 2 {
+            let most = loads.iter().copied().fold(1e-9, f64::max);
+            let scale = Interval { low: 0.0, high: most };
+            let channels = [
+                Channel::Reading,
+                Channel::Drag,
+                Channel::Friction,
+                Channel::Pins,
+                Channel::Silicone,
+                Channel::DirectionFriction,
+            ];
+            let curve: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
+            self.add("load", "load", &channels, vec![curve]);
+        }
+        if (4..=MOST_LOADS).contains(&distinct(&loads)) {
+            self.levels("weight", "load", &[Channel::Reading, Channel::Gain], load_level);
+        }
+        let memory = |p: &Point| {
+            let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
+            (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
+        };
+        let memory: Basis = Box::new(move |rows| kernel::single(&rows.column(memory)));
+        self.add("previous load", "load", &[Channel::Silicone, Channel::Friction], vec![memory]);
+    }
+
+    fn protocol(&mut self) {
+        let speed = |rows: &Covariates| rows.column(|p| p.log_speed);
+        let speeds = speed(self.rows);
+        if distinct(&speeds) > 2 {
+            let scale = Interval::of(&speeds);
+            let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
+            self.add("speed", "speed", COMMON, vec![curve]);
+        } else if distinct(&speeds) == 2 {
+            let sign: Basis = Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
+            self.add("speed", "speed", &[Channel::Drag], vec![sign]);
+        }
+        let dwell = |rows: &Covariates| rows.column(|p| p.log_dwell);
+        let dwells = dwell(self.rows);
+        if distinct(&dwells) > 1 {
+            let scale = Interval::of(&dwells);
+            let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
+            self.add("dwell", "dwell", &[Channel::Reading, Channel::Friction], vec![curve]);
+        }
+        let descending = self.rows.column(|p| p.descending);
+        if distinct(&descending) == 2 {
+            let sweep: Basis = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
+            self.add("sweep", "sweep", COMMON, vec![sweep]);
+        }
+    }
+
+    fn factors(&mut self) {
+        self.levels("condition", "condition", COMMON, |_, label| label.condition.clone());
+        let wraps = distinct(&self.rows.wrap_deg);
+        if wraps < self.rows.level_names(|label| &label.condition).len() {
+            let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
+            self.levels("wrap angle", "condition", &[Channel::Reading, Channel::Friction], wrap);
+        }
+        // The mount effect on friction is in every hypothesis.
+        let forces = &[Channel::Reading, Channel::Drag];
+        self.levels("mount", "mount", forces, |_, label| label.mount.clone());
+        self.levels("specimen", "specimen", COMMON, |_, label| label.specimen.clone());
+        self.levels("operator", "operator", COMMON, |_, label| label.operator.clone());
+        self.levels("session", "session", COMMON, |_, label| label.session.clone());
+    }
+
+    /// Adds independent levels of a factor that has several.
+    fn levels(
+        &mut self,
+        name: &str,
+        covariate: &'static str,
+        channels: &[Channel],
+        level: impl Fn(&RowFactors, &RowLabels) -> String + 'static,
+    ) {
+        let all = names_of(self.rows, &level);
+        let names: std::collections::BTreeSet<String> = all.into_iter().collect();
+        let names: Vec<String> = names.into_iter().collect();
+        let least = if name == "condition" { 3 } else { 2 };
+        if names.len() < least || names.len() > MOST_LEVELS || 5 * names.len() > 4 * self.rows.series_count()
+        {
+            return;
+        }
+        let basis: Basis = Box::new(move |rows| {
+            let level_of: Vec<Option<usize>> =
+                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok()).collect();
+            kernel::levels(&level_of, names.len())
+        });
+        self.add(name, covariate, channels, vec![basis]);
+    }
+}
+
+/// Returns structure that acts in one interval of series with these starts: a change, or a fault that
+/// lasts for a while. Brownian motion prices one large step as many small ones.
+fn intervals(starts: &[f64]) -> Vec<Variant> {
+    let count = starts.len();
+    let is_long = count > MOST_INTERVAL_SERIES;
+    let mut bases: Vec<Basis> = Vec::new();
+    for from in 0..count {
+        for until in (if is_long { count } else { from + 1 })..=count {
+            if until - from < count {
+                let (low, high) = (starts[from], starts.get(until).copied().unwrap_or(f64::INFINITY));
+                let is_in = move |p: &Point| f64::from(u8::from(p.time_s >= low && p.time_s < high));
+                bases.push(Box::new(move |rows| kernel::single(&rows.column(is_in))));
+            }
+        }
+    }
+    let probability = INTERVAL_PROBABILITY / bases.len().max(1) as f64;
+    bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
+}
+
+/// Numbers of a row that may be levels of a factor.
+struct RowFactors {
+    wrap_deg: f64,
+    load_n: f64,
+}
+
+fn names_of(rows: &Covariates, level: &impl Fn(&RowFactors, &RowLabels) -> String) -> Vec<String> {
+    let factors = |i: usize| RowFactors { wrap_deg: rows.wrap_deg[i], load_n: rows.points[i].load_n };
+    (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
+}
+
+/// Returns the name of a load as a level, to a hundredth of a newton.
+fn load_level(row: &RowFactors, _: &RowLabels) -> String {
+    format!("{:.2}", row.load_n)
+}
+
+/// Range of a covariate on the fitted table.
+#[derive(Clone, Copy)]
+struct Interval {
+    low: f64,
+    high: f64,
+}
+
+impl Interval {
+    fn of(values: &[f64]) -> Self {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Self { low, high }
+    }
+
+    /// Returns the shares 0..1 of values in the range; those outside have the nearest end.
+    fn shares(self, values: &[f64]) -> Vec<f64> {
+        let width = (self.high - self.low).max(1e-9);
+        values.iter().map(|v| ((v - self.low) / width).clamp(0.0, 1.0)).collect()
+    }
+}

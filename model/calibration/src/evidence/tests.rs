@@ -1,0 +1,140 @@
+//! Tests of the whole inference on small sessions.
+
+use pinswitch_inference::{Member, Verdict};
+
+use super::{Evidence, Session};
+use crate::effects::{Vocabulary, effect_named};
+use crate::inference::Term;
+use crate::table::{PlateauRow, PlateauTable};
+use crate::test_session::{session, session_with};
+
+fn evidence(rows: &[PlateauRow]) -> Evidence {
+    let text = PlateauTable::write(rows);
+    let table = PlateauTable::read(text.as_bytes(), "plateaus.csv").unwrap();
+    Evidence::new(&table, &Vocabulary::built_in(), 1).unwrap()
+}
+
+fn reported(evidence: &Evidence) -> Vec<&str> {
+    evidence.posterior().reported.iter().map(|r| evidence.name(r.member)).collect()
+}
+
+/// The verdict is `none`: the session excludes every effect of a relevant size that it can show.
+#[test]
+fn nothing_is_reported_without_effects() {
+    let evidence = evidence(&session(3));
+    assert!(reported(&evidence).is_empty());
+    assert!(matches!(evidence.posterior().verdict, Verdict::None | Verdict::Inconclusive));
+}
+
+/// The size is within three standard deviations of the true one, and predictions contain it.
+#[test]
+fn an_offset_is_attributed() {
+    let term = Term::Named(effect_named("load_cell_offset").unwrap());
+    let rows = session_with(4, &[(term, &[0.6])]);
+    let evidence = evidence(&rows);
+    assert_eq!(evidence.posterior().verdict, Verdict::Attributed);
+    assert_eq!(reported(&evidence), ["load_cell_offset"]);
+    let size = evidence.posterior().size(member_index(&evidence, "load_cell_offset")).unwrap();
+    assert!((size.mean - 0.6).abs() < 3.0 * size.sd && size.sd < 0.05, "{size:?}");
+    let predictions = evidence.predict(&rows, Session::New).unwrap();
+    let squares = predictions.iter().zip(&rows).map(|(p, row)| (p.mean - row.force_n).powi(2));
+    let error = (squares.sum::<f64>() / rows.len() as f64).sqrt();
+    let expected = evidence.posterior().expected_error.unwrap();
+    assert!(error < 0.1 && error < 2.0 * expected.value, "{error} {expected:?}");
+}
+
+fn member_index(evidence: &Evidence, name: &str) -> usize {
+    evidence.problem().space().effects.iter().position(|effect| effect.name == name).unwrap()
+}
+
+/// Contacts at several angles have one friction coefficient, so that no structure over the wrap
+/// angle is needed.
+#[test]
+fn plain_contacts_use_their_wrap_angle() {
+    let mut rows = Vec::new();
+    for (series, (degrees, load_n)) in
+        [(45.0, 5.0), (90.0, 5.0), (180.0, 5.0), (45.0, 20.0), (90.0, 20.0), (180.0, 20.0)]
+            .into_iter()
+            .enumerate()
+    {
+        for mut row in session(5).into_iter().take(18) {
+            row.series = series.to_string();
+            row.substrate = None;
+            row.pins = Vec::new();
+            row.load_n = load_n;
+            row.wrap_angle_deg = degrees;
+            row.time_s += 100.0 * series as f64;
+            let exponent = 0.18 * f64::to_radians(degrees) * row.direction.sign();
+            let noise = 0.02 * libm::sin(7.0 * row.time_s + degrees);
+            row.force_n = load_n * libm::exp(exponent) + noise;
+            rows.push(row);
+        }
+    }
+    let evidence = evidence(&rows);
+    assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
+    let constants = evidence.posterior().window[0].constants();
+    assert_eq!(constants.len(), 1);
+    assert!((libm::exp(constants[0]) - 0.18).abs() < 0.005, "{constants:?}");
+}
+
+/// Structure over a covariate needs at least three values of it, or two levels of a factor.
+#[test]
+fn kernels_are_not_finer_than_the_sampling() {
+    let mut rows = session(6);
+    rows.retain(|row| row.repetition <= 2);
+    rows.iter_mut().for_each(|row| row.position_mm = 20.0);
+    let evidence = evidence(&rows);
+    let kernels = &evidence.problem().space().kernels;
+    assert!(kernels.iter().all(|k| k.covariate != "position" && k.covariate != "dwell"));
+    assert!(kernels.iter().all(|k| !k.name.contains("repetition") && !k.name.contains("operator")));
+    assert!(kernels.iter().any(|k| k.covariate == "load"));
+}
+
+/// A device that was not measured has no threshold, and the error names it.
+#[test]
+fn an_unmeasured_device_is_refused() {
+    let evidence = evidence(&session(7));
+    let mut row = session(7)[0].clone();
+    row.pins = vec![6, 8, 10];
+    let error = evidence.predict(&[row], Session::New).unwrap_err();
+    assert_eq!(error.problem(), "no series of silicone 6;8;10 in the fitted table");
+    assert!(error.help().is_some());
+}
+
+/// The name of a kernel contains its channel, and its curve has a value for every row.
+#[test]
+fn structure_is_reported_with_its_covariate() {
+    let mut rows = session(8);
+    rows.iter_mut().for_each(|row| {
+        row.force_n += if row.repetition % 2 == 0 { 0.1 } else { -0.1 };
+    });
+    let evidence = evidence(&rows);
+    assert_eq!(evidence.posterior().verdict, Verdict::Unattributed);
+    let member = evidence.posterior().reported[0].member;
+    assert_eq!(evidence.name(member), "reading over alternate repetitions");
+    assert_eq!(evidence.covariate(member), "repetition");
+    let Member::Kernel(kernel) = member else { panic!("an effect") };
+    let curve = evidence.posterior().curve(evidence.problem(), kernel).unwrap();
+    assert_eq!(curve.len(), rows.len());
+    assert!(curve.iter().all(|value| (value.abs() - 0.1).abs() < 0.01));
+}
+
+/// One reading determines nothing.
+#[test]
+fn one_row_is_inconclusive() {
+    let evidence = evidence(&session(9)[..1]);
+    assert_eq!(evidence.posterior().verdict, Verdict::Inconclusive);
+}
+
+/// A series of many rows is split, so that the time of an inference stays proportional to the rows.
+#[test]
+fn long_series_are_split() {
+    let mut rows = session(10);
+    rows.truncate(150);
+    for (i, row) in rows.iter_mut().enumerate() {
+        row.series = "0".to_owned();
+        row.repetition = 1 + u32::try_from(i).unwrap();
+    }
+    let evidence = evidence(&rows);
+    assert_eq!(evidence.problem().rows().series.last(), Some(&2));
+}

@@ -1,0 +1,290 @@
+//! The linear model at a mode: one column per coefficient that the evidence integrates.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::hypothesis::{Hypothesis, Member};
+use crate::noise::Scales;
+use crate::problem::{MOST_SHAPE_CONSTANTS, Problem, Rows, SizedEffect, Space};
+
+/// Standard deviation of the discrepancy of an effect, relative to its contribution.
+pub(crate) const DISCREPANCY_SD: f64 = 0.15;
+/// Step of a constant for its finite difference.
+const CONSTANT_STEP: f64 = 1e-5;
+/// Step of a shift of a shape for its finite difference.
+const SHIFT_STEP: f64 = 1e-3;
+/// Steps of a size for its finite difference, relative to the typical size and to the size.
+const SIZE_STEPS: (f64, f64) = (1e-3, 1e-4);
+
+/// What a column of the design multiplies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// A constant of the baseline.
+    Constant(usize),
+    /// The size of an effect.
+    Size(usize),
+    /// A constant of the shape of an effect.
+    Shape(usize, usize),
+    /// The discrepancy of an effect.
+    Discrepancy(usize),
+    /// A level of a random effect or a coefficient of a kernel.
+    Variance(Component),
+}
+
+/// A set of coefficients with a common standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Component {
+    /// A random effect of the space.
+    Random(usize),
+    /// A kernel of the space.
+    Kernel(usize),
+}
+
+impl Component {
+    /// Returns the scale of the prior of its standard deviation.
+    pub(crate) fn scale(self, space: &Space) -> f64 {
+        match self {
+            Self::Random(i) => space.random_effects[i].scale,
+            Self::Kernel(i) => space.kernels[i].scale,
+        }
+    }
+}
+
+/// Point about which a hypothesis is linearised: constants, sizes, weights of the rows, scales of
+/// the noise, and standard deviations of components.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    pub(crate) constants: Vec<f64>,
+    pub(crate) sizes: BTreeMap<usize, f64>,
+    /// Shifts of the shape of each effect.
+    pub(crate) shifts: BTreeMap<usize, [f64; MOST_SHAPE_CONSTANTS]>,
+    pub(crate) weights: DVector<f64>,
+    pub(crate) scales: Scales,
+    pub(crate) log_sd: BTreeMap<Component, f64>,
+}
+
+impl Mode {
+    /// Returns the effects of a hypothesis with sizes and shapes.
+    pub(crate) fn sized(&self, hypothesis: &Hypothesis) -> Vec<SizedEffect> {
+        let effects = hypothesis.effects();
+        effects
+            .map(|(effect, shape)| SizedEffect {
+                effect,
+                shape,
+                size: self.sizes.get(&effect).copied().unwrap_or(1.0),
+                shifts: self.shifts.get(&effect).copied().unwrap_or_default(),
+            })
+            .collect()
+    }
+}
+
+/// Columns of a hypothesis at a mode, and what they leave to explain.
+#[derive(Clone, Debug)]
+pub(crate) struct Design {
+    pub(crate) matrix: DMatrix<f64>,
+    pub(crate) roles: Vec<Role>,
+    /// Prior mean of each coefficient.
+    pub(crate) prior_mean: Vec<f64>,
+    /// `y - f + J q + X s - A m`, so that coefficients are deviations from their prior means `m`.
+    pub(crate) target: DVector<f64>,
+    /// Sensitivity of the readings to each channel.
+    pub(crate) channels: Vec<Vec<f64>>,
+}
+
+impl Design {
+    /// Linearises a hypothesis at a mode; `None` if a derivative is not finite.
+    pub(crate) fn new(problem: &Problem, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
+        let mut design = Self::of_rows(&problem.space, &problem.rows, hypothesis, mode)?;
+        design.target += &problem.readings;
+        Some(design)
+    }
+
+    /// Linearises a hypothesis at rows without readings, which count as zero.
+    pub(crate) fn of_rows(space: &Space, rows: &Rows, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
+        let effects = mode.sized(hypothesis);
+        let forward = &rows.forward;
+        let baseline = forward.readings(&mode.constants, &effects);
+        let channels = forward.channels(&mode.constants, &effects);
+        let mut builder = Builder { rows: rows.len(), data: Vec::new(), roles: Vec::new(), mean: Vec::new() };
+        let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
+        for (i, constant) in space.constants.iter().enumerate() {
+            let mut moved = mode.constants.clone();
+            moved[i] += CONSTANT_STEP;
+            let column = slope(&forward.readings(&moved, &effects), &baseline, CONSTANT_STEP);
+            add_scaled(&mut target, &column, mode.constants[i] - constant.mean);
+            builder.push(Role::Constant(i), constant.mean, column);
+        }
+        let sized = effects.iter().filter(|e| space.effects[e.effect].typical_size.is_some());
+        let mut contributions = Vec::new();
+        for effect in sized {
+            let column = size_sensitivity(space, rows, mode, &effects, *effect, &baseline);
+            add_scaled(&mut target, &column, effect.size);
+            contributions.push((*effect, column.iter().map(|x| x * effect.size).collect::<Vec<f64>>()));
+            builder.push(Role::Size(effect.effect), 0.0, column);
+        }
+        for (effect, _) in &contributions {
+            for i in 0..space.effects[effect.effect].shape_constants {
+                let moved = |e: &SizedEffect| if e == effect { shifted(*e, i) } else { *e };
+                let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
+                let column = slope(&forward.readings(&mode.constants, &moved), &baseline, SHIFT_STEP);
+                add_scaled(&mut target, &column, effect.shifts[i]);
+                builder.push(Role::Shape(effect.effect, i), 0.0, column);
+            }
+        }
+        for (effect, contribution) in &contributions {
+            for factor in &rows.discrepancies[effect.effect] {
+                let column = contribution.iter().zip(factor).map(|(x, z)| x * z).collect();
+                builder.push(Role::Discrepancy(effect.effect), 0.0, column);
+            }
+        }
+        for (i, random) in space.random_effects.iter().enumerate() {
+            for level in 0..random.levels {
+                let at = |row: usize| rows.levels[i][row] == Some(level);
+                let channel = &channels[random.channel];
+                let column = (0..rows.len()).map(|row| if at(row) { channel[row] } else { 0.0 }).collect();
+                builder.push(Role::Variance(Component::Random(i)), 0.0, column);
+            }
+        }
+        for (kernel, variant) in hypothesis.kernels() {
+            let columns = kernel_columns(space, rows, &channels, kernel, variant);
+            for column in columns.column_iter() {
+                let column = column.iter().copied().collect();
+                builder.push(Role::Variance(Component::Kernel(kernel)), 0.0, column);
+            }
+        }
+        builder.finish(target, channels)
+    }
+
+    /// Returns the prior variance of each coefficient. Sizes have the variance `size_variance` of
+    /// their effect.
+    pub(crate) fn prior_variances(
+        &self,
+        space: &Space,
+        log_sd: &BTreeMap<Component, f64>,
+        size_variance: impl Fn(usize) -> f64,
+    ) -> Vec<f64> {
+        let variance = |role: &Role| match role {
+            Role::Constant(i) => space.constants[*i].sd.powi(2),
+            Role::Size(effect) => size_variance(*effect),
+            Role::Shape(..) => 1.0,
+            Role::Discrepancy(_) => DISCREPANCY_SD.powi(2),
+            Role::Variance(component) => log_sd.get(component).map_or(0.0, |log| libm::exp(2.0 * log)),
+        };
+        self.roles.iter().map(variance).collect()
+    }
+
+    /// Returns the columns of a component.
+    pub(crate) fn columns_of(&self, component: Component) -> Vec<usize> {
+        let is_of = |role: &Role| *role == Role::Variance(component);
+        (0..self.roles.len()).filter(|i| is_of(&self.roles[*i])).collect()
+    }
+
+    /// Returns the components that have columns, in order.
+    pub(crate) fn components(&self) -> Vec<Component> {
+        let mut components: Vec<Component> = Vec::new();
+        for role in &self.roles {
+            match role {
+                Role::Variance(component) if components.last() != Some(component) => {
+                    components.push(*component);
+                }
+                _ => {}
+            }
+        }
+        components
+    }
+}
+
+/// Columns under construction.
+struct Builder {
+    rows: usize,
+    data: Vec<f64>,
+    roles: Vec<Role>,
+    mean: Vec<f64>,
+}
+
+impl Builder {
+    fn push(&mut self, role: Role, mean: f64, column: Vec<f64>) {
+        self.data.extend(column);
+        self.roles.push(role);
+        self.mean.push(mean);
+    }
+
+    fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>) -> Option<Design> {
+        let is_finite =
+            self.data.iter().chain(&target).chain(channels.iter().flatten()).all(|x| x.is_finite());
+        is_finite.then(|| Design {
+            matrix: DMatrix::from_vec(self.rows, self.roles.len(), self.data),
+            roles: self.roles,
+            prior_mean: self.mean,
+            target: DVector::from_vec(target),
+            channels,
+        })
+    }
+}
+
+fn shifted(mut effect: SizedEffect, index: usize) -> SizedEffect {
+    effect.shifts[index] += SHIFT_STEP;
+    effect
+}
+
+fn slope(moved: &[f64], baseline: &[f64], step: f64) -> Vec<f64> {
+    moved.iter().zip(baseline).map(|(a, b)| (a - b) / step).collect()
+}
+
+fn add_scaled(sum: &mut [f64], column: &[f64], factor: f64) {
+    sum.iter_mut().zip(column).for_each(|(s, x)| *s += factor * x);
+}
+
+/// Returns the derivative of the readings with respect to the size of an effect of the model.
+fn size_sensitivity(
+    space: &Space,
+    rows: &Rows,
+    mode: &Mode,
+    effects: &[SizedEffect],
+    effect: SizedEffect,
+    baseline: &[f64],
+) -> Vec<f64> {
+    let typical = space.effects[effect.effect].typical_size.unwrap_or(1.0);
+    let step = (SIZE_STEPS.0 * typical).max(SIZE_STEPS.1 * effect.size.abs());
+    let moved = |e: &SizedEffect| if *e == effect { SizedEffect { size: e.size + step, ..*e } } else { *e };
+    let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
+    slope(&rows.forward.readings(&mode.constants, &moved), baseline, step)
+}
+
+/// Returns the change of the readings per size of an element that is added to a model, by a secant
+/// to its start; `None` if it is not finite or zero. An element replaces another form of its member.
+pub(crate) fn added_column(
+    space: &Space,
+    rows: &Rows,
+    hypothesis: &Hypothesis,
+    mode: &Mode,
+    effect: usize,
+    shape: usize,
+) -> Option<DVector<f64>> {
+    let rest = mode.sized(&hypothesis.without(Member::Effect(effect)));
+    let start = space.effects[effect].starts.get(shape).copied()?;
+    let mut with = rest.clone();
+    with.push(SizedEffect { effect, shape, size: start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
+    let before = rows.forward.readings(&mode.constants, &rest);
+    let after = rows.forward.readings(&mode.constants, &with);
+    let column = slope(&after, &before, start);
+    let most = column.iter().fold(0.0f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { f64::NAN });
+    (most > 1e-9).then(|| DVector::from_vec(column))
+}
+
+/// Returns the columns of a kernel: its basis times the sensitivity to its channel.
+pub(crate) fn kernel_columns(
+    space: &Space,
+    rows: &Rows,
+    channels: &[Vec<f64>],
+    kernel: usize,
+    variant: usize,
+) -> DMatrix<f64> {
+    let channel = &channels[space.kernels[kernel].channel];
+    let mut columns = rows.bases[kernel][variant].clone();
+    for mut column in columns.column_iter_mut() {
+        column.iter_mut().zip(channel).for_each(|(x, c)| *x *= c);
+    }
+    columns
+}

@@ -1,0 +1,273 @@
+//! Expected error of a new session.
+//!
+//! Each series is predicted from the others, and its residual gets the spread of a new series at
+//! the same conditions. A hypothesis counts by its probability without that
+//! series, so that it is held out of the choice of effects too. New mounts and what a session draws again
+//! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
+//! sessions.
+
+use nalgebra::DVector;
+
+use crate::design::{Component, Role};
+use crate::fit::Fit;
+use crate::hypothesis::Member;
+use crate::leave_out::Linearised;
+use crate::problem::Problem;
+use crate::quadrature::log_sum_exp;
+use crate::random::Random;
+
+/// Weight below which a row is an outlier, which a new session is not judged by.
+const OUTLIER_WEIGHT: f64 = 0.12;
+/// Most hypotheses that are averaged.
+const MOST_HYPOTHESES: usize = 12;
+/// Simulated sessions, and resamples of the series.
+const SIMULATIONS: usize = 300;
+
+/// Root mean square error expected on a new session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedError {
+    /// Expected value.
+    pub value: f64,
+    /// 90 % interval.
+    pub interval: [f64; 2],
+}
+
+/// Returns the expected error of the average over a window of fits with these probabilities; `None`
+/// if no fit can be linearised.
+pub(crate) fn expected_error(
+    problem: &Problem,
+    window: &[Fit],
+    probabilities: &[f64],
+    seed: u64,
+) -> Option<ExpectedError> {
+    let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
+    let mut parts = Vec::new();
+    for (fit, probability) in fits {
+        let Some(linearised) = Linearised::new(problem, fit) else { continue };
+        if let Some(left_out) = linearised.leave_series_out() {
+            parts.push((libm::log(*probability), fit, linearised, left_out));
+        }
+    }
+    let mut residuals = vec![0.0; problem.len()];
+    for (series, range) in problem.ranges.iter().enumerate() {
+        let logs: Vec<f64> = parts.iter().map(|(p, _, _, out)| p - out.log_predictive[series]).collect();
+        let total = log_sum_exp(&logs);
+        for ((_, _, _, out), log) in parts.iter().zip(&logs) {
+            let share = libm::exp(log - total);
+            range.clone().for_each(|row| residuals[row] += share * out.of_new_series[row]);
+        }
+    }
+    let (_, fit, linearised, _) = parts.first()?;
+    let sound: Vec<usize> =
+        (0..problem.len()).filter(|row| fit.mode.weights[*row] > OUTLIER_WEIGHT).collect();
+    let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
+    for row in &sound {
+        let (sum, count) = &mut squares[problem.rows.series[*row]];
+        *sum += residuals[*row].powi(2);
+        *count += 1.0;
+    }
+    squares.retain(|(_, count)| *count > 0.0);
+    let mut random = Random::new(seed);
+    let views: Vec<(f64, SessionView)> = parts
+        .iter()
+        .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
+        .collect();
+    let session = session_variance(&views, &sound);
+    let simulated = Simulation::new(problem, fit, linearised).run(&mut random, &sound);
+    let added = simulated.mount_variance + session;
+    let mut errors: Vec<f64> = (0..SIMULATIONS)
+        .map(|i| {
+            let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
+            let square = mean_square(drawn) + added;
+            (square * simulated.relative_squares[i]).sqrt()
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    let quantile = |share: usize| errors[(share * (SIMULATIONS - 1)) / 100];
+    let value = (mean_square(squares.iter().copied()) + added).sqrt();
+    Some(ExpectedError { value, interval: [quantile(5), quantile(95)] })
+}
+
+fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (sum, count) = series.fold((0.0, 0.0), |(s, n), (square, rows)| (s + square, n + rows));
+    sum / f64::max(count, 1.0)
+}
+
+/// A hypothesis at the rows of the fitted session.
+pub(crate) struct SessionView {
+    /// What a new session is predicted to read, without its own mounts and noise.
+    prediction: Vec<f64>,
+    /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
+    pub(crate) deviation: Vec<f64>,
+}
+
+impl SessionView {
+    pub(crate) fn new(problem: &Problem, fit: &Fit, linearised: &Linearised) -> Self {
+        let effects = fit.mode.sized(&fit.hypothesis);
+        let forward = &problem.rows.forward;
+        let at = forward.readings(&fit.mode.constants, &effects);
+        let mut prediction = forward.session_mean(&fit.mode.constants, &effects);
+        let mut deviation: Vec<f64> = at.iter().zip(&prediction).map(|(a, b)| a - b).collect();
+        let (design, mean) = (&linearised.design, &linearised.point.solution.mean);
+        for (i, role) in design.roles.iter().enumerate() {
+            let is_lasting = match role {
+                Role::Constant(_) | Role::Size(_) | Role::Shape(..) => false,
+                Role::Discrepancy(_) => true,
+                Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
+                Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
+            };
+            if is_lasting {
+                let column = design.matrix.column(i);
+                prediction.iter_mut().zip(column.iter()).for_each(|(p, x)| *p += x * mean[i]);
+            }
+        }
+        for (kernel, _) in fit.hypothesis.kernels() {
+            if !problem.space.kernels[kernel].is_session_bound {
+                continue;
+            }
+            let channel = &design.channels[problem.space.kernels[kernel].channel];
+            let curve =
+                kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
+            let level = curve.iter().sum::<f64>() / curve.len() as f64;
+            for (row, value) in curve.iter().enumerate() {
+                prediction[row] += channel[row] * level;
+                deviation[row] += channel[row] * (value - level);
+            }
+        }
+        Self { prediction, deviation }
+    }
+}
+
+/// Returns the mean square of what a session draws again, and of the difference between hypotheses
+/// in the prediction of a new session.
+fn session_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f64 {
+    let total: f64 = views.iter().map(|(p, _)| p).sum();
+    let average = |value: &dyn Fn(&SessionView) -> f64| -> f64 {
+        views.iter().map(|(p, view)| p * value(view)).sum::<f64>() / total
+    };
+    let of_row = |row: &usize| {
+        let mean = average(&|view| view.prediction[*row]);
+        average(&|view| view.deviation[*row].powi(2) + (view.prediction[*row] - mean).powi(2))
+    };
+    sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
+}
+
+/// Returns the posterior mean of a kernel's function at each row, in the unit of its channel.
+pub(crate) fn kernel_curve(
+    problem: &Problem,
+    fit: &Fit,
+    kernel: usize,
+    columns: &[usize],
+    mean: &DVector<f64>,
+) -> Vec<f64> {
+    let Some(element) = fit.element(Member::Kernel(kernel)) else { return vec![0.0; problem.len()] };
+    let basis = &problem.rows.bases[kernel][element.form];
+    let coefficients = mean.select_rows(columns);
+    (basis * coefficients).iter().copied().collect()
+}
+
+/// Sessions of the rows of a problem, drawn from a fit.
+struct Simulation<'a> {
+    problem: &'a Problem,
+    fit: &'a Fit,
+    linearised: &'a Linearised,
+}
+
+/// Results of a simulation.
+struct Simulated {
+    /// Mean square of each session over the median one.
+    relative_squares: Vec<f64>,
+    /// Mean square that new levels of random effects add.
+    mount_variance: f64,
+}
+
+impl<'a> Simulation<'a> {
+    fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
+        Self { problem, fit, linearised }
+    }
+
+    fn run(&self, random: &mut Random, sound: &[usize]) -> Simulated {
+        let mean = |errors: &[f64]| -> f64 {
+            sound.iter().map(|row| errors[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
+        };
+        let (mut squares, mut mounts) = (Vec::new(), Vec::new());
+        for _ in 0..SIMULATIONS {
+            let mut errors = self.session(random);
+            let before = mean(&errors);
+            self.add_new_levels(random, &mut errors);
+            squares.push(mean(&errors));
+            mounts.push(mean(&errors) - before);
+        }
+        let median = crate::quadrature::median(&squares).max(1e-300);
+        Simulated {
+            relative_squares: squares.iter().map(|s| s / median).collect(),
+            mount_variance: crate::quadrature::median(&mounts).max(0.0),
+        }
+    }
+
+    /// Returns errors of a session: uncertainty of constants and sizes, and noise.
+    fn session(&self, random: &mut Random) -> Vec<f64> {
+        let (problem, solution) = (self.problem, &self.linearised.point.solution);
+        let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
+        let mut coefficients = solution.root.tr_mul(&normal);
+        for (i, role) in self.linearised.design.roles.iter().enumerate() {
+            if !matches!(role, Role::Constant(_) | Role::Size(_) | Role::Shape(..)) {
+                coefficients[i] = 0.0;
+            }
+        }
+        let mut errors: Vec<f64> = (&self.linearised.design.matrix * coefficients).iter().copied().collect();
+        let [sigma, growth, direction, series, scale, by_load] = self.fit.scales().values();
+        let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
+        for range in &problem.ranges {
+            let offset = series * random.normal();
+            let sides = [direction * random.normal(), direction * random.normal()];
+            let slopes = [by_load * random.normal(), by_load * random.normal()];
+            let factor = scale * random.normal();
+            for row in range.clone() {
+                let load = problem.rows.load[row] / problem.reference.mean_load;
+                let own = sigma * (1.0 + (growth * load).powi(2)).sqrt() * random.student();
+                let side = usize::from(problem.rows.direction[row]);
+                errors[row] += offset + sides[side] + load * slopes[side] + factor * friction[row] + own;
+            }
+        }
+        errors
+    }
+
+    /// Adds new levels of the random effects that a new session draws again.
+    fn add_new_levels(&self, random: &mut Random, errors: &mut [f64]) {
+        for (i, effect) in self.problem.space.random_effects.iter().enumerate() {
+            let Some(sd) = self.fit.random_effect_sd(i).filter(|_| effect.is_redrawn) else { continue };
+            let values: Vec<f64> = (0..effect.levels).map(|_| sd * random.normal()).collect();
+            let channel = &self.linearised.design.channels[effect.channel];
+            for (row, level) in self.problem.rows.levels[i].iter().enumerate() {
+                errors[row] += level.map_or(0.0, |level| values[level] * channel[row]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::test_problem::problem;
+    use crate::{SearchOptions, infer};
+
+    /// Series differ by 0.05 and readings by 0.03, so a new session differs by their root sum of
+    /// squares.
+    #[test]
+    fn expected_error_covers_series_offsets() {
+        let problem = problem(24, 0.0);
+        let posterior = infer(&problem, SearchOptions::default(), 5).unwrap();
+        let error = posterior.expected_error.unwrap();
+        let truth = (0.05f64.powi(2) + 0.03f64.powi(2)).sqrt();
+        assert!(error.interval[0] < truth && truth < error.interval[1], "{error:?}");
+        assert!((error.value / truth - 1.0).abs() < 0.3, "{error:?}");
+    }
+
+    #[test]
+    fn equal_seeds_give_equal_intervals() {
+        let problem = problem(8, 0.3);
+        let error = |seed| infer(&problem, SearchOptions::default(), seed).unwrap().expected_error.unwrap();
+        assert_eq!(error(3), error(3));
+        assert_ne!(error(3).interval, error(4).interval);
+    }
+}

@@ -1,0 +1,292 @@
+//! Mode of a hypothesis by Gauss-Newton steps, with the weights of Student's t noise.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use crate::design::{Component, Design, Mode, Role};
+use crate::evidence::{Integrals, SizePosterior, log_evidence};
+use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::noise::Scales;
+use crate::problem::{Problem, Space};
+use crate::scales::{ScalePoint, ScaleProblem};
+
+/// Degrees of freedom of Student's t distribution of the repetition noise.
+pub(crate) const DEGREES_OF_FREEDOM: f64 = 5.0;
+/// Range of the weights of the scale mixture.
+const WEIGHT_RANGE: (f64, f64) = (1e-3, 1.2);
+/// Prior standard deviation of a size while its mode is searched, in typical sizes: practically
+/// free, since a prior that is tight about a bad start keeps a fit there.
+const FREE_SIZE_SD: f64 = 300.0;
+/// Largest step of a constant in its coordinate.
+const MOST_CONSTANT_STEP: f64 = 0.5;
+/// Largest step of a shift of a shape, and its largest value.
+const MOST_SHIFT: (f64, f64) = (0.7, 4.0);
+/// Smallest size of a one-sided effect, as a share of the typical one.
+const LEAST_SHARE: f64 = 0.02;
+/// Rounds with free sizes: from scratch, and for an effect that is added to a mode.
+const FREE_ROUNDS: (usize, usize) = (6, 2);
+/// Most rounds after these.
+const FINAL_ROUNDS: usize = 5;
+/// Newton steps of the scales in a round: from scratch, and from the mode of a similar hypothesis.
+const SCALE_STEPS: (usize, usize) = (3, 2);
+/// Change of the objective in nats below which the last rounds have converged.
+const CONVERGED: f64 = 0.05;
+
+/// A fitted hypothesis.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The hypothesis.
+    pub hypothesis: Hypothesis,
+    /// `ln p(y | H)`.
+    pub log_evidence: f64,
+    /// `ln p(y | H) + ln p(H)`.
+    pub score: f64,
+    /// Posterior of the size of each effect that has one.
+    pub sizes: BTreeMap<usize, SizePosterior>,
+    /// Posterior mean of the variance of each component.
+    pub(crate) variances: BTreeMap<Component, f64>,
+    /// Constants, sizes, weights and scales at the mode.
+    pub(crate) mode: Mode,
+}
+
+/// Where a fit starts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Start<'a> {
+    /// Mode of a similar hypothesis.
+    pub(crate) mode: Option<&'a Mode>,
+    /// That hypothesis.
+    pub(crate) hypothesis: Option<&'a Hypothesis>,
+    /// Whether the fit is the last one of its hypothesis, for which every autoregression is tried.
+    pub(crate) is_final: bool,
+    /// Size of an added effect, from its first-order score.
+    pub(crate) hint: Option<(usize, f64)>,
+}
+
+impl<'a> Start<'a> {
+    /// Returns a start at the mode of a fit.
+    pub(crate) fn at(fit: &'a Fit, hint: Option<(usize, f64)>) -> Self {
+        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), is_final: false, hint }
+    }
+}
+
+impl Fit {
+    /// Fits a hypothesis; `None` if its readings are not finite at any mode.
+    pub(crate) fn new(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Option<Self> {
+        let mut mode = start_mode(problem, hypothesis, start);
+        let is_cold = start.mode.is_none();
+        let free = match (is_cold, start.hint) {
+            (true, _) => FREE_ROUNDS.0,
+            (false, Some(_)) => FREE_ROUNDS.1,
+            (false, None) => 0,
+        };
+        let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
+        let mut before = f64::NEG_INFINITY;
+        for round in 0..free + FINAL_ROUNDS {
+            let is_final = round >= free;
+            let size_variances = size_variances(&problem.space, hypothesis, &mode, is_final);
+            let design = Design::new(problem, hypothesis, &mode)?;
+            let scale_problem = ScaleProblem {
+                problem,
+                design: &design,
+                weights: &mode.weights,
+                size_variances: &size_variances,
+            };
+            let mut point = scale_problem.maximum(&mode, steps)?;
+            if round == free && (is_cold || start.is_final) {
+                point = scale_problem.best_autoregression(point);
+            }
+            let objective = point.log_posterior + log_weight_term(&mode.weights);
+            let is_last =
+                round + 1 == free + FINAL_ROUNDS || (round > free && (objective - before).abs() < CONVERGED);
+            if is_last {
+                return Some(Self::of_point(hypothesis, &scale_problem, mode.clone(), point));
+            }
+            before = if is_final { objective } else { f64::NEG_INFINITY };
+            let weights = student_weights(&scale_problem, &point);
+            move_coefficients(&problem.space, &design, &point, &mut mode);
+            mode.scales = point.scales;
+            mode.log_sd = point.log_sd;
+            mode.weights = weights;
+        }
+        None
+    }
+
+    fn of_point(hypothesis: &Hypothesis, at: &ScaleProblem<'_>, mut mode: Mode, point: ScalePoint) -> Self {
+        let (problem, design) = (at.problem, at.design);
+        let integrals = log_evidence(at, &point, log_weight_term(&mode.weights));
+        move_coefficients(&problem.space, design, &point, &mut mode);
+        mode.scales = point.scales;
+        mode.log_sd = point.log_sd;
+        let Integrals { log_evidence, sizes, variances } = integrals;
+        let score = log_evidence + hypothesis.log_prior_odds(&problem.space);
+        Self { hypothesis: hypothesis.clone(), log_evidence, score, sizes, variances, mode }
+    }
+
+    /// Returns the scales of the noise.
+    pub fn scales(&self) -> Scales {
+        self.mode.scales
+    }
+
+    /// Returns the standard deviation of a random effect of the space, the root of its posterior mean
+    /// variance.
+    pub fn random_effect_sd(&self, index: usize) -> Option<f64> {
+        self.variances.get(&Component::Random(index)).map(|variance| variance.sqrt())
+    }
+
+    /// Returns the standard deviation of a kernel of the hypothesis.
+    pub fn kernel_sd(&self, index: usize) -> Option<f64> {
+        self.variances.get(&Component::Kernel(index)).map(|variance| variance.sqrt())
+    }
+
+    /// Returns the baseline's constants.
+    pub fn constants(&self) -> &[f64] {
+        &self.mode.constants
+    }
+
+    /// Returns the weight of each row under the heavy-tailed noise; small for outliers.
+    pub fn weights(&self) -> impl Iterator<Item = f64> + '_ {
+        self.mode.weights.iter().copied()
+    }
+}
+
+/// Returns the prior variance of each size: practically free, or about twice the square of the
+/// size, which the evidence replaces by the Cauchy prior.
+pub(crate) fn size_variances(
+    space: &Space,
+    hypothesis: &Hypothesis,
+    mode: &Mode,
+    is_final: bool,
+) -> BTreeMap<usize, f64> {
+    let mut variances = BTreeMap::new();
+    for (effect, _) in hypothesis.effects() {
+        let Some(typical) = space.effects[effect].typical_size else { continue };
+        let size = mode.sizes.get(&effect).copied().unwrap_or(typical);
+        let variance = if is_final {
+            2.0 * size.powi(2).max((0.5 * typical).powi(2))
+        } else {
+            (FREE_SIZE_SD * typical).powi(2)
+        };
+        variances.insert(effect, variance);
+    }
+    variances
+}
+
+fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> Mode {
+    let space = &problem.space;
+    let mut mode = start.mode.cloned().unwrap_or_else(|| Mode {
+        constants: space.constants.iter().map(|c| c.mean).collect(),
+        sizes: BTreeMap::new(),
+        shifts: BTreeMap::new(),
+        weights: DVector::from_element(problem.len(), 1.0),
+        scales: Scales::typical(&problem.reference),
+        log_sd: BTreeMap::new(),
+    });
+    mode.scales = mode.scales.raised(&problem.reference);
+    let (mut sizes, mut shifts) = (BTreeMap::new(), BTreeMap::new());
+    for (effect, shape) in hypothesis.effects() {
+        let Some(typical) = space.effects[effect].typical_size else { continue };
+        let hint = start.hint.filter(|(of, _)| *of == effect).map(|(_, size)| size);
+        let cold = space.effects[effect].starts.get(shape).copied().unwrap_or(typical);
+        // Shifts are relative to the shape, so that those of another shape do not apply.
+        let is_same = start.hypothesis.is_some_and(|h| h.effects().any(|known| known == (effect, shape)));
+        if let Some(known) = mode.shifts.get(&effect).filter(|_| is_same) {
+            shifts.insert(effect, *known);
+        }
+        sizes.insert(effect, hint.or(mode.sizes.get(&effect).copied()).unwrap_or(cold));
+    }
+    mode.sizes = sizes;
+    mode.shifts = shifts;
+    let mut log_sd = BTreeMap::new();
+    let random = (0..space.random_effects.len()).map(Component::Random);
+    let kernels = hypothesis.kernels().map(|(kernel, _)| Component::Kernel(kernel));
+    for component in random.chain(kernels) {
+        let scale = component.scale(space);
+        let cold = libm::log(if matches!(component, Component::Random(_)) { 0.5 * scale } else { scale });
+        let warm = mode.log_sd.get(&component).map_or(cold, |log| log.max(cold - 2.0));
+        log_sd.insert(component, warm);
+    }
+    mode.log_sd = log_sd;
+    mode
+}
+
+/// Returns the logarithm of the mixing density of the weights, relative to weights of 1. With the
+/// weights at their mode the mixture is Student's t distribution.
+fn log_weight_term(weights: &DVector<f64>) -> f64 {
+    weights.iter().map(|w| DEGREES_OF_FREEDOM / 2.0 * (libm::log(*w) - w + 1.0)).sum()
+}
+
+/// Returns the weights that maximise the posterior, given the part of each residual that a row
+/// shares with no other row.
+fn student_weights(at: &ScaleProblem<'_>, point: &ScalePoint) -> DVector<f64> {
+    let noise = at.noise(&point.scales);
+    let white = point.marginal.white_residual(&point.solution.mean);
+    let precision_residual = point.marginal.whitening.unwhiten_transposed(&white);
+    let quantum = noise.quantum_variance();
+    DVector::from_fn(at.problem.len(), |row, _| {
+        let variance = noise.independent_variance(row);
+        let own = (variance / at.weights[row] + quantum) * precision_residual[row];
+        student_weight(own * own / (variance + quantum).max(1e-12))
+    })
+}
+
+/// Returns the weight of a row whose residual has this square, in units of its variance.
+fn student_weight(square: f64) -> f64 {
+    let weight = (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + square);
+    weight.clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1)
+}
+
+/// Moves constants and sizes to the mean of their posterior, by limited steps.
+fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &mut Mode) {
+    for (i, role) in design.roles.iter().enumerate() {
+        let value = point.solution.mean[i] + design.prior_mean[i];
+        match role {
+            Role::Constant(constant) => {
+                let step = value - mode.constants[*constant];
+                mode.constants[*constant] += step.clamp(-MOST_CONSTANT_STEP, MOST_CONSTANT_STEP);
+            }
+            Role::Size(effect) => {
+                let prior = &space.effects[*effect];
+                let typical = prior.typical_size.unwrap_or(1.0);
+                let value = if prior.is_one_sided { value.max(LEAST_SHARE * typical) } else { value };
+                let size = mode.sizes.entry(*effect).or_insert(value);
+                let most = (FREE_SIZE_SD * typical).max(2.0 * size.abs());
+                *size += (value - *size).clamp(-most, most);
+            }
+            Role::Shape(effect, i) => {
+                let shift = &mut mode.shifts.entry(*effect).or_default()[*i];
+                *shift += (value - *shift).clamp(-MOST_SHIFT.0, MOST_SHIFT.0);
+                *shift = shift.clamp(-MOST_SHIFT.1, MOST_SHIFT.1);
+            }
+            Role::Discrepancy(_) | Role::Variance(_) => {}
+        }
+    }
+}
+
+impl Fit {
+    /// Returns the element of a member of the hypothesis.
+    pub(crate) fn element(&self, member: Member) -> Option<Element> {
+        self.hypothesis.elements().find(|element| element.member == member)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With the weight at its mode, the log density of the mixture is that of Student's t, up to
+    /// a constant.
+    #[test]
+    fn weights_give_student_density() {
+        let nu = DEGREES_OF_FREEDOM;
+        let mixture = |z: f64| {
+            let w = student_weight(z * z);
+            0.5 * libm::log(w) - 0.5 * w * z * z + nu / 2.0 * (libm::log(w) - w + 1.0)
+        };
+        let student = |z: f64| -(nu + 1.0) / 2.0 * libm::log1p(z * z / nu);
+        for z in [0.5, 1.0, 3.0, 10.0] {
+            let difference = mixture(z) - mixture(0.0) - student(z);
+            assert!(difference.abs() < 1e-9, "{z}: {difference}");
+        }
+    }
+}

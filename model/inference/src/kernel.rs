@@ -1,0 +1,71 @@
+//! Low-rank bases of covariance kernels over one covariate.
+//!
+//! A basis `Phi` has one row per reading and one column per coefficient; with independent standard
+//! normal coefficients its rows have the covariance `Phi Phi'` of the kernel.
+
+use std::f64::consts::{PI, SQRT_2};
+
+use nalgebra::DMatrix;
+
+/// Returns the Karhunen-Loeve basis of Brownian motion that starts at zero: covariance
+/// `min(u, v)` for covariates in 0..1.
+pub fn brownian(u: &[f64], rank: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(u.len(), rank, |row, column| {
+        let frequency = PI * (column as f64 + 0.5);
+        SQRT_2 * libm::sin(frequency * u[row]) / frequency
+    })
+}
+
+/// Returns a cosine basis of smooth functions over a covariate in 0..1, with a constant; the
+/// amplitude of the `j`-th wave is `j^-decay`.
+pub fn smooth(u: &[f64], rank: usize, decay: f64) -> DMatrix<f64> {
+    DMatrix::from_fn(u.len(), rank + 1, |row, column| {
+        let wave = column as f64;
+        if column == 0 { 1.0 } else { libm::cos(PI * wave * u[row]) / libm::pow(wave, decay) }
+    })
+}
+
+/// Returns independent levels of a factor: column `j` is 1 for rows at level `j`. Rows without a
+/// level are zero.
+pub fn levels(level_of: &[Option<usize>], count: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(
+        level_of.len(),
+        count,
+        |row, column| if level_of[row] == Some(column) { 1.0 } else { 0.0 },
+    )
+}
+
+/// Returns a basis with one column.
+pub fn single(column: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_column_slice(column.len(), 1, column)
+}
+
+/// Returns the root mean square of the rows' norms: the standard deviation of the function at an
+/// average row for standard normal coefficients.
+pub fn rms_norm(basis: &DMatrix<f64>) -> f64 {
+    (basis.norm_squared() / basis.nrows().max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brownian_basis_has_its_covariance() {
+        let u: Vec<f64> = (0..11).map(|i| f64::from(i) / 10.0).collect();
+        let basis = brownian(&u, 2000);
+        let covariance = &basis * basis.transpose();
+        for i in 0..u.len() {
+            for j in 0..u.len() {
+                assert!((covariance[(i, j)] - u[i].min(u[j])).abs() < 2e-4, "{i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_without_level_are_zero() {
+        let basis = levels(&[Some(1), None], 2);
+        assert_eq!(basis.row(0).iter().copied().collect::<Vec<_>>(), [0.0, 1.0]);
+        assert_eq!(basis.row(1).norm(), 0.0);
+    }
+}

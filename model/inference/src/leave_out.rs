@@ -1,0 +1,115 @@
+//! Prediction of each series from the others, exact for the linear model at the mode.
+//!
+//! With `H = I - A_s C A_s'` for the white columns `A_s` of a series and the posterior covariance
+//! `C`, the residual of the series given all others is `L H^-1 L^-1 (r - A b)`, where `V = L L'` is its
+//! noise covariance. Nothing is fitted again.
+//!
+//! A series that alone determines a coefficient is predicted worse from the others than a new series
+//! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
+//! `I + A_s C A_s'` gives it the spread of a new series.
+
+use nalgebra::DMatrix;
+
+use crate::design::Design;
+use crate::fit::{Fit, size_variances};
+use crate::problem::Problem;
+use crate::scales::{ScalePoint, ScaleProblem};
+
+/// Series predicted from the others.
+#[derive(Clone, Debug)]
+pub(crate) struct LeftOut {
+    /// Reading minus prediction of each row.
+    pub(crate) residuals: Vec<f64>,
+    /// The same residuals, with the spread that they have for a new series at the same conditions:
+    /// the series itself then helps to predict it.
+    pub(crate) of_new_series: Vec<f64>,
+    /// `ln p(y_s | y_-s, H)` of each series.
+    pub(crate) log_predictive: Vec<f64>,
+}
+
+/// Linear model of a fit at its mode.
+pub(crate) struct Linearised {
+    pub(crate) design: Design,
+    pub(crate) point: ScalePoint,
+}
+
+impl Linearised {
+    pub(crate) fn new(problem: &Problem, fit: &Fit) -> Option<Self> {
+        let variances = size_variances(&problem.space, &fit.hypothesis, &fit.mode, true);
+        let design = Design::new(problem, &fit.hypothesis, &fit.mode)?;
+        let at =
+            ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &variances };
+        let point = at.at(fit.mode.scales, &fit.mode.log_sd)?;
+        Some(Self { design, point })
+    }
+
+    /// Predicts each series from the others; `None` if a series determines a coefficient alone, to
+    /// rounding.
+    pub(crate) fn leave_series_out(&self) -> Option<LeftOut> {
+        let (marginal, solution) = (&self.point.marginal, &self.point.solution);
+        let residual = marginal.white_residual(&solution.mean);
+        let zeros = vec![0.0; residual.len()];
+        let mut left_out =
+            LeftOut { residuals: zeros.clone(), of_new_series: zeros, log_predictive: Vec::new() };
+        for (range, factor) in marginal.whitening.ranges.iter().zip(&marginal.whitening.factors) {
+            let (first, length) = (range.start, range.len());
+            let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
+            let explained = &part * part.transpose();
+            let share = DMatrix::identity(length, length) * (1.0 + 1e-10) - &explained;
+            let again = (DMatrix::identity(length, length) + explained).cholesky()?;
+            let share = share.cholesky()?;
+            let own = residual.rows(first, length).into_owned();
+            let scaled = share.solve(&own);
+            let unscaled = factor * &scaled;
+            left_out.residuals[range.clone()].copy_from_slice(unscaled.as_slice());
+            // Standard normal under the model, whatever the leverage of the series.
+            let standard = share.l_dirty().lower_triangle().tr_mul(&scaled);
+            let new = factor * (again.l() * standard);
+            left_out.of_new_series[range.clone()].copy_from_slice(new.as_slice());
+            let noise = factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let precision = share.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let normaliser = 0.5 * length as f64 * libm::log(2.0 * std::f64::consts::PI);
+            left_out.log_predictive.push(-0.5 * own.dot(&scaled) + precision - noise - normaliser);
+        }
+        Some(left_out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marginal::Marginal;
+    use crate::noise::Noise;
+    use crate::test_problem::{ROWS_PER_SERIES, fitted, full_hypothesis, problem, rows};
+
+    /// Prediction of the last series equals that of a solution without its rows.
+    #[test]
+    fn left_out_residuals_match_a_refit() {
+        let problem = problem(7, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, point) = fitted(&problem, &hypothesis);
+        let left_out = Linearised::new(&problem, &fit).unwrap().leave_series_out().unwrap();
+
+        let kept = problem.len() - ROWS_PER_SERIES;
+        let fewer = rows(6);
+        let weights = fit.mode.weights.rows(0, kept).into_owned();
+        let noise = Noise {
+            rows: &fewer,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &weights,
+            friction: &design.channels[1],
+        };
+        let matrix = design.matrix.rows(0, kept).into_owned();
+        let target = design.target.rows(0, kept).into_owned();
+        let marginal = Marginal::new(&matrix, &target, &noise, &fewer.ranges()).unwrap();
+        let solution = marginal.solve(&point.variances).unwrap();
+        let predicted = &design.matrix * &solution.mean;
+        for row in kept..problem.len() {
+            let expected = design.target[row] - predicted[row];
+            assert!((left_out.residuals[row] - expected).abs() < 1e-7, "{row}");
+        }
+        let difference = point.solution.log_likelihood - solution.log_likelihood;
+        assert!((left_out.log_predictive[6] - difference).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,159 @@
+//! Gaussian marginal likelihood: coefficients with independent normal priors, integrated exactly.
+//!
+//! For `r = A b + e` with `b ~ N(0, diag(l))` and `e ~ N(0, V)` the covariance of `r` is
+//! `V + A diag(l) A'`. By Woodbury's identity everything follows from `A'V^-1 A`, `A'V^-1 r` and
+//! `r'V^-1 r`, with matrices as large as the number of coefficients.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::noise::{Noise, Whitening};
+
+/// Products of a design with the precision of the noise.
+#[derive(Clone, Debug)]
+pub(crate) struct Marginal {
+    /// `A'V^-1 A`.
+    pub(crate) gram: DMatrix<f64>,
+    /// `A'V^-1 r`.
+    pub(crate) moment: DVector<f64>,
+    /// `r'V^-1 r + ln det V + n ln 2 pi`.
+    constant: f64,
+    pub(crate) whitening: Whitening,
+    /// `L^-1 A`, with `V = L L'`.
+    pub(crate) white_matrix: DMatrix<f64>,
+    /// `L^-1 r`.
+    pub(crate) white_target: DVector<f64>,
+}
+
+/// Posterior of the coefficients.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    pub(crate) log_likelihood: f64,
+    pub(crate) mean: DVector<f64>,
+    pub(crate) covariance: DMatrix<f64>,
+    /// `R` with `R'R` equal to the covariance.
+    pub(crate) root: DMatrix<f64>,
+}
+
+impl Marginal {
+    /// Computes the products; `None` if the covariance of the noise is not positive definite.
+    pub(crate) fn new(
+        matrix: &DMatrix<f64>,
+        target: &DVector<f64>,
+        noise: &Noise<'_>,
+        ranges: &[std::ops::Range<usize>],
+    ) -> Option<Self> {
+        let whitening = noise.whitening(ranges)?;
+        let white_matrix = whitening.whiten(matrix);
+        let white_target = whitening.whiten_vector(target);
+        let transposed = white_matrix.transpose();
+        let gram = &transposed * &white_matrix;
+        let moment = &transposed * &white_target;
+        let constant = white_target.norm_squared()
+            + whitening.log_determinant
+            + target.len() as f64 * libm::log(2.0 * PI);
+        Some(Self { gram, moment, constant, whitening, white_matrix, white_target })
+    }
+
+    /// Returns `ln p(r)` for prior variances `l`, each zero or positive.
+    pub(crate) fn log_likelihood(&self, variances: &[f64]) -> Option<f64> {
+        Some(self.factor(variances)?.2)
+    }
+
+    /// Returns the posterior of the coefficients for prior variances.
+    pub(crate) fn solve(&self, variances: &[f64]) -> Option<Solution> {
+        let (factor, sd, log_likelihood) = self.factor(variances)?;
+        // C = S (I + S G S)^-1 S with S = sqrt(diag(l)).
+        let mut root = DMatrix::from_diagonal(&sd);
+        factor.solve_lower_triangular_mut(&mut root);
+        let covariance = root.transpose() * &root;
+        let mean = &covariance * &self.moment;
+        Some(Solution { log_likelihood, mean, covariance, root })
+    }
+
+    fn factor(&self, variances: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
+        let sd = DVector::from_iterator(variances.len(), variances.iter().map(|v| v.sqrt()));
+        let mut scaled = self.gram.clone();
+        for (j, mut column) in scaled.column_iter_mut().enumerate() {
+            column.iter_mut().zip(sd.iter()).for_each(|(x, s)| *x *= s * sd[j]);
+        }
+        for i in 0..sd.len() {
+            scaled[(i, i)] += 1.0;
+        }
+        let factor = scaled.cholesky()?.unpack();
+        let z = factor.solve_lower_triangular(&self.moment.component_mul(&sd))?;
+        let determinant = 2.0 * factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+        let log_likelihood = -0.5 * (self.constant - z.norm_squared() + determinant);
+        log_likelihood.is_finite().then_some((factor, sd, log_likelihood))
+    }
+
+    /// Returns `L^-1 (r - A b)`.
+    pub(crate) fn white_residual(&self, mean: &DVector<f64>) -> DVector<f64> {
+        &self.white_target - &self.white_matrix * mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Noise;
+    use crate::test_problem::{fitted, full_hypothesis, problem};
+
+    /// Density of a normal distribution with a dense covariance.
+    fn dense_log_likelihood(target: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
+        let factor = covariance.cholesky().unwrap();
+        let determinant = 2.0 * factor.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+        -0.5 * (target.dot(&factor.solve(target)) + determinant + target.len() as f64 * libm::log(2.0 * PI))
+    }
+
+    #[test]
+    fn woodbury_matches_dense_covariance() {
+        let problem = problem(6, 0.4);
+        let (fit, design, point) = fitted(&problem, &full_hypothesis());
+        let noise = Noise {
+            rows: &problem.rows,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &fit.mode.weights,
+            friction: &design.channels[1],
+        };
+        let mut covariance = DMatrix::zeros(problem.len(), problem.len());
+        for range in &problem.ranges {
+            let at = (range.start, range.start);
+            covariance.view_mut(at, (range.len(), range.len())).copy_from(&noise.covariance(range));
+        }
+        let prior = DMatrix::from_diagonal(&DVector::from_vec(point.variances.clone()));
+        covariance += &design.matrix * prior * design.matrix.transpose();
+        let dense = dense_log_likelihood(&design.target, covariance);
+        assert!((point.solution.log_likelihood - dense).abs() < 1e-7, "{dense}");
+    }
+
+    /// One coefficient, integrated on a grid.
+    #[test]
+    fn marginal_likelihood_matches_integration() {
+        let problem = problem(3, 0.0);
+        let (fit, design, point) = fitted(&problem, &crate::Hypothesis::default());
+        let noise = Noise {
+            rows: &problem.rows,
+            reference: &problem.reference,
+            scales: &point.scales,
+            weights: &fit.mode.weights,
+            friction: &design.channels[1],
+        };
+        let column = DMatrix::from_columns(&[design.matrix.column(0)]);
+        let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
+        let exact = marginal.log_likelihood(&[0.25]).unwrap();
+        let flat = |b: f64| {
+            let residual = marginal.white_residual(&DVector::from_element(1, b));
+            let likelihood = residual.norm_squared()
+                + marginal.whitening.log_determinant
+                + design.target.len() as f64 * libm::log(2.0 * PI);
+            -0.5 * likelihood - 0.5 * b * b / 0.25 - 0.5 * libm::log(2.0 * PI * 0.25)
+        };
+        let step = 1e-4;
+        let terms: Vec<f64> = (-30_000..30_000).map(|i| flat(f64::from(i) * step)).collect();
+        let sum = crate::quadrature::log_sum_exp(&terms) + libm::log(step);
+        assert!((exact - sum).abs() < 1e-6, "{exact} {sum}");
+    }
+}

@@ -1,0 +1,340 @@
+//! The data of an inference: readings, the groups of their rows, priors, and the forward model.
+
+use std::fmt;
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::noise::NoiseReference;
+
+/// A constant of the baseline, with a normal prior in the coordinate in which it is fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constant {
+    /// Name in reports.
+    pub name: String,
+    /// Prior mean.
+    pub mean: f64,
+    /// Prior standard deviation.
+    pub sd: f64,
+}
+
+/// A named effect, which a hypothesis may contain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// Name in reports.
+    pub name: String,
+    /// Quartile of the Cauchy prior of its size; `None` for an effect without a free size.
+    pub typical_size: Option<f64>,
+    /// Whether its size cannot be negative.
+    pub is_one_sided: bool,
+    /// Prior probability, 0..1.
+    pub probability: f64,
+    /// Size at which each shape is scored first, one per shape.
+    pub starts: Vec<f64>,
+    /// Number of constants of a shape, at most [`MOST_SHAPE_CONSTANTS`]. A fit shifts them from
+    /// their discrete values.
+    pub shape_constants: usize,
+}
+
+/// Most constants of a shape.
+pub const MOST_SHAPE_CONSTANTS: usize = 3;
+
+/// Unnamed structure over one covariate, which a hypothesis may contain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kernel {
+    /// Name in reports.
+    pub name: String,
+    /// Covariate in reports.
+    pub covariate: String,
+    /// Index of the channel through which it acts.
+    pub channel: usize,
+    /// Scale of the half-Cauchy prior of its standard deviation, in the unit of the channel.
+    pub scale: f64,
+    /// Prior probabilities of its variants: discrete forms, each a hypothesis of its own.
+    pub variants: Vec<f64>,
+    /// Whether a new session draws it again.
+    pub is_session_bound: bool,
+}
+
+/// A random effect that every hypothesis contains, such as that of mounts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RandomEffect {
+    /// Name in reports.
+    pub name: String,
+    /// Index of the channel through which it acts.
+    pub channel: usize,
+    /// Scale of the half-normal prior of its standard deviation, in the unit of the channel.
+    pub scale: f64,
+    /// Number of levels.
+    pub levels: usize,
+    /// Whether a new session has new levels: a new mount, but the same specimen.
+    pub is_redrawn: bool,
+}
+
+/// Everything that hypotheses are made of.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Space {
+    /// Constants of the baseline.
+    pub constants: Vec<Constant>,
+    /// Named effects.
+    pub effects: Vec<Effect>,
+    /// Unnamed structure.
+    pub kernels: Vec<Kernel>,
+    /// Random effects.
+    pub random_effects: Vec<RandomEffect>,
+    /// Effects from which a second search starts, since only together may they explain anything.
+    pub usual_effects: Vec<usize>,
+    /// Prior probability of unnamed structure, spread evenly over the kernels.
+    pub structure_probability: f64,
+    /// Index of the channel of the scale that each series draws.
+    pub series_scale_channel: usize,
+}
+
+/// An effect with its size, as an argument of a forward model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizedEffect {
+    /// Index in [`Space::effects`].
+    pub effect: usize,
+    /// Index of its shape.
+    pub shape: usize,
+    /// Size; 1 for an effect without a free size.
+    pub size: f64,
+    /// Shifts of the constants of its shape, in standard deviations of their priors.
+    pub shifts: [f64; MOST_SHAPE_CONSTANTS],
+}
+
+/// The expected readings of some rows, as a function of constants and effects.
+pub trait ForwardModel {
+    /// Returns the readings, one per row.
+    fn readings(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64>;
+
+    /// Returns the derivative of the readings with respect to each channel, one column per channel.
+    fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>>;
+
+    /// Returns the readings where effects of a session's time have their mean over the session.
+    fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
+        self.readings(constants, effects)
+    }
+}
+
+/// Conditions of some rows. The rows of a series are consecutive.
+pub struct Rows {
+    /// Number of the series of each row, from 0 in the order of the rows.
+    pub series: Vec<usize>,
+    /// Whether each row belongs to the second of the two directions.
+    pub direction: Vec<bool>,
+    /// Order of each row in its series, as a lag: 0, 1, 2, ...
+    pub order: Vec<usize>,
+    /// Load of each row, with which the repetition noise grows.
+    pub load: Vec<f64>,
+    /// Level of each row for each random effect of the space.
+    pub levels: Vec<Vec<Option<usize>>>,
+    /// Bases of each kernel of the space, one per variant.
+    pub bases: Vec<Vec<DMatrix<f64>>>,
+    /// Columns that multiply the contribution of each effect of the space where its form is wrong.
+    pub discrepancies: Vec<Vec<Vec<f64>>>,
+    /// Smallest relevant change of each reading by each effect of the space.
+    pub relevant: Vec<Vec<f64>>,
+    /// Whether the rows belong to another session than the fitted one.
+    pub is_new_session: bool,
+    /// Forward model of these rows.
+    pub forward: Box<dyn ForwardModel>,
+}
+
+impl fmt::Debug for Rows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Rows").field("rows", &self.len()).finish_non_exhaustive()
+    }
+}
+
+impl Rows {
+    /// Returns the number of rows.
+    pub fn len(&self) -> usize {
+        self.series.len()
+    }
+
+    /// Returns whether the list is empty.
+    pub fn is_empty(&self) -> bool {
+        self.series.is_empty()
+    }
+
+    /// Returns the rows of each series.
+    pub(crate) fn ranges(&self) -> Vec<Range<usize>> {
+        let mut ranges: Vec<Range<usize>> = Vec::new();
+        for (row, series) in self.series.iter().enumerate() {
+            match ranges.last_mut() {
+                Some(range) if self.series[range.start] == *series => range.end = row + 1,
+                _ => ranges.push(row..row + 1),
+            }
+        }
+        ranges
+    }
+}
+
+/// Readings, their rows, and the space of hypotheses about them.
+#[derive(Debug)]
+pub struct Problem {
+    pub(crate) space: Space,
+    pub(crate) rows: Rows,
+    pub(crate) readings: DVector<f64>,
+    pub(crate) ranges: Vec<Range<usize>>,
+    pub(crate) reference: NoiseReference,
+}
+
+/// Why a problem is invalid.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProblemError {
+    /// The list of rows is empty.
+    Empty,
+    /// A list has a wrong length.
+    Length {
+        /// Name of the list.
+        name: &'static str,
+        /// Its length.
+        length: usize,
+        /// The length that the rows or the space require.
+        expected: usize,
+    },
+    /// The rows of a series are not consecutive, or series are not numbered from 0.
+    Series {
+        /// The first such row.
+        row: usize,
+    },
+    /// A number is not finite.
+    NotFinite {
+        /// Name of the list.
+        name: &'static str,
+        /// The first such row.
+        row: usize,
+    },
+}
+
+impl fmt::Display for ProblemError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the list of rows is empty"),
+            Self::Length { name, length, expected } => {
+                write!(f, "{name}: {length} entries, but {expected} are expected")
+            }
+            Self::Series { row } => {
+                write!(f, "row {row}: the rows of a series are not consecutive")
+            }
+            Self::NotFinite { name, row } => write!(f, "row {row}: {name} is not finite"),
+        }
+    }
+}
+
+impl std::error::Error for ProblemError {}
+
+impl Problem {
+    /// Checks readings and rows against a space.
+    ///
+    /// # Errors
+    /// [`ProblemError`] if lengths do not agree, or a number is not finite.
+    pub fn new(space: Space, rows: Rows, readings: Vec<f64>) -> Result<Self, ProblemError> {
+        check_rows(&space, &rows)?;
+        expect_length("readings", readings.len(), rows.len())?;
+        expect_finite("reading", &readings)?;
+        let ranges = rows.ranges();
+        let reference = NoiseReference::of_readings(&readings, &rows);
+        Ok(Self { space, rows, readings: DVector::from_vec(readings), ranges, reference })
+    }
+
+    /// Returns the space of hypotheses.
+    pub fn space(&self) -> &Space {
+        &self.space
+    }
+
+    /// Returns the conditions of the readings.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// Returns the number of readings.
+    pub fn len(&self) -> usize {
+        self.readings.len()
+    }
+
+    /// Returns whether the list of readings is empty; never true.
+    pub fn is_empty(&self) -> bool {
+        self.readings.is_empty()
+    }
+}
+
+/// Checks the lengths of the lists of some rows.
+pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError> {
+    let count = rows.len();
+    if count == 0 {
+        return Err(ProblemError::Empty);
+    }
+    expect_length("direction", rows.direction.len(), count)?;
+    expect_length("order", rows.order.len(), count)?;
+    expect_length("load", rows.load.len(), count)?;
+    expect_length("levels", rows.levels.len(), space.random_effects.len())?;
+    expect_length("bases", rows.bases.len(), space.kernels.len())?;
+    expect_length("discrepancies", rows.discrepancies.len(), space.effects.len())?;
+    for levels in &rows.levels {
+        expect_length("levels of a random effect", levels.len(), count)?;
+    }
+    for (bases, kernel) in rows.bases.iter().zip(&space.kernels) {
+        expect_length("bases of a kernel", bases.len(), kernel.variants.len())?;
+        for basis in bases {
+            expect_length("rows of a basis", basis.nrows(), count)?;
+        }
+    }
+    for effect in &space.effects {
+        if effect.shape_constants > MOST_SHAPE_CONSTANTS {
+            let (length, expected) = (effect.shape_constants, MOST_SHAPE_CONSTANTS);
+            return Err(ProblemError::Length { name: "constants of a shape", length, expected });
+        }
+    }
+    expect_length("relevant", rows.relevant.len(), space.effects.len())?;
+    for column in &rows.relevant {
+        expect_length("relevant changes of an effect", column.len(), count)?;
+    }
+    for column in rows.discrepancies.iter().flatten() {
+        expect_length("a discrepancy", column.len(), count)?;
+    }
+    for (number, range) in rows.ranges().iter().enumerate() {
+        if rows.series[range.start] != number {
+            return Err(ProblemError::Series { row: range.start });
+        }
+    }
+    expect_finite("load", &rows.load)
+}
+
+fn expect_length(name: &'static str, length: usize, expected: usize) -> Result<(), ProblemError> {
+    if length == expected { Ok(()) } else { Err(ProblemError::Length { name, length, expected }) }
+}
+
+fn expect_finite(name: &'static str, values: &[f64]) -> Result<(), ProblemError> {
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(row) => Err(ProblemError::NotFinite { name, row }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::{problem, rows};
+
+    #[test]
+    fn inconsistent_rows_are_refused() {
+        let space = problem(3, 0.0).space;
+        let readings = vec![1.0; 15];
+        let with = |change: &dyn Fn(&mut Rows)| {
+            let mut rows = rows(3);
+            change(&mut rows);
+            Problem::new(space.clone(), rows, readings.clone()).unwrap_err()
+        };
+        assert_eq!(
+            with(&|rows| rows.load.truncate(14)),
+            ProblemError::Length { name: "load", length: 14, expected: 15 }
+        );
+        assert_eq!(with(&|rows| rows.series[14] = 0), ProblemError::Series { row: 14 });
+        assert_eq!(with(&|rows| rows.load[3] = f64::NAN), ProblemError::NotFinite { name: "load", row: 3 });
+        let empty = with(&|rows| rows.series.clear());
+        assert_eq!(empty, ProblemError::Empty);
+    }
+}

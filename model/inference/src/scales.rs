@@ -1,0 +1,278 @@
+//! Mode of the scales: those of the noise, and the standard deviations of components.
+//!
+//! Newton's method in the logarithms of the scales, with the average information matrix (Gilmour,
+//! Thompson and Cullis 1995) in place of the second derivatives of the marginal likelihood.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::design::{Component, Design, Mode};
+use crate::marginal::{Marginal, Solution};
+use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
+use crate::problem::Problem;
+
+/// Information that is added to each scale, so that a step is finite where the data have none.
+const DAMPING: f64 = 0.05;
+/// Largest step of the logarithm of a scale.
+const MOST_STEP: f64 = 1.2;
+/// Range of the logarithm of a scale.
+const LOG_RANGE: (f64, f64) = (-12.0, 8.0);
+/// Times that a step is halved before the search gives up.
+const HALVINGS: usize = 3;
+/// Gain in nats below which a step is the last one.
+const CONVERGED: f64 = 0.02;
+
+/// Scales of a hypothesis, with its design, weights and prior variances of sizes fixed.
+pub(crate) struct ScaleProblem<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) design: &'a Design,
+    pub(crate) weights: &'a DVector<f64>,
+    pub(crate) size_variances: &'a BTreeMap<usize, f64>,
+}
+
+/// Value of the scales.
+#[derive(Clone, Debug)]
+pub(crate) struct ScalePoint {
+    pub(crate) scales: Scales,
+    pub(crate) log_sd: BTreeMap<Component, f64>,
+    pub(crate) variances: Vec<f64>,
+    pub(crate) marginal: Marginal,
+    pub(crate) solution: Solution,
+    /// Marginal likelihood plus the prior density of all scales.
+    pub(crate) log_posterior: f64,
+}
+
+impl ScaleProblem<'_> {
+    pub(crate) fn noise<'b>(&'b self, scales: &'b Scales) -> Noise<'b> {
+        Noise {
+            rows: &self.problem.rows,
+            reference: &self.problem.reference,
+            scales,
+            weights: self.weights,
+            friction: &self.design.channels[self.problem.space.series_scale_channel],
+        }
+    }
+
+    /// Evaluates the scales of a mode.
+    pub(crate) fn at(&self, scales: Scales, log_sd: &BTreeMap<Component, f64>) -> Option<ScalePoint> {
+        let (problem, design) = (self.problem, self.design);
+        let noise = self.noise(&scales);
+        let marginal = Marginal::new(&design.matrix, &design.target, &noise, &problem.ranges)?;
+        let size = |effect: usize| self.size_variances.get(&effect).copied().unwrap_or(0.0);
+        let variances = design.prior_variances(&problem.space, log_sd, size);
+        let solution = marginal.solve(&variances)?;
+        let mut log_posterior = solution.log_likelihood + scales.log_prior(&problem.reference).0;
+        for (component, log) in log_sd {
+            log_posterior += self.component_prior(*component, *log).0;
+        }
+        Some(ScalePoint { scales, log_sd: log_sd.clone(), variances, marginal, solution, log_posterior })
+    }
+
+    fn component_prior(&self, component: Component, log_sd: f64) -> (f64, f64, f64) {
+        let scale = component.scale(&self.problem.space);
+        match component {
+            Component::Random(_) => log_half_normal(log_sd, scale),
+            Component::Kernel(_) => log_half_cauchy(log_sd, scale),
+        }
+    }
+
+    /// Takes Newton steps from a mode until they gain little, at most `steps`.
+    pub(crate) fn maximum(&self, mode: &Mode, steps: usize) -> Option<ScalePoint> {
+        let mut point = self.at(mode.scales, &mode.log_sd)?;
+        for _ in 0..steps {
+            let Some((step, expected_gain)) = self.newton_step(&point) else { break };
+            if expected_gain < CONVERGED {
+                break;
+            }
+            let Some(better) = self.line_search(&point, &step) else { break };
+            let gain = better.log_posterior - point.log_posterior;
+            point = better;
+            if gain < CONVERGED {
+                break;
+            }
+        }
+        Some(point)
+    }
+
+    /// Returns the best of the autoregressions at the scales of a point.
+    pub(crate) fn best_autoregression(&self, point: ScalePoint) -> ScalePoint {
+        let current = point.scales.autoregression;
+        (0..AUTOREGRESSIONS.len()).filter(|a| *a != current).fold(point, |best, autoregression| {
+            let other = self.at(Scales { autoregression, ..best.scales }, &best.log_sd);
+            other.filter(|other| other.log_posterior > best.log_posterior).unwrap_or(best)
+        })
+    }
+
+    /// Shortens a step until it gains.
+    fn line_search(&self, point: &ScalePoint, step: &[f64]) -> Option<ScalePoint> {
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            let mut scales = point.scales;
+            let mut log_sd = point.log_sd.clone();
+            let logs = scales.log.iter_mut().chain(log_sd.values_mut());
+            for (log, step) in logs.zip(step) {
+                *log = (*log + share * step.clamp(-MOST_STEP, MOST_STEP)).clamp(LOG_RANGE.0, LOG_RANGE.1);
+            }
+            let moved = self.at(scales, &log_sd).filter(|moved| moved.log_posterior > point.log_posterior);
+            if moved.is_some() {
+                return moved;
+            }
+            share *= 0.35;
+        }
+        None
+    }
+
+    /// Returns the Newton step of all scales, the noise's, then the components', and its expected
+    /// gain.
+    fn newton_step(&self, point: &ScalePoint) -> Option<(Vec<f64>, f64)> {
+        let (mut gradient, tangents) = self.likelihood_gradient(point);
+        let white = point.marginal.whitening.whiten(&tangents);
+        let projected = point.marginal.white_matrix.transpose() * &white;
+        let explained = &point.solution.root * &projected;
+        let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
+        let (_, prior_gradient, prior_curvature) = point.scales.log_prior(&self.problem.reference);
+        let components = point.log_sd.iter().map(|(c, log)| self.component_prior(*c, *log));
+        let noise = prior_gradient.into_iter().zip(prior_curvature);
+        for (i, (slope, curvature)) in noise.chain(components.map(|(_, g, c)| (g, c))).enumerate() {
+            gradient[i] += slope;
+            information[(i, i)] += curvature + DAMPING;
+        }
+        let step = information.cholesky()?.solve(&gradient);
+        let gain = 0.5 * step.dot(&gradient);
+        gain.is_finite().then(|| (step.iter().copied().collect(), gain))
+    }
+
+    /// Returns the gradient of the marginal likelihood, and the column `dV P r` of each scale.
+    fn likelihood_gradient(&self, point: &ScalePoint) -> (DVector<f64>, DMatrix<f64>) {
+        let count = SCALES + point.log_sd.len();
+        let mut gradient = DVector::zeros(count);
+        let mut tangents = DMatrix::zeros(self.problem.len(), count);
+        let noise = self.noise(&point.scales);
+        let (marginal, solution) = (&point.marginal, &point.solution);
+        let white_residual = marginal.white_residual(&solution.mean);
+        let leverage = &marginal.white_matrix * solution.root.transpose();
+        for (range, inverse) in marginal.whitening.ranges.iter().zip(&marginal.whitening.inverses) {
+            let (first, length) = (range.start, range.len());
+            let alpha = inverse.tr_mul(&white_residual.rows(first, length));
+            let series = SeriesPrecision { inverse, leverage: leverage.rows(first, length).into_owned() };
+            for scale in 0..SCALES {
+                let derivative = noise.derivative(range, scale);
+                let tangent = derivative.times(&alpha);
+                gradient[scale] += 0.5 * (alpha.dot(&tangent) - series.trace_with(&derivative));
+                tangents.view_mut((first, scale), (length, 1)).copy_from(&tangent);
+            }
+        }
+        for (i, (component, log)) in point.log_sd.iter().enumerate() {
+            let columns = self.design.columns_of(*component);
+            let precision = libm::exp(-2.0 * log);
+            for column in columns {
+                let (mean, variance) = (solution.mean[column], solution.covariance[(column, column)]);
+                gradient[SCALES + i] += (mean * mean + variance) * precision - 1.0;
+                tangents.column_mut(SCALES + i).axpy(2.0 * mean, &self.design.matrix.column(column), 1.0);
+            }
+        }
+        (gradient, tangents)
+    }
+}
+
+/// Precision `P = L'^-1 (I - Z Z') L^-1` of a series, with the coefficients integrated.
+struct SeriesPrecision<'a> {
+    inverse: &'a DMatrix<f64>,
+    /// `Z`.
+    leverage: DMatrix<f64>,
+}
+
+impl SeriesPrecision<'_> {
+    /// Returns the trace of the product with the derivative of a covariance.
+    fn trace_with(&self, derivative: &Derivative) -> f64 {
+        match derivative {
+            Derivative::Factor(factor) => {
+                let white = self.inverse * factor;
+                white.norm_squared() - self.leverage.tr_mul(&white).norm_squared()
+            }
+            Derivative::Diagonal(diagonal) => {
+                let leverage = self.inverse.transpose() * &self.leverage;
+                let precision =
+                    |i: usize| self.inverse.column(i).norm_squared() - leverage.row(i).norm_squared();
+                diagonal.iter().enumerate().map(|(i, d)| d * precision(i)).sum()
+            }
+            Derivative::Dense(dense) => {
+                let leverage = self.inverse.transpose() * &self.leverage;
+                let precision = self.inverse.transpose() * self.inverse - &leverage * leverage.transpose();
+                precision.dot(dense)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::size_variances;
+    use crate::test_problem::{fitted, full_hypothesis, problem, unit_weights};
+
+    /// The gradient of the marginal likelihood matches central differences, without and with
+    /// autocorrelation.
+    #[test]
+    fn gradient_matches_finite_differences() {
+        let problem = problem(6, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, _) = fitted(&problem, &hypothesis);
+        let weights = unit_weights(&problem);
+        let size_variances = size_variances(&problem.space, &hypothesis, &fit.mode, true);
+        let at = ScaleProblem {
+            problem: &problem,
+            design: &design,
+            weights: &weights,
+            size_variances: &size_variances,
+        };
+        for autoregression in [0, 2] {
+            let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0, -3.6], autoregression };
+            assert_gradient(&at, scales);
+        }
+    }
+
+    fn assert_gradient(at: &ScaleProblem<'_>, scales: Scales) {
+        let log_sd: BTreeMap<Component, f64> =
+            [(Component::Random(0), -4.0), (Component::Kernel(0), -2.0)].into();
+        let (gradient, _) = at.likelihood_gradient(&at.at(scales, &log_sd).unwrap());
+        let likelihood = |index: usize, step: f64| {
+            let (mut scales, mut log_sd) = (scales, log_sd.clone());
+            if let Some(log) = scales.log.iter_mut().chain(log_sd.values_mut()).nth(index) {
+                *log += step;
+            }
+            at.at(scales, &log_sd).unwrap().solution.log_likelihood
+        };
+        for index in 0..gradient.len() {
+            let slope = (likelihood(index, 1e-4) - likelihood(index, -1e-4)) / 2e-4;
+            assert!((gradient[index] - slope).abs() < 1e-4 * (1.0 + slope.abs()), "{index}: {slope}");
+        }
+    }
+
+    /// No step of a tenth in any scale gains after the Newton steps.
+    #[test]
+    fn newton_steps_reach_the_maximum() {
+        let problem = problem(12, 0.4);
+        let hypothesis = full_hypothesis();
+        let (fit, design, _) = fitted(&problem, &hypothesis);
+        let size_variances = size_variances(&problem.space, &hypothesis, &fit.mode, true);
+        let at = ScaleProblem {
+            problem: &problem,
+            design: &design,
+            weights: &fit.mode.weights,
+            size_variances: &size_variances,
+        };
+        let best = at.maximum(&fit.mode, 30).unwrap();
+        for index in 0..SCALES + best.log_sd.len() {
+            for step in [-0.1, 0.1] {
+                let (mut scales, mut log_sd) = (best.scales, best.log_sd.clone());
+                if let Some(log) = scales.log.iter_mut().chain(log_sd.values_mut()).nth(index) {
+                    *log += step;
+                }
+                let moved = at.at(scales, &log_sd).unwrap().log_posterior;
+                assert!(moved < best.log_posterior + 0.02, "{index} {step}");
+            }
+        }
+    }
+}

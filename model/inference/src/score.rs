@@ -1,0 +1,262 @@
+//! First-order scores of all elements that could be added to a fit, or take the place of a member.
+//!
+//! For the residual `r` with precision `P` (the coefficients of the fit integrated), a column `x`
+//! has the score `u = x'Pr` and the information `S = x'Px`. A size with prior variance `v` then
+//! gains `-ln(1 + vS)/2 + v u^2 / (2 (1 + vS))`. The columns of a kernel have a vector `u` and a matrix
+//! `S`, whose eigenvalues give the gain for every standard deviation.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::design::{Component, Design, Role, added_column, kernel_columns};
+use crate::fit::Fit;
+use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
+use crate::problem::Problem;
+use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
+use crate::scales::ScaleProblem;
+
+/// Prior standard deviation of the sizes of a fit for scores, in typical sizes: nearly free.
+const FREE_SIZE_SD: f64 = 100.0;
+/// Share of its squared norm below which a column is explained by the fit, and gets no score.
+const LEAST_SHARE: f64 = 2e-3;
+/// Smallest start of a one-sided size, as a share of the typical one.
+const LEAST_START: f64 = 0.05;
+
+/// Two-sided 95 % quantile of the standard normal distribution.
+const NORMAL_95: f64 = 1.96;
+
+/// An element that could be added, with its expected score.
+#[derive(Clone, Debug)]
+pub(crate) struct Addition {
+    /// Expected `ln p(y | H) + ln p(H)` of the hypothesis minus `ln p(y | H0)` of the fit.
+    pub(crate) score: f64,
+    /// Expected change of the score by this element.
+    pub(crate) gain: f64,
+    pub(crate) hypothesis: Hypothesis,
+    pub(crate) element: Element,
+    /// Expected size, for an effect that has one.
+    pub(crate) hint: Option<(usize, f64)>,
+    /// Largest change of a reading that the 95 % limits of an effect's size allow, relative to the
+    /// smallest relevant one.
+    pub(crate) limit: f64,
+}
+
+/// All candidates at the mode of a fit.
+pub(crate) struct Scores<'a> {
+    problem: &'a Problem,
+    hypothesis: Hypothesis,
+    design: Design,
+    gram: DMatrix<f64>,
+    moment: DVector<f64>,
+    variances: Vec<f64>,
+    candidates: Vec<Candidate>,
+    cauchy: Mixture,
+}
+
+/// First-order result for an element.
+struct EffectGain {
+    /// Gain of the log evidence.
+    gain: f64,
+    /// Expected size.
+    size: Option<f64>,
+    /// Upper 95 % limit of the absolute size.
+    limit: f64,
+}
+
+/// White columns of an element.
+struct Candidate {
+    element: Element,
+    /// `x'V^-1 x`, before the coefficients of the fit are integrated.
+    gram: DMatrix<f64>,
+    /// `A'V^-1 x`.
+    cross: DMatrix<f64>,
+    /// `x'V^-1 r`.
+    moment: DVector<f64>,
+    /// Largest change of a reading per size, relative to the smallest relevant one.
+    relevance: f64,
+}
+
+impl<'a> Scores<'a> {
+    /// Prepares the candidates; `None` if the fit's design is not finite.
+    pub(crate) fn new(problem: &'a Problem, fit: &Fit) -> Option<Self> {
+        let space = &problem.space;
+        let free = |effect: usize| (FREE_SIZE_SD * space.effects[effect].typical_size.unwrap_or(1.0)).powi(2);
+        let sizes = fit.hypothesis.effects().map(|(effect, _)| (effect, free(effect))).collect();
+        let design = Design::new(problem, &fit.hypothesis, &fit.mode)?;
+        let scale_problem =
+            ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
+        let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
+        let transposed = point.marginal.white_matrix.transpose();
+        let candidate = |element: Element, columns: DMatrix<f64>| {
+            let relevance = match element.member {
+                Member::Effect(effect) => relevance(&columns, &problem.rows.relevant[effect]),
+                Member::Kernel(_) => 0.0,
+            };
+            let white = point.marginal.whitening.whiten(&columns);
+            Candidate {
+                element,
+                gram: white.transpose() * &white,
+                cross: &transposed * &white,
+                moment: white.tr_mul(&point.marginal.white_target),
+                relevance,
+            }
+        };
+        let mut candidates = Vec::new();
+        for (index, effect) in space.effects.iter().enumerate() {
+            for form in 0..effect.starts.len() {
+                let element = Element { member: Member::Effect(index), form };
+                let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
+                if let Some(column) = added {
+                    candidates.push(candidate(element, DMatrix::from_columns(&[column])));
+                }
+            }
+        }
+        for (index, kernel) in space.kernels.iter().enumerate() {
+            for form in 0..kernel.variants.len() {
+                let element = Element { member: Member::Kernel(index), form };
+                let columns = kernel_columns(space, &problem.rows, &design.channels, index, form);
+                if columns.amax() > 1e-9 {
+                    candidates.push(candidate(element, columns));
+                }
+            }
+        }
+        let (gram, moment) = (point.marginal.gram.clone(), point.marginal.moment.clone());
+        let variances = point.variances;
+        let cauchy = Mixture::cauchy();
+        let hypothesis = fit.hypothesis.clone();
+        Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, cauchy })
+    }
+
+    /// Returns the additions, best first; with `removed`, those that take the place of a member,
+    /// including its own elements.
+    pub(crate) fn additions(&self, removed: Option<Member>) -> Vec<Addition> {
+        let rest = removed.map_or_else(|| self.hypothesis.clone(), |member| self.hypothesis.without(member));
+        let is_kept = |role: &Role| match (role, removed) {
+            (
+                Role::Size(effect) | Role::Shape(effect, _) | Role::Discrepancy(effect),
+                Some(Member::Effect(gone)),
+            ) => *effect != gone,
+            (Role::Variance(Component::Kernel(kernel)), Some(Member::Kernel(gone))) => *kernel != gone,
+            _ => true,
+        };
+        let kept: Vec<usize> =
+            (0..self.design.roles.len()).filter(|i| is_kept(&self.design.roles[*i])).collect();
+        let sd = DVector::from_iterator(kept.len(), kept.iter().map(|i| self.variances[*i].sqrt()));
+        let mut scaled = self.gram.select_rows(&kept).select_columns(&kept);
+        for i in 0..kept.len() {
+            for j in 0..kept.len() {
+                scaled[(i, j)] *= sd[i] * sd[j];
+            }
+            scaled[(i, i)] += 1.0;
+        }
+        let Some(factor) = scaled.cholesky().map(nalgebra::Cholesky::unpack) else { return Vec::new() };
+        let mut root = DMatrix::from_diagonal(&sd);
+        factor.solve_lower_triangular_mut(&mut root);
+        let moment = &root * self.moment.select_rows(&kept);
+        let prior = rest.log_prior_odds(&self.problem.space);
+        let mut additions: Vec<Addition> = self
+            .candidates
+            .iter()
+            .filter(|candidate| !rest.contains(candidate.element.member))
+            .filter_map(|candidate| {
+                let cross = &root * candidate.cross.select_rows(&kept);
+                let information = &candidate.gram - cross.transpose() * &cross;
+                let score = &candidate.moment - cross.tr_mul(&moment);
+                let EffectGain { gain, size, limit } = match candidate.element.member {
+                    Member::Effect(effect) => self.effect_gain(effect, candidate, &information, &score)?,
+                    Member::Kernel(kernel) => {
+                        let gain = self.kernel_gain(kernel, information, &score);
+                        EffectGain { gain, size: None, limit: 0.0 }
+                    }
+                };
+                let element = candidate.element;
+                let odds = log_prior_odds(&self.problem.space, element);
+                let hint = match element.member {
+                    Member::Effect(effect) => size.map(|size| (effect, size)),
+                    Member::Kernel(_) => None,
+                };
+                Some(Addition {
+                    score: gain + prior + odds,
+                    gain: gain + odds,
+                    hypothesis: rest.with(element),
+                    element,
+                    hint,
+                    limit: limit * candidate.relevance,
+                })
+            })
+            .collect();
+        additions.sort_by(|a, b| b.score.total_cmp(&a.score));
+        additions
+    }
+
+    /// Returns the gain of an effect; `None` if the fit explains its column.
+    fn effect_gain(
+        &self,
+        effect: usize,
+        candidate: &Candidate,
+        information: &DMatrix<f64>,
+        score: &DVector<f64>,
+    ) -> Option<EffectGain> {
+        let (s, u) = (information[(0, 0)], score[0]);
+        if s < LEAST_SHARE * candidate.gram[(0, 0)] {
+            return None;
+        }
+        let prior = &self.problem.space.effects[effect];
+        let limit = (u / s).abs() + NORMAL_95 / s.sqrt();
+        let Some(typical) = prior.typical_size else {
+            return Some(EffectGain { gain: u - 0.5 * s, size: None, limit: limit.min(1.0) });
+        };
+        let variances: Vec<f64> = self.cauchy.nodes.iter().map(|node| node * typical * typical).collect();
+        let terms: Vec<f64> = variances
+            .iter()
+            .zip(&self.cauchy.log_weights)
+            .map(|(v, w)| w - 0.5 * libm::log1p(v * s) + 0.5 * u * u * v / (1.0 + v * s))
+            .collect();
+        let precision = s + 1.0 / variances[largest(&terms)];
+        let (mut gain, mut size) = (log_sum_exp(&terms), u / precision);
+        if prior.is_one_sided {
+            gain += libm::log(2.0) + log_normal_cdf(size * precision.sqrt());
+            size = size.max(LEAST_START * typical);
+        }
+        Some(EffectGain { gain, size: Some(size), limit })
+    }
+
+    fn kernel_gain(&self, kernel: usize, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
+        let prior = Mixture::half_cauchy(self.problem.space.kernels[kernel].scale);
+        let eigen = information.symmetric_eigen();
+        let rotated = eigen.eigenvectors.tr_mul(score);
+        let gain = |v: f64| -> f64 {
+            let terms = eigen.eigenvalues.iter().zip(rotated.iter()).map(|(value, u)| {
+                let growth = 1.0 + v * value.max(0.0);
+                -0.5 * libm::log(growth) + 0.5 * v * u * u / growth
+            });
+            terms.sum()
+        };
+        let nodes = prior.nodes.iter().zip(&prior.log_weights);
+        log_sum_exp(&nodes.map(|(sd, weight)| weight + gain(sd * sd)).collect::<Vec<f64>>())
+    }
+}
+
+/// Returns the largest change of a reading, relative to the smallest relevant one.
+fn relevance(columns: &DMatrix<f64>, relevant: &[f64]) -> f64 {
+    let column = columns.column(0);
+    column.iter().zip(relevant).map(|(x, least)| x.abs() / least).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::{fitted, problem};
+
+    /// The expected score of a small linear effect is close to that of its fit. A large one gains more
+    /// than expected, since the noise then shrinks.
+    #[test]
+    fn first_order_score_predicts_the_fit() {
+        let problem = problem(12, 0.02);
+        let (null, ..) = fitted(&problem, &Hypothesis::default());
+        let additions = Scores::new(&problem, &null).unwrap().additions(None);
+        let offset = additions.iter().find(|a| a.element.member == Member::Effect(0)).unwrap();
+        let (fit, ..) = fitted(&problem, &offset.hypothesis);
+        let expected = null.log_evidence + offset.score;
+        assert!((expected - fit.score).abs() < 1.0, "{expected} {}", fit.score);
+    }
+}

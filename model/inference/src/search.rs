@@ -1,0 +1,277 @@
+//! Search of the hypotheses with the highest posterior probability.
+//!
+//! 1. Start from nothing, and from the usual effects of the space, thinned out: effects that explain
+//!    something only together are invisible one by one.
+//! 2. Expand the best hypothesis that has not been expanded, within 3 nats of the best: score every
+//!    addition to first order, fit the best few, every removal, and the best exchanges.
+//! 3. Fit the hypotheses near the best again from their own modes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::fit::{Fit, Start};
+use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::problem::Problem;
+use crate::score::{Addition, Scores};
+
+/// Extent of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchOptions {
+    /// Occam's window: hypotheses further below the best one, in nats, are ignored.
+    pub window: f64,
+    /// Most expansions.
+    pub expansions: usize,
+    /// Effects that are fitted in an expansion; half as many kernels are.
+    pub width: usize,
+    /// Most members of a hypothesis.
+    pub members: usize,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { window: 7.0, expansions: 6, width: 6, members: 5 }
+    }
+}
+
+impl SearchOptions {
+    /// Returns the extent of a search that fits only the hypothesis without members.
+    pub fn baseline() -> Self {
+        Self { members: 0, ..Self::default() }
+    }
+}
+
+/// Rows above which first-order scores are trusted more, and fewer hypotheses are fitted.
+const LARGE_TABLE: usize = 1000;
+/// Score below the best, in nats, within which a hypothesis is expanded.
+const EXPANSION_WINDOW: f64 = 3.0;
+/// Loss in nats up to which a usual effect is removed at the start.
+const THINNING_LOSS: f64 = 1.0;
+/// Forms of a member that are fitted in an expansion.
+const MOST_FORMS: usize = 8;
+/// Exchanges that are fitted for each member.
+const EXCHANGES: usize = 4;
+/// Hypotheses near the best one that are fitted again, and their distance in nats.
+const POLISHED: (usize, f64) = (6, 6.0);
+
+/// Distances in nats within which first-order scores lead to a fit.
+struct Selectivity {
+    /// Below the best addition.
+    addition: f64,
+    /// Gain over the fit above which an addition is fitted in any case.
+    certain: f64,
+    /// Below the best addition, for another form of a fitted effect.
+    form: f64,
+    /// Below the best exchange.
+    exchange: f64,
+    /// Loss by the removal of a member, or by its exchange.
+    loss: f64,
+}
+
+impl Selectivity {
+    fn of_rows(rows: usize) -> Self {
+        if rows > LARGE_TABLE {
+            Self { addition: 8.0, certain: f64::INFINITY, form: 2.0, exchange: 6.0, loss: 15.0 }
+        } else {
+            Self { addition: 25.0, certain: 60.0, form: 4.0, exchange: f64::INFINITY, loss: f64::INFINITY }
+        }
+    }
+}
+
+/// Fitted hypotheses of a problem.
+pub(crate) struct Search<'a> {
+    problem: &'a Problem,
+    options: SearchOptions,
+    selectivity: Selectivity,
+    fits: BTreeMap<Hypothesis, Fit>,
+    failed: BTreeSet<Hypothesis>,
+    pub(crate) fit_count: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(crate) fn new(problem: &'a Problem, options: SearchOptions) -> Self {
+        let selectivity = Selectivity::of_rows(problem.len());
+        let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
+        Self { problem, options, selectivity, fits, failed, fit_count: 0 }
+    }
+
+    /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
+    pub(crate) fn run(&mut self) -> Vec<Fit> {
+        self.fit(&Hypothesis::default(), Start::default());
+        if self.options.members == 0 {
+            return self.fits.values().cloned().collect();
+        }
+        self.start_from_usual_effects();
+        let mut expanded = BTreeSet::new();
+        for _ in 0..self.options.expansions {
+            let Some(best) = self.best_score() else { break };
+            let near = self.ranked().into_iter().filter(|fit| fit.score > best - EXPANSION_WINDOW);
+            let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
+                break;
+            };
+            expanded.insert(fit.hypothesis.clone());
+            self.expand(&fit);
+        }
+        self.polish();
+        let Some(best) = self.best_score() else { return Vec::new() };
+        let window = best - self.options.window;
+        self.ranked().into_iter().filter(|fit| fit.score > window).cloned().collect()
+    }
+
+    fn ranked(&self) -> Vec<&Fit> {
+        let mut fits: Vec<&Fit> = self.fits.values().collect();
+        fits.sort_by(|a, b| b.score.total_cmp(&a.score));
+        fits
+    }
+
+    fn best_score(&self) -> Option<f64> {
+        self.fits.values().map(|fit| fit.score).max_by(f64::total_cmp)
+    }
+
+    /// Fits a hypothesis unless it has been fitted.
+    fn fit(&mut self, hypothesis: &Hypothesis, start: Start<'_>) -> Option<&Fit> {
+        if !self.fits.contains_key(hypothesis) && !self.failed.contains(hypothesis) {
+            self.fit_count += 1;
+            match Fit::new(self.problem, hypothesis, start) {
+                Some(fit) => drop(self.fits.insert(hypothesis.clone(), fit)),
+                None => drop(self.failed.insert(hypothesis.clone())),
+            }
+        }
+        self.fits.get(hypothesis)
+    }
+
+    /// Fits a hypothesis again from another mode, and keeps the better fit.
+    fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit) {
+        self.fit_count += 1;
+        let start = Start { is_final: true, ..Start::at(start, None) };
+        let Some(again) = Fit::new(self.problem, hypothesis, start) else { return };
+        let known = self.fits.get(hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
+        if again.score > known {
+            self.fits.insert(hypothesis.clone(), again);
+        }
+    }
+
+    /// Fits the usual effects together, then removes them while the loss is small.
+    fn start_from_usual_effects(&mut self) {
+        let usual = self.problem.space.usual_effects.iter();
+        let elements = usual.map(|effect| Element { member: Member::Effect(*effect), form: 0 });
+        let hypothesis = Hypothesis::from_elements(elements);
+        let Some(mut fit) = self.fit(&hypothesis, Start::default()).cloned() else { return };
+        while !fit.hypothesis.is_empty() {
+            let mut best: Option<Fit> = None;
+            for member in fit.hypothesis.members().collect::<Vec<_>>() {
+                let start = Start::at(&fit, None);
+                let reduced = self.fit(&fit.hypothesis.without(member), start);
+                if let Some(reduced) = reduced.filter(|r| best.as_ref().is_none_or(|b| r.score > b.score)) {
+                    best = Some(reduced.clone());
+                }
+            }
+            match best {
+                Some(best) if best.score >= fit.score - THINNING_LOSS => fit = best,
+                _ => break,
+            }
+        }
+    }
+
+    fn expand(&mut self, fit: &Fit) {
+        let Some(scores) = Scores::new(self.problem, fit) else { return };
+        if fit.hypothesis.len() < self.options.members {
+            self.add(fit, &scores.additions(None));
+        }
+        for element in fit.hypothesis.elements().collect::<Vec<_>>() {
+            self.exchange(fit, element, &scores.additions(Some(element.member)));
+        }
+    }
+
+    /// Fits the best additions.
+    fn add(&mut self, fit: &Fit, additions: &[Addition]) {
+        let Some(top) = additions.first().map(|a| a.score) else { return };
+        let base = fit.hypothesis.log_prior_odds(&self.problem.space);
+        let least = (top - self.selectivity.addition).min(base + self.selectivity.certain).max(base - 5.0);
+        let mut effects: Vec<Member> = Vec::new();
+        let mut kernels: Vec<Member> = Vec::new();
+        for addition in additions.iter().filter(|a| a.score > least) {
+            let member = addition.element.member;
+            let (members, most) = match member {
+                Member::Effect(_) => (&mut effects, self.options.width),
+                Member::Kernel(_) => (&mut kernels, (self.options.width / 2).max(2)),
+            };
+            if members.len() < most && !members.contains(&member) {
+                members.push(member);
+                self.fit(&addition.hypothesis, start_of(fit, addition));
+            }
+        }
+        let least = (top - self.selectivity.form).max(base - 2.0);
+        let mut forms: BTreeMap<Member, usize> = BTreeMap::new();
+        for addition in additions.iter().filter(|a| a.score > least) {
+            let member = addition.element.member;
+            let count = forms.entry(member).or_insert(0);
+            *count += 1;
+            if *count <= MOST_FORMS && (effects.contains(&member) || kernels.contains(&member)) {
+                self.fit(&addition.hypothesis, start_of(fit, addition));
+            }
+        }
+    }
+
+    /// Fits a hypothesis without a member, and the best exchanges of the member.
+    fn exchange(&mut self, fit: &Fit, element: Element, exchanges: &[Addition]) {
+        // The noise of the fit applies to the removed element too, whose gain is then its worth.
+        let own = exchanges.iter().find(|exchange| exchange.element == element);
+        let worth = own.map_or(0.0, |own| own.gain);
+        let mut start = fit.clone();
+        if worth < self.selectivity.loss {
+            let reduced = fit.hypothesis.without(element.member);
+            let Some(reduced) = self.fit(&reduced, Start::at(fit, None)) else { return };
+            start = reduced.clone();
+        }
+        let others: Vec<&Addition> = exchanges.iter().filter(|e| e.element != element).collect();
+        let Some(top) = others.first().map(|a| a.score) else { return };
+        let least = worth - self.selectivity.loss;
+        for exchange in others.into_iter().take(EXCHANGES) {
+            if exchange.score > top - self.selectivity.exchange && exchange.gain > least {
+                self.fit(&exchange.hypothesis, start_of(&start, exchange));
+            }
+        }
+    }
+
+    /// Fits the hypotheses near the best one again from their own modes, and the best one without
+    /// each member from the best mode.
+    fn polish(&mut self) {
+        let Some(best) = self.best_score() else { return };
+        let ranked = self.ranked().into_iter();
+        let near: Vec<Fit> =
+            ranked.take(POLISHED.0).filter(|fit| fit.score > best - POLISHED.1).cloned().collect();
+        for fit in &near {
+            self.fit_again(&fit.hypothesis, fit);
+        }
+        let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
+        for member in best.hypothesis.members() {
+            let reduced = best.hypothesis.without(member);
+            let known = self.fits.get(&reduced).map(|fit| fit.score);
+            if known.is_some_and(|score| score > best.score - self.selectivity.loss) {
+                self.fit_again(&reduced, &best);
+            }
+        }
+    }
+}
+
+fn start_of<'a>(fit: &'a Fit, addition: &Addition) -> Start<'a> {
+    Start::at(fit, addition.hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::problem;
+
+    #[test]
+    fn a_large_effect_wins() {
+        let window = Search::new(&problem(12, 0.6), SearchOptions::default()).run();
+        assert!(window[0].hypothesis.contains(Member::Effect(0)));
+        assert_eq!(window[0].hypothesis.len(), 1);
+    }
+
+    #[test]
+    fn nothing_wins_without_effects() {
+        let window = Search::new(&problem(12, 0.0), SearchOptions::default()).run();
+        assert!(window[0].hypothesis.is_empty());
+    }
+}

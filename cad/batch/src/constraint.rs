@@ -169,8 +169,8 @@ mod tests {
         designs().iter().map(|d| if is_met(d) { 'T' } else { 'F' }).collect()
     }
 
-    /// Every constraint of the documents, examples and tests, with the results of the evaluator of
-    /// pinswitch 0.1 before it had a language of its own (exmex 0.21).
+    /// Every constraint of the documents, examples and tests, with the results of an independent
+    /// evaluator (exmex 0.21).
     #[test]
     fn results_equal_those_of_exmex() {
         for (text, expected) in [

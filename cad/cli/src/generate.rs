@@ -45,13 +45,13 @@ pub(super) struct Arguments {
     /// A model.toml written by `calibrate`: the curve comes from it, without the effects of the rig.
     #[arg(long, value_name = "TOML", conflicts_with = "law")]
     model: Option<PathBuf>,
-    /// Kinds of files to write, beside curve and manifest.
+    /// Kinds of files to write, in addition to the curve and the manifest.
     #[arg(long, value_parser = formats(), value_name = "FORMAT", value_delimiter = ',', default_values = default_formats())]
     format: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
-    /// Ask an installed PrusaSlicer (`prusa-slicer` on PATH, or PINSWITCH_SLICER) how long each part and plate prints and how
-    /// much filament it takes: a table here, slicing.json and settings.ini in the set.
+    /// Estimate print time and filament of each part and plate with an installed PrusaSlicer (`prusa-slicer` on PATH, or
+    /// PINSWITCH_SLICER): a table here, slicing.json and settings.ini in the set.
     #[arg(long)]
     slice: bool,
     /// Verify every mesh with a second geometry kernel, truck-modeling: volume, surface, bounding box and distances must agree
@@ -62,7 +62,7 @@ pub(super) struct Arguments {
     /// write the fixed configuration to fixed.toml in the set.
     #[arg(long)]
     fix: bool,
-    /// Replace a set that was made from another configuration, and files that are no set's.
+    /// Replace a set that was made from another configuration, and files that do not belong to a set.
     #[arg(long)]
     force: bool,
     /// Print the manifest as JSON.
@@ -157,7 +157,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Reports each change of a fixed configuration, or that there is none.
 fn report_fix(fix: &Fix, folder: &Path) {
     for change in &fix.changes {
-        log::info!("changed {change}");
+        // The parts are not those of the file: also with --quiet.
+        warn(Diagnostic::new(format!("changed {change}")));
     }
     match fix.changes.len() {
         0 => log::info!("nothing to fix: the configuration can be built"),

@@ -9,7 +9,7 @@ use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use log::{Level, LevelFilter};
-use pinswitch_diagnostic::{Diagnostic, neutral};
+use pinswitch_diagnostic::{Diagnostic, neutral, neutral_line};
 use serde::Serialize;
 
 use super::Failure;
@@ -55,15 +55,22 @@ pub(super) fn to_json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
 /// Prints a failure as text on standard error, and as JSON on standard output if `as_json`. A command that has
 /// printed its report already does not print a second document.
 pub(super) fn report_failure(failure: &Failure, as_json: bool) {
+    if as_json {
+        print_failure_json(failure);
+    }
+    print_line(&failure.render());
+}
+
+/// Prints a failure as JSON on standard output, unless the command has printed its report there.
+pub(super) fn print_failure_json(failure: &Failure) {
     #[derive(Serialize)]
     struct Report<'a> {
         error: &'a Failure,
     }
-    if as_json && !IS_STDOUT_USED.load(Ordering::Relaxed) {
+    if !IS_STDOUT_USED.load(Ordering::Relaxed) {
         // The text and the exit code report the failure even if this cannot be written.
         let _ = print_json(&Report { error: failure });
     }
-    print_line(&failure.render());
 }
 
 /// Prints a warning on standard error, unless `--quiet` is given.
@@ -89,8 +96,8 @@ pub(super) fn start_log(level: LevelFilter) {
             let text = record.args().to_string();
             match level {
                 // The shape of a diagnostic.
-                Level::Warn => writeln!(line, "{style}warning{style:#}: {}", neutral(&text)),
-                _ => writeln!(line, "[{style}{level:<5}{style:#}] {}", neutral(&text)),
+                Level::Warn => writeln!(line, "{style}warning{style:#}: {}", neutral_line(&text)),
+                _ => writeln!(line, "[{style}{level:<5}{style:#}] {}", neutral_line(&text)),
             }
         })
         .init();

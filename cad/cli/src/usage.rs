@@ -3,9 +3,10 @@
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use pinswitch_diagnostic::{excerpt, neutral};
+use pinswitch_diagnostic::{Diagnostic, excerpt, neutral};
 
-use super::terminal::print_line;
+use super::Failure;
+use super::terminal::{print_failure_json, print_line};
 
 /// Most characters of an error of the arguments, which quotes arguments of any length.
 const MAX_CHARACTERS: usize = 590;
@@ -16,6 +17,9 @@ const STARTERS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SW
 pub(super) fn report(error: clap::Error) -> ExitCode {
     let error = with_starter(error);
     let text = error.render().to_string();
+    if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
+        print_failure_json(&Failure::bad_input(diagnostic(&text)));
+    }
     if error.use_stderr() && (text.chars().count() > MAX_CHARACTERS || quotes_controls(&error)) {
         print_line(&bounded(text.trim_end()));
     } else {
@@ -23,6 +27,13 @@ pub(super) fn report(error: clap::Error) -> ExitCode {
         let _ = error.print();
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// Returns an error that clap has rendered: the first paragraph is the problem, the others are the help.
+fn diagnostic(text: &str) -> Diagnostic {
+    let (problem, help) = text.split_once("\n\n").unwrap_or((text, ""));
+    let problem = Diagnostic::new(problem.trim_start_matches("error: ").trim());
+    if help.trim().is_empty() { problem } else { problem.with_help(help.trim()) }
 }
 
 /// Whether the error quotes an argument with control characters.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::{Location, excerpt, neutral};
+use crate::{Location, excerpt, neutral, neutral_line};
 
 /// Most characters of a problem, of a help and of each cause: more would not be read.
 const LONGEST: usize = 520;
@@ -131,7 +131,7 @@ impl Diagnostic {
         }
         for cause in self.causes() {
             text.push_str("\n  cause: ");
-            text.push_str(&shown(&cause));
+            text.push_str(&shown_line(&cause));
         }
         if let Some(help) = &self.help {
             text.push_str("\n  help: ");
@@ -142,7 +142,7 @@ impl Diagnostic {
 
     /// `location: problem`.
     fn headline(&self) -> String {
-        let problem = shown(&self.problem);
+        let problem = shown_line(&self.problem);
         match self.location.as_ref().map(ToString::to_string).filter(|place| !place.is_empty()) {
             Some(place) => format!("{place}: {problem}"),
             None => problem,
@@ -165,7 +165,12 @@ impl Diagnostic {
     }
 }
 
-/// A text of bounded length without control characters.
+/// A text of bounded length without control characters, on one line.
+fn shown_line(text: &str) -> String {
+    neutral_line(&excerpt(text, LONGEST)).into_owned()
+}
+
+/// A text of bounded length without control characters; a help may have several lines.
 fn shown(text: &str) -> String {
     neutral(&excerpt(text, LONGEST)).into_owned()
 }
@@ -174,7 +179,7 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let headline = self.headline();
         let line = match &self.help {
-            Some(help) => format!("{headline}; {}", shown(help)),
+            Some(help) => format!("{headline}; {}", shown_line(help)),
             None => headline,
         };
         f.write_str(&excerpt(&line, LONGEST_LINE))

@@ -32,4 +32,4 @@ mod neutral;
 pub use diagnostic::{Change, Diagnostic};
 pub use excerpt::excerpt;
 pub use location::{Location, Snippet};
-pub use neutral::neutral;
+pub use neutral::{neutral, neutral_line};

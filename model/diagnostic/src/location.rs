@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::{excerpt, neutral};
+use crate::{excerpt, neutral, neutral_line};
 
 /// Most characters of a field's value in a location.
 const LONGEST_VALUE: usize = 120;
@@ -120,16 +120,16 @@ impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
         if let Some(file) = &self.file {
-            f.write_str(&neutral(&excerpt(file, LONGEST_NAME)))?;
+            f.write_str(&neutral_line(&excerpt(file, LONGEST_NAME)))?;
             for number in [self.line, self.column].into_iter().flatten() {
                 write!(f, ":{number}")?;
             }
             separator = ": ";
         }
         if let Some(field) = &self.field {
-            write!(f, "{separator}{}", neutral(&excerpt(field, LONGEST_NAME)))?;
+            write!(f, "{separator}{}", neutral_line(&excerpt(field, LONGEST_NAME)))?;
             if let Some(value) = &self.value {
-                write!(f, " = {}", neutral(&excerpt(value, LONGEST_VALUE)))?;
+                write!(f, " = {}", neutral_line(&excerpt(value, LONGEST_VALUE)))?;
             }
         }
         Ok(())

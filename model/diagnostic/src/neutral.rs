@@ -28,6 +28,19 @@ pub fn neutral(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// Returns the text on one line: [`neutral`], with line feeds as `\n`. For foreign names and values, which could
+/// otherwise forge a line of the program's own output.
+///
+/// ```
+/// assert_eq!(pinswitch_diagnostic::neutral_line("a\nerror: b"), "a\\nerror: b");
+/// ```
+pub fn neutral_line(text: &str) -> Cow<'_, str> {
+    match neutral(text) {
+        shown if shown.contains('\n') => Cow::Owned(shown.replace('\n', "\\n")),
+        shown => shown,
+    }
+}
+
 /// Whether a terminal or a text layout acts on this character instead of showing it.
 fn is_active(c: char) -> bool {
     let is_direction_mark = matches!(

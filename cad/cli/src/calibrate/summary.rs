@@ -1,6 +1,7 @@
 //! The summary of a calibration for the terminal; report.html has the details.
 
 use pinswitch_calibration::{FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict};
+use pinswitch_diagnostic::neutral_line;
 
 /// Most series, effects and columns that a line lists.
 const MAX_LISTED: usize = 6;
@@ -20,7 +21,7 @@ pub(super) fn summary(report: &Report) -> String {
     }
     text.push_str(&confounded(report));
     if !report.ignored_columns.is_empty() {
-        text.push_str(&format!("ignored columns: {}\n", listed(&report.ignored_columns)));
+        text.push_str(&format!("ignored columns: {}\n", neutral_line(&listed(&report.ignored_columns))));
     }
     text.push_str(&extrapolation(report));
     text.push_str(&bad_series(report));

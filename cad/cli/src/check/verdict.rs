@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use pinswitch_diagnostic::{Diagnostic, excerpt, neutral};
+use pinswitch_diagnostic::{Diagnostic, excerpt, neutral_line};
 use pinswitch_solid::validity::{Examination, Expectation, Fault, MeshFacts};
 use serde::Serialize;
 
@@ -125,7 +125,7 @@ impl Verdict {
 
 /// The text on one line, of bounded length and without control characters.
 fn shown(text: &str) -> String {
-    neutral(&excerpt(text, MAX_CHARACTERS)).replace('\n', "\\n")
+    neutral_line(&excerpt(text, MAX_CHARACTERS)).into_owned()
 }
 
 fn summary(valid: bool, examination: &Examination) -> String {

@@ -269,3 +269,29 @@ fn every_command_has_a_manual_page() {
     assert!(path.join("man/pinswitch.1").is_file());
     assert_eq!(std::fs::read_dir(path.join("man")).unwrap().count(), pages);
 }
+
+/// A foreign name cannot print a line of its own.
+#[test]
+fn line_feeds_of_files_are_neutral() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    write(path, "forged.toml", "[switch]\n\"x\\n[INFO ] 8 parts made\" = 1\n");
+    let output = expect_code(2, path, &["generate", "forged.toml"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("switch.x\\n[INFO ] 8 parts made"), "{text}");
+    assert!(!text.lines().any(|line| line.starts_with("[INFO ]")), "{text}");
+}
+
+#[test]
+fn usage_errors_are_json() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [&["generate", "--json"][..], &["check", "--json", "--bogus"]] {
+        let output = expect_code(2, folder.path(), arguments);
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(document["error"]["exit_code"], 2);
+        let diagnostic = &document["error"]["diagnostics"][0];
+        assert!(!diagnostic["problem"].as_str().unwrap().is_empty(), "{document}");
+        assert!(diagnostic["help"].as_str().unwrap().contains("Usage: "), "{document}");
+        assert!(String::from_utf8_lossy(&output.stderr).starts_with("error: "));
+    }
+}

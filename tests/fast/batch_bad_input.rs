@@ -133,7 +133,7 @@ fn folders_with_other_files_stay_unchanged() {
     assert_eq!(code, Some(2));
     assert_eq!(
         error,
-        "error: b contains another sweep (\"small\"); help: give another --out (nothing was changed)"
+        "error: b contains another sweep (\"small\"); help: give another --out, or the options of that batch, such as --verify (nothing was changed)"
     );
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/thesis"), "dear").unwrap();

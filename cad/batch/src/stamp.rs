@@ -68,8 +68,9 @@ impl StampError {
         const UNCHANGED: &str = "nothing was changed";
         match self {
             Self::OtherSweep { place, name } => {
-                Diagnostic::new(format!("{place} contains another sweep ({name:?})"))
-                    .with_help(format!("give another --out ({UNCHANGED})"))
+                Diagnostic::new(format!("{place} contains another sweep ({name:?})")).with_help(format!(
+                    "give another --out, or the options of that batch, such as --verify ({UNCHANGED})"
+                ))
             }
             Self::NotEmpty { place } => {
                 Diagnostic::new(format!("{place} is not empty and not a batch folder ({STAMP} not found)"))

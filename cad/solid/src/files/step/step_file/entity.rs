@@ -128,7 +128,7 @@ impl<'a> Parser<'a> {
         self.rest
     }
 
-    pub(super) fn expect(&mut self, c: char) -> Result<(), StepError> {
+    pub(super) fn consume(&mut self, c: char) -> Result<(), StepError> {
         self.rest =
             self.space().strip_prefix(c).ok_or_else(|| format!("expected {c}, found {:.40}", self.rest))?;
         Ok(())
@@ -145,7 +145,7 @@ impl<'a> Parser<'a> {
     pub(super) fn entity(&mut self) -> Result<Entity, StepError> {
         let is_complex = self.space().starts_with('(');
         if is_complex {
-            self.expect('(')?;
+            self.consume('(')?;
         }
         let mut entity = Entity::new();
         while !entity.is_empty() && !is_complex || !self.space().starts_with(')') {
@@ -161,24 +161,24 @@ impl<'a> Parser<'a> {
                 return Ok(entity);
             }
         }
-        self.expect(')').map(|()| entity)
+        self.consume(')').map(|()| entity)
     }
 
     pub(super) fn value(&mut self) -> Result<Value, StepError> {
         let first = self.space().chars().next().ok_or("expected a value, found the end")?;
         match first {
             '#' => {
-                self.expect('#')?;
+                self.consume('#')?;
                 let digits = self.take(|c| c.is_ascii_digit());
                 digits.parse().map(Value::Id).map_err(|_| format!("#{digits} is not a number").into())
             }
             '(' => self.list(),
             '\'' => self.string(),
-            '$' | '*' => self.expect(first).map(|()| Value::Word(first.to_string())),
+            '$' | '*' => self.consume(first).map(|()| Value::Word(first.to_string())),
             '.' => {
-                self.expect('.')?;
+                self.consume('.')?;
                 let word = self.take(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
-                self.expect('.').map(|()| Value::Word(word.to_owned()))
+                self.consume('.').map(|()| Value::Word(word.to_owned()))
             }
             c if c.is_ascii_uppercase() => {
                 // A typed value, such as LENGTH_MEASURE(1.E-7).
@@ -193,23 +193,23 @@ impl<'a> Parser<'a> {
     }
 
     fn list(&mut self) -> Result<Value, StepError> {
-        self.expect('(')?;
+        self.consume('(')?;
         let mut values = Vec::new();
         while !self.space().starts_with(')') {
             if !values.is_empty() {
-                self.expect(',')?;
+                self.consume(',')?;
             }
             values.push(self.value()?);
         }
-        self.expect(')').map(|()| Value::List(values))
+        self.consume(')').map(|()| Value::List(values))
     }
 
     fn string(&mut self) -> Result<Value, StepError> {
         let mut text = String::new();
         loop {
-            self.expect('\'')?;
+            self.consume('\'')?;
             text += self.take(|c| c != '\'');
-            self.expect('\'')?;
+            self.consume('\'')?;
             if !self.rest.starts_with('\'') {
                 return Ok(Value::Text(text));
             }

@@ -67,9 +67,9 @@ impl StepFile {
         let mut parser = Parser::new(data);
         while parser.space().starts_with('#') {
             let Value::Id(id) = parser.value()? else { return Err("expected an entity".into()) };
-            parser.expect('=')?;
+            parser.consume('=')?;
             let entity = parser.entity()?;
-            parser.expect(';')?;
+            parser.consume(';')?;
             if entities.insert(id, entity).is_some() {
                 return Err(format!("#{id} occurs twice").into());
             }

@@ -8,7 +8,7 @@
 //!
 //! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
 //! 2. [`table`] reads and checks a plateau table.
-//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`inference`]) and
+//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`evidence`]) and
 //!    returns a [`Report`] with the held-out errors of the baseline and of the selected model.
 //! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a
 //!    printed part without the effects of the rig.
@@ -29,7 +29,7 @@
 //! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` the weight for `n`
 //! pins, `S` the share of the contact that has switched from pins to silicone, `F_half` the half
 //! load and `s` the steepness (`model/doc/friction-laws.md`). A reading is this tension with the
-//! effects of the model, plus noise with random effects ([`inference::Noise`]).
+//! effects of the model, plus noise with random effects ([`model::Noise`]).
 //!
 //! # Examples
 //!
@@ -60,50 +60,46 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod adequacy;
 mod aliasing;
-mod beyond_range;
 mod calibrate;
+mod confirmation;
+mod discovery;
 pub mod effects;
 pub mod evidence;
-pub mod experiment;
+//pub mod experiment;
 mod extrapolation;
-mod forms;
-mod held_out;
-pub mod inference;
-mod layouts_left_out;
+mod least_squares;
 mod median;
+pub mod model;
 mod model_check;
 mod model_file;
 mod own_values;
 mod parallel;
 mod part_curve;
-mod promise;
 mod published_maxima;
 mod report;
+mod reporting;
 pub mod segmentation;
 mod session_plan;
 pub mod table;
-mod telling;
 #[cfg(test)]
 mod test_session;
 mod toml_text;
-mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
 
-pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
+pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use confirmation::{TrialOutcome, TrialReport};
+pub use discovery::{DrawnForm, FormReport, FormRival};
 pub use extrapolation::calibrate_below;
-pub use forms::{DrawnForm, FormReport, FormRival, draw_form};
-pub use held_out::{HeldOut, held_out};
-pub use layouts_left_out::layouts_left_out;
 pub use median::median;
 pub use model_file::ModelFile;
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
-    BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
-    Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, SizeInSession,
-    UnequalReport, Verdict,
+    BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
+    Extrapolation, Fate, Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport,
+    StructureReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};
 pub use toml_text::toml_error;
-pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

@@ -1,14 +1,13 @@
 //! Model files (`baseline.toml` and `model.toml`): a fitted model that predicts rows later.
 
+use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::beyond_range::error_beyond_range;
-use crate::effects::{Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
-use crate::inference::{
-    Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
-};
+use crate::effects::{Abscissa, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
+use crate::evidence::Fitted;
+use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
@@ -29,6 +28,17 @@ struct TermEntry {
     formula: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     structure: Option<Structure>,
+    /// Factors of the size where the form may be wrong.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    discrepancies: Vec<DiscrepancyEntry>,
+}
+
+/// A discrepancy in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct DiscrepancyEntry {
+    value: f64,
+    #[serde(flatten)]
+    factor: DiscrepancyFactor,
 }
 
 /// A constant in the file.
@@ -42,7 +52,7 @@ struct Constant {
 /// A model file.
 ///
 /// ```
-/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::effects::Vocabulary;
 /// use pinswitch_calibration::table::PlateauTable;
 /// use pinswitch_calibration::{ModelFile, calibrate};
 ///
@@ -60,8 +70,8 @@ struct Constant {
 /// #     }
 /// # }
 /// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
-/// let found = calibrate(&table.rows, Levels::default())?;
-/// let text = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text()?;
+/// let found = calibrate(&table.rows, &Vocabulary::built_in(), 1)?;
+/// let text = ModelFile::new(&found.augmented).to_text()?;
 ///
 /// let model = ModelFile::parse(&text, "model.toml")?;
 /// let (predicted_n, sd_n) = model.predict(&table.rows[..1], "model.toml")?;
@@ -75,7 +85,8 @@ pub struct ModelFile {
     #[serde(default)]
     terms: Vec<TermEntry>,
     noise: Noise,
-    /// Growth of the error with the distance from the loads fitted, in newtons per newton.
+    /// Growth of the error with the distance from the loads fitted, in newtons per newton; zero in files
+    /// of this version, whose discrepancies grow with the load.
     #[serde(default)]
     beyond_range: f64,
     frame: Frame,
@@ -89,7 +100,10 @@ pub struct ModelFile {
 /// Returns whether a term depends on the operator.
 fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
     match term {
-        Term::Structure(structure) => matches!(structure.form, Shape::OperatorIs { .. }),
+        Term::Structure(structure) => matches!(
+            structure.form,
+            Shape::OperatorIs { .. } | Shape::Table { over: Abscissa::Operator, .. }
+        ),
         Term::Named(effect) => vocabulary
             .own()
             .any(|own| own.definition().id == effect.id() && own.definition().formula.contains("operator")),
@@ -97,21 +111,29 @@ fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
 }
 
 impl ModelFile {
-    /// Returns the file of a fit.
-    pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
-        let model = &fitted.model;
-        let data = &data.compacted();
-        let weighed = Weighed::new(data, noise);
-        let covariance = coordinate_covariance(fitted, &weighed);
-        let beyond_range = error_beyond_range(model, &weighed);
+    /// Returns the file of a fitted hypothesis.
+    pub fn new(fitted: &Fitted) -> Self {
+        let Fitted { model, noise, covariance, .. } = fitted;
         let mut frame = model.frame.clone();
+        let is_over = |over: Abscissa| {
+            model.terms.iter().any(|term| {
+                matches!(term, Term::Structure(Structure { form: Shape::Table { over: of, .. }, .. }) if *of == over)
+            })
+        };
         if frame.changes.is_empty() {
             // The model does not depend on them.
-            (frame.sessions, frame.specimens) = (Vec::new(), Vec::new());
+            frame.sessions = Vec::new();
+            if !is_over(Abscissa::Specimen) {
+                frame.specimens = Vec::new();
+            }
         }
         if !model.terms.iter().any(|term| depends_on_operator(term, &model.vocabulary)) {
             frame.operators = Vec::new();
         }
+        let discrepancies = |index: usize| {
+            let of = model.discrepancies.iter().filter(|d| d.term == index);
+            of.map(|d| DiscrepancyEntry { value: d.value, factor: d.factor }).collect()
+        };
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
             schema: SCHEMA.to_owned(),
@@ -124,23 +146,26 @@ impl ModelFile {
             terms: model
                 .terms
                 .iter()
-                .map(|term| match term {
+                .enumerate()
+                .map(|(index, term)| match term {
                     Term::Named(effect) => TermEntry {
                         id: effect.id().to_owned(),
                         side: Some(effect.description().side.as_str().to_owned()),
                         formula: Some(effect.cited_formula()),
                         structure: None,
+                        discrepancies: discrepancies(index),
                     },
                     Term::Structure(structure) => TermEntry {
                         id: term.id().to_owned(),
                         side: None,
                         formula: Some(structure.describe(&model.frame)),
                         structure: Some(structure.clone()),
+                        discrepancies: Vec::new(),
                     },
                 })
                 .collect(),
-            noise,
-            beyond_range,
+            noise: *noise,
+            beyond_range: 0.0,
             frame,
             covariance: (0..covariance.nrows())
                 .map(|i| covariance.row(i).iter().copied().collect())
@@ -210,6 +235,9 @@ impl ModelFile {
             };
             let zeros = vec![0.0; term.constants()];
             model = model.with_term(term, &zeros);
+            for DiscrepancyEntry { value, factor } in &entry.discrepancies {
+                model = model.with_discrepancy(Discrepancy { term: i, value: *value, factor: *factor });
+            }
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
         let needed = model.values().len();
@@ -237,9 +265,9 @@ impl ModelFile {
         let (mut frame, model) = (self.frame.clone(), self.model(file)?);
         rows.iter().for_each(|row| frame.extend(row));
         let model = model.in_frame(frame);
-        let points = model.frame.points(rows).unwrap_or_default();
+        let points = model.frame.points_of_new_session(rows).unwrap_or_default();
         let predicted = model.predict(&points);
-        let mut sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        let mut sd = prediction_sd_n(&model, &points, &self.covariance(), self.noise);
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
             let beyond = (point.load_n - high).max(low - point.load_n).max(0.0);
@@ -275,8 +303,9 @@ impl ModelFile {
         self.noise
     }
 
-    pub(super) fn covariance(&self) -> &[Vec<f64>] {
-        &self.covariance
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
+        let n = self.covariance.len();
+        DMatrix::from_fn(n, n, |i, j| self.covariance[i][j])
     }
 
     pub(super) fn reference_speed_pct(&self) -> f64 {
@@ -299,13 +328,11 @@ impl ModelFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference::Levels;
     use crate::test_session::session;
 
     fn text() -> String {
-        let calibration = crate::calibrate(&session(3), Levels::default()).unwrap();
-        let selection = calibration.selection;
-        ModelFile::new(&selection.augmented, &calibration.data, selection.noise).to_text().unwrap()
+        let calibration = crate::calibrate(&session(3), &Vocabulary::built_in(), 1).unwrap();
+        ModelFile::new(&calibration.augmented).to_text().unwrap()
     }
 
     fn sd_n(text: &str) -> f64 {

@@ -4,9 +4,15 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::{COVERED, FRICTION_ABOVE, NONE};
 use crate::report::{Report, SessionReport};
-use crate::trial::TrialOutcome;
+use crate::confirmation::TrialOutcome;
+
+/// Second explanation of a question that asks whether an effect acts at all.
+pub(crate) const NONE: &str = "none";
+/// Start of the name of a question about friction above a load.
+pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
+/// Share of the paper's heaviest load from which friction counts as recorded up to it.
+pub(crate) const COVERED: f64 = 0.9;
 
 /// Answer to a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -120,7 +126,7 @@ fn answer(question: &PlanQuestion, report: &Report, highest_n: f64) -> Answer {
         return match trial.outcome {
             TrialOutcome::Confirmed => Answer::Found,
             TrialOutcome::Refuted => Answer::Excluded,
-            TrialOutcome::Open | TrialOutcome::Drawn => Answer::Open,
+            TrialOutcome::Open | TrialOutcome::Suggested | TrialOutcome::Drawn => Answer::Open,
         };
     }
     if of.starts_with(FRICTION_ABOVE) {

@@ -12,12 +12,11 @@ use crate::design::{Component, Role};
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
+use crate::outliers::Outliers;
 use crate::problem::Problem;
 use crate::quadrature::log_sum_exp;
 use crate::random::Random;
 
-/// Weight below which a row is an outlier, which a new session is not judged by.
-const OUTLIER_WEIGHT: f64 = 0.12;
 /// Most hypotheses that are averaged.
 const MOST_HYPOTHESES: usize = 12;
 /// Simulated sessions, and resamples of the series.
@@ -38,6 +37,7 @@ pub(crate) fn expected_error(
     problem: &Problem,
     window: &[Fit],
     probabilities: &[f64],
+    outliers: &Outliers,
     seed: u64,
 ) -> Option<ExpectedError> {
     let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
@@ -58,8 +58,8 @@ pub(crate) fn expected_error(
         }
     }
     let (_, fit, linearised, _) = parts.first()?;
-    let sound: Vec<usize> =
-        (0..problem.len()).filter(|row| fit.mode.weights[*row] > OUTLIER_WEIGHT).collect();
+    // A new session is not expected to have gross errors.
+    let sound: Vec<usize> = (0..problem.len()).filter(|row| !outliers.contains(*row)).collect();
     let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
     for row in &sound {
         let (sum, count) = &mut squares[problem.rows.series[*row]];

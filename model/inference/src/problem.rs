@@ -250,6 +250,11 @@ impl Problem {
         &self.rows
     }
 
+    /// Returns the properties of the readings from which the priors of the noise follow.
+    pub fn noise_reference(&self) -> &NoiseReference {
+        &self.reference
+    }
+
     /// Returns the number of readings.
     pub fn len(&self) -> usize {
         self.readings.len()

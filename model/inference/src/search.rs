@@ -83,19 +83,21 @@ pub(crate) struct Search<'a> {
     selectivity: Selectivity,
     fits: BTreeMap<Hypothesis, Fit>,
     failed: BTreeSet<Hypothesis>,
+    excluded: &'a [bool],
     pub(crate) fit_count: usize,
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(problem: &'a Problem, options: SearchOptions) -> Self {
+    /// Returns a search without the rows that are `excluded`, a list that may be empty.
+    pub(crate) fn new(problem: &'a Problem, options: SearchOptions, excluded: &'a [bool]) -> Self {
         let selectivity = Selectivity::of_rows(problem.len());
         let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
-        Self { problem, options, selectivity, fits, failed, fit_count: 0 }
+        Self { problem, options, selectivity, fits, failed, excluded, fit_count: 0 }
     }
 
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
     pub(crate) fn run(&mut self) -> Vec<Fit> {
-        self.fit(&Hypothesis::default(), Start::default());
+        self.fit(&Hypothesis::default(), Start { excluded: self.excluded, ..Start::default() });
         if self.options.members == 0 {
             return self.fits.values().cloned().collect();
         }
@@ -114,6 +116,11 @@ impl<'a> Search<'a> {
         let Some(best) = self.best_score() else { return Vec::new() };
         let window = best - self.options.window;
         self.ranked().into_iter().filter(|fit| fit.score > window).cloned().collect()
+    }
+
+    /// Returns the fit without members.
+    pub(crate) fn baseline(&self) -> Option<Fit> {
+        self.fits.get(&Hypothesis::default()).cloned()
     }
 
     fn ranked(&self) -> Vec<&Fit> {
@@ -154,7 +161,8 @@ impl<'a> Search<'a> {
         let usual = self.problem.space.usual_effects.iter();
         let elements = usual.map(|effect| Element { member: Member::Effect(*effect), form: 0 });
         let hypothesis = Hypothesis::from_elements(elements);
-        let Some(mut fit) = self.fit(&hypothesis, Start::default()).cloned() else { return };
+        let start = Start { excluded: self.excluded, ..Start::default() };
+        let Some(mut fit) = self.fit(&hypothesis, start).cloned() else { return };
         while !fit.hypothesis.is_empty() {
             let mut best: Option<Fit> = None;
             for member in fit.hypothesis.members().collect::<Vec<_>>() {
@@ -264,14 +272,14 @@ mod tests {
 
     #[test]
     fn a_large_effect_wins() {
-        let window = Search::new(&problem(12, 0.6), SearchOptions::default()).run();
+        let window = Search::new(&problem(12, 0.6), SearchOptions::default(), &[]).run();
         assert!(window[0].hypothesis.contains(Member::Effect(0)));
         assert_eq!(window[0].hypothesis.len(), 1);
     }
 
     #[test]
     fn nothing_wins_without_effects() {
-        let window = Search::new(&problem(12, 0.0), SearchOptions::default()).run();
+        let window = Search::new(&problem(12, 0.0), SearchOptions::default(), &[]).run();
         assert!(window[0].hypothesis.is_empty());
     }
 }

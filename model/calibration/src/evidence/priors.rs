@@ -72,7 +72,7 @@ pub(super) struct EffectPrior {
     /// Discrete values of the constants after the size.
     shapes: Vec<Vec<f64>>,
     /// Reading in newtons from which the limit of the load cell is measured downwards.
-    limit_from_n: Option<f64>,
+    pub(super) limit_from_n: Option<f64>,
 }
 
 impl EffectPrior {
@@ -121,6 +121,11 @@ impl EffectPrior {
                 std::iter::once(sized.size).chain(shape).collect()
             }
         }
+    }
+
+    /// Returns the constants of a shape.
+    pub(super) fn shape(&self, shape: usize) -> Vec<f64> {
+        self.shapes.get(shape).cloned().unwrap_or_default()
     }
 
     /// Returns the number of constants of a shape that a fit shifts.

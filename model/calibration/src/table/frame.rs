@@ -45,7 +45,15 @@ impl Condition {
         wrap_angle_deg: f64,
         device: Option<usize>,
     ) -> Self {
-        let wrap = wrap_rad(substrate, wrap_angle_deg);
+        Self::with_wrap_rad(substrate, pins, wrap_rad(substrate, wrap_angle_deg), device)
+    }
+
+    fn with_wrap_rad(
+        substrate: Option<Substrate>,
+        pins: &[usize],
+        wrap: f64,
+        device: Option<usize>,
+    ) -> Self {
         let n = pins.len() as f64;
         let ploughing = Self::ploughing_sum(pins, wrap);
         Self {
@@ -141,6 +149,14 @@ pub struct Frame {
     /// Constants that differ in some sessions or specimens from the last one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+    /// Whether the wrap angle of `plain` contacts is known, so that they have a friction coefficient in
+    /// place of an exponent.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_plain_angles: bool,
+    /// Mean time and mean travel of the fitted rows, at which a drift acts on a later session: another
+    /// session may drift differently.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_time: Option<[f64; 2]>,
 }
 
 /// Covariates of a row for the friction model.
@@ -194,14 +210,9 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns whether two rows differ at most in repetition, position and time.
-    pub(crate) fn is_of_one_setting(&self, other: &Point) -> bool {
+    /// Returns whether two rows have the same contact before any effect.
+    pub(crate) fn has_contact_of(&self, other: &Point) -> bool {
         self.condition == other.condition
-            && self.load_n == other.load_n
-            && self.sign == other.sign
-            && self.descending == other.descending
-            && self.log_speed == other.log_speed
-            && self.log_dwell == other.log_dwell
             && self.session_group == other.session_group
             && self.specimen_group == other.specimen_group
     }
@@ -242,10 +253,17 @@ impl Frame {
             specimens: several(rows, |labels| &labels.specimen),
             operators: sorted(several(rows, |labels| &labels.operator)),
             changes: Vec::new(),
+            has_plain_angles: rows
+                .iter()
+                .any(|row| row.substrate.is_none() && row.wrap_angle_deg != published::WRAP_ANGLE_DEG),
+            mean_time: None,
         };
         for row in rows {
             frame.extend(row);
         }
+        let points = frame.points(rows).unwrap_or_default();
+        let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len().max(1) as f64;
+        frame.mean_time = Some([mean(|p| p.time), mean(|p| p.travel)]);
         frame
     }
 
@@ -254,7 +272,8 @@ impl Frame {
         if self.condition_of(row).is_none() {
             let device =
                 (row.substrate == Some(Substrate::Silicone) && !row.pins.is_empty()).then(|| self.devices());
-            self.conditions.push(Condition::new(row.substrate, &row.pins, row.wrap_angle_deg, device));
+            let wrap = self.wrap_rad(row);
+            self.conditions.push(Condition::with_wrap_rad(row.substrate, &row.pins, wrap, device));
         }
     }
 
@@ -265,10 +284,25 @@ impl Frame {
 
     /// Returns the index of the condition of a row, if the frame has it.
     pub fn condition_of(&self, row: &PlateauRow) -> Option<usize> {
-        let wrap = wrap_rad(row.substrate, row.wrap_angle_deg);
+        let wrap = self.wrap_rad(row);
         self.conditions.iter().position(|c| {
             c.substrate == row.substrate && c.pins == row.pins && (c.wrap_rad - wrap).abs() < SAME_WRAP_RAD
         })
+    }
+
+    /// Returns the wrap angle of a row in radians; 1 for `plain` contacts with a free exponent.
+    fn wrap_rad(&self, row: &PlateauRow) -> f64 {
+        let is_free = row.substrate.is_none() && !self.has_plain_angles;
+        if is_free { 1.0 } else { row.wrap_angle_deg.to_radians() }
+    }
+
+    /// Returns the rows of a later session as points: drifts have their mean over the fitted session.
+    pub(crate) fn points_of_new_session(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
+        let mut points = self.points(rows)?;
+        if let Some([time, travel]) = self.mean_time {
+            points.iter_mut().for_each(|point| (point.time, point.travel) = (time, travel));
+        }
+        Some(points)
     }
 
     /// Returns the rows as points; `None` if the frame lacks the condition of a row.
@@ -409,7 +443,7 @@ fn place_of<'a>(seen: &mut Vec<&'a str>, name: &'a str) -> f64 {
 }
 
 /// Interpolates linearly, with constant ends; `x` ascending.
-fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+pub(crate) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let i = x.partition_point(|v| *v <= at);
     match (i.checked_sub(1).and_then(|j| x.get(j).zip(y.get(j))), x.get(i).zip(y.get(i))) {
         (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (at - x0) / (x1 - x0),

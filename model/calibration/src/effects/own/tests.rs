@@ -240,7 +240,7 @@ proptest! {
             one_sided: false,
             confused_with: Vec::new(),
             experiment: String::new(),
-            drawn_from: Vec::new(),
+            drawn_from: None,
             parameters: vec![parameter("a", None), parameter("b", Some((0.0, 1.0)))],
         };
         match OwnEffect::new(definition) {

@@ -1,0 +1,136 @@
+//! What reports read off a posterior.
+
+use pinswitch_inference::{Kernel, Member};
+
+use super::Evidence;
+use super::forward::Channel;
+use crate::effects::Effect;
+use crate::table::{Frame, Point};
+
+impl Evidence {
+    /// Returns the number of series.
+    pub fn series_count(&self) -> usize {
+        self.problem.rows().series.last().map_or(0, |last| last + 1)
+    }
+
+    /// Returns, in the order of the problem, the row of the table, the number of the series and the
+    /// covariates of each reading.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, usize, &Point)> {
+        let series = self.problem.rows().series.iter().copied();
+        self.source.iter().copied().zip(series).zip(&self.points).map(|((row, series), p)| (row, series, p))
+    }
+
+    /// Returns the row of the table of a row of the problem.
+    pub fn source(&self, row: usize) -> Option<usize> {
+        self.source.get(row).copied()
+    }
+
+    /// Returns whether each row of the table has a gross error, or belongs to a series that has one.
+    pub fn outliers(&self) -> Vec<bool> {
+        let mut outliers = vec![false; self.source.len()];
+        for (row, source) in self.source.iter().enumerate() {
+            outliers[*source] = self.posterior.outliers.contains(row);
+        }
+        outliers
+    }
+
+    /// Returns the reading of a row of the table in newtons.
+    pub(crate) fn reading_n(&self, row: usize) -> f64 {
+        let place = self.source.iter().position(|source| *source == row);
+        place.map_or(f64::NAN, |place| self.readings[place])
+    }
+
+    /// Returns the root mean square of numbers in the order of the problem, without gross errors and
+    /// undefined numbers.
+    pub(crate) fn root_mean_square_n(&self, values: &[f64]) -> f64 {
+        let is_sound = |row: &usize| !self.posterior.outliers.contains(*row) && values[*row].is_finite();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in (0..values.len()).filter(is_sound) {
+            sum += values[row] * values[row];
+            count += 1.0;
+        }
+        (sum / f64::max(count, 1.0)).sqrt()
+    }
+
+    /// Returns the effect of an index of the space.
+    pub fn effect_at(&self, index: usize) -> &'static dyn Effect {
+        self.setup.priors[index].effect
+    }
+
+    /// Returns the effect of a member; `None` for structure without a name.
+    pub fn effect(&self, member: Member) -> Option<&'static dyn Effect> {
+        match member {
+            Member::Effect(index) => Some(self.effect_at(index)),
+            Member::Kernel(_) => None,
+        }
+    }
+
+    /// Returns the conditions and reference values of the table.
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.setup.frame
+    }
+
+    /// Returns the kernel of a member; `None` for an effect.
+    pub(crate) fn kernel_at(&self, member: Member) -> Option<&Kernel> {
+        match member {
+            Member::Kernel(kernel) => self.problem.space().kernels.get(kernel),
+            Member::Effect(_) => None,
+        }
+    }
+
+    /// Returns whether the size of an effect cannot be negative.
+    pub(crate) fn is_one_sided(&self, effect: usize) -> bool {
+        self.problem.space().effects[effect].is_one_sided
+    }
+
+    /// Returns the first constant of an effect for a size.
+    pub(crate) fn parameter_of_size(&self, effect: usize, size: f64) -> f64 {
+        self.setup.priors[effect].limit_from_n.map_or(size, |from| from - size)
+    }
+
+    /// Returns the constants of a shape of an effect after its size.
+    pub(crate) fn shape_values(&self, effect: usize, shape: usize) -> Vec<f64> {
+        self.setup.priors[effect].shape(shape)
+    }
+
+    /// Returns the full name of an effect's first constant, and the 95 % interval of it over all
+    /// hypotheses with the effect.
+    pub(crate) fn size_interval(&self, effect: usize) -> Option<(String, [f64; 2])> {
+        let size = self.posterior.size(effect)?;
+        let named = self.effect_at(effect);
+        let parameter = named.parameters().first()?;
+        let ends = size.interval.map(|end| self.parameter_of_size(effect, end));
+        let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        Some((format!("{}.{}", named.id(), parameter.name), interval))
+    }
+
+    /// Returns the constants of the baseline that belong to a device.
+    pub(crate) fn device_constants(&self, device: usize) -> [usize; 2] {
+        self.setup.baseline.device_indices(device)
+    }
+
+    /// Returns whether a member is friction that differs between sessions or specimens: a property of
+    /// the switch, and no effect that the model lacks.
+    pub(crate) fn is_change(&self, member: Member) -> bool {
+        let Member::Kernel(kernel) = member else { return false };
+        let structure = &self.setup.structures[kernel];
+        matches!(structure.covariate, "session" | "specimen") && !structure.channel.is_force()
+    }
+
+    /// Returns the constant that a change multiplies.
+    pub(crate) fn changing_constant(&self, kernel: usize) -> &'static str {
+        match self.setup.structures[kernel].channel {
+            Channel::Pins => "mu_p",
+            Channel::Silicone => "mu_s",
+            _ => "mu",
+        }
+    }
+
+    /// Returns the session or specimen of each row of the problem.
+    pub(crate) fn groups(&self, by: &str) -> impl Iterator<Item = &str> {
+        let is_session = by == "session";
+        self.groups.iter().map(move |[session, specimen]| {
+            if is_session { session.as_str() } else { specimen.as_str() }
+        })
+    }
+}

@@ -14,8 +14,10 @@ const LONGEST_VALUE: usize = 120;
 const LONGEST_NAME: usize = 160;
 /// Widest line that is shown with a caret, in columns of a terminal; a wider one would wrap.
 const WIDEST_SNIPPET: usize = 160;
-/// Columns before the wrong part, in the window of a wider line.
-const COLUMNS_BEFORE: usize = 60;
+/// Columns of the window of a wider line, of which all may be marked: the message is to stay short.
+const WINDOW: usize = 100;
+/// Columns before the wrong part in a window.
+const COLUMNS_BEFORE: usize = 40;
 
 /// Where a problem is: a file or an option, a line and a column in it, and the field that is wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -157,7 +159,7 @@ impl Snippet {
         }
         let widths: Vec<usize> = line.chars().map(|c| shown_width(c.encode_utf8(&mut [0; 4]))).collect();
         // Two columns are for the ellipses.
-        let mut free = WIDEST_SNIPPET - 2;
+        let mut free = WINDOW - 2;
         let first = marked.start.min(widths.len());
         let (mut start, mut end) = (first, first);
         let mut free_before = COLUMNS_BEFORE;
@@ -267,10 +269,7 @@ mod tests {
         let text = format!("x = [{}wrong, {}]", "1, ".repeat(100), "2, ".repeat(100));
         let start = text.find("wrong").unwrap();
         let (line, carets) = shown(&Location::in_text("a.toml", &text, start..start + 5));
-        assert!(
-            line.starts_with('…') && line.ends_with('…') && line.chars().count() == WIDEST_SNIPPET,
-            "{line}"
-        );
+        assert!(line.starts_with('…') && line.ends_with('…') && line.chars().count() == WINDOW, "{line}");
         assert_eq!(line.chars().skip(carets.find('^').unwrap()).take(5).collect::<String>(), "wrong");
         assert_eq!(carets.matches('^').count(), 5);
         let end = text.len() - 1;
@@ -278,7 +277,7 @@ mod tests {
         assert!(line.starts_with('…') && line.ends_with("2, ]"), "{line}");
         assert_eq!(carets.chars().count(), line.chars().count());
         let all = Location::in_text("a.toml", &text, 0..text.len());
-        assert_eq!(shown(&all).1, "^".repeat(WIDEST_SNIPPET - 2));
+        assert_eq!(shown(&all).1, "^".repeat(WINDOW - 2));
     }
 
     #[test]

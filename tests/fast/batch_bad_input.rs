@@ -112,7 +112,9 @@ fn invalid_shards_are_refused() {
     let (code, output) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
     assert!(
         code == Some(2)
-            && output.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
+            && output.contains(
+                "error: --shard = 4/3: invalid shard: expected K/N with 1 <= K <= N\n  help: write"
+            ),
         "{output}"
     );
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);

@@ -174,7 +174,10 @@ mod tests {
             ("shell.width_mm,shell.wall_mm\n12\n", "a.csv:2: expected 2 cells, found 1; give one cell"),
             ("shell.width_mm,shell.wall_mm\n# a\n12\n", "a.csv:3: expected 2 cells, found 1"),
             ("shell.width_mm\n", "a.csv:1: the table has no rows"),
-            ("shell.width_mm,shell.width_mm\n12,13\n", "a.csv:1:16: shell.width_mm: two columns have this name"),
+            (
+                "shell.width_mm,shell.width_mm\n12,13\n",
+                "a.csv:1:16: shell.width_mm: two columns have this name",
+            ),
         ] {
             let error = axis(text, "a.csv").and_then(|axis| axis.check()).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -4,8 +4,8 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::report::{Report, SessionReport};
 use crate::confirmation::TrialOutcome;
+use crate::report::{Report, SessionReport};
 
 /// Second explanation of a question that asks whether an effect acts at all.
 pub(crate) const NONE: &str = "none";

@@ -19,6 +19,8 @@ mod command_line;
 mod corpus;
 mod documents;
 mod few_series;
+mod laboratories;
+mod small_bench;
 mod finger;
 mod fit;
 mod formats;

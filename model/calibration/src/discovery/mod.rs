@@ -189,7 +189,8 @@ fn best_form(
 ) -> Option<(BestForm, Vec<FormRival>, Evidence)> {
     let own = candidates.iter().filter_map(|c| OwnEffect::new(c.definition.clone()).ok()).collect();
     let extended = vocabulary.with(own).ok()?;
-    let with_forms = Evidence::of_vocabulary(rows, &extended, seed).ok()?;
+    let ids = candidates.iter().map(|c| c.definition.id.as_str()).collect();
+    let with_forms = Evidence::of_forms(rows, &extended, &ids, seed).ok()?;
     let hypothesis = evidence.posterior().window.first()?.hypothesis.without(structure);
     let reduced = Fit::of_hypothesis(with_forms.problem(), &hypothesis)?;
     let is_form = |name: &str| candidates.iter().any(|c| c.definition.id == name);

@@ -14,6 +14,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
@@ -96,7 +97,7 @@ impl Evidence {
     /// # Errors
     /// A [`Diagnostic`] if the table cannot be fitted.
     pub fn new(rows: &[PlateauRow], vocabulary: &Vocabulary, seed: u64) -> Result<Self, Diagnostic> {
-        Self::searched(rows, vocabulary, SearchOptions::default(), seed)
+        Self::searched(rows, vocabulary, &BTreeSet::new(), SearchOptions::default(), seed)
     }
 
     /// Fits the baseline alone, without effects and unnamed structure.
@@ -104,27 +105,30 @@ impl Evidence {
     /// # Errors
     /// As [`Evidence::new`].
     pub fn baseline(rows: &[PlateauRow], seed: u64) -> Result<Self, Diagnostic> {
-        Self::of_vocabulary(rows, &Vocabulary::built_in(), seed)
+        Self::of_forms(rows, &Vocabulary::built_in(), &BTreeSet::new(), seed)
     }
 
-    /// Fits the baseline alone, with the effects of a vocabulary for later hypotheses.
-    pub(crate) fn of_vocabulary(
+    /// Fits the baseline alone, with the effects of a vocabulary for later hypotheses; some of them are
+    /// `forms` of a library.
+    pub(crate) fn of_forms(
         rows: &[PlateauRow],
         vocabulary: &Vocabulary,
+        forms: &BTreeSet<&str>,
         seed: u64,
     ) -> Result<Self, Diagnostic> {
-        Self::searched(rows, vocabulary, SearchOptions::baseline(), seed)
+        Self::searched(rows, vocabulary, forms, SearchOptions::baseline(), seed)
     }
 
     fn searched(
         rows: &[PlateauRow],
         vocabulary: &Vocabulary,
+        forms: &BTreeSet<&str>,
         options: SearchOptions,
         seed: u64,
     ) -> Result<Self, Diagnostic> {
         let frame = Frame::new(rows);
         let rows = Covariates::new(&frame, rows)?;
-        let setup = Setup::new(frame, &rows, vocabulary);
+        let setup = Setup::new(frame, &rows, vocabulary, forms);
         let space = setup.space(&rows);
         let problem = Problem::new(space, setup.rows(&rows, Session::Fitted), rows.readings.clone())
             .map_err(|error| Diagnostic::new(error.to_string()))?;
@@ -213,7 +217,7 @@ impl Evidence {
 }
 
 impl Setup {
-    fn new(frame: Frame, rows: &Covariates, vocabulary: &Vocabulary) -> Self {
+    fn new(frame: Frame, rows: &Covariates, vocabulary: &Vocabulary, forms: &BTreeSet<&str>) -> Self {
         let conditions = frame.conditions.clone();
         let model = Model::baseline(frame.clone());
         let first = Model::device_constants(0)[0];
@@ -222,7 +226,7 @@ impl Setup {
         let baseline = Baseline::new(&conditions, device_means);
         let force_unit = Self::force_unit(rows);
         let highest = rows.readings.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit);
+        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit, forms);
         let has_silicone = conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone));
         let has_both = has_silicone && conditions.iter().any(Condition::has_pins);
         let structures = structures(rows, has_both, force_unit);

@@ -1,5 +1,7 @@
 //! Priors of the effects: typical sizes, prior odds, discrete shapes, and where a form may be wrong.
 
+use std::collections::BTreeSet;
+
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
 use crate::effects::{Covariate, Effect, Vocabulary};
@@ -77,12 +79,14 @@ pub(super) struct EffectPrior {
 
 impl EffectPrior {
     /// Returns the priors of a vocabulary for a table, whose readings are at most `highest_n`.
-    /// Forces are `force_unit` times larger than on the paper's rig.
+    /// Forces are `force_unit` times larger than on the paper's rig. Effects that are `forms` of a
+    /// library have one shape, since the library has an effect for each.
     pub(super) fn of_vocabulary(
         vocabulary: &Vocabulary,
         frame: &Frame,
         highest_n: f64,
         force_unit: f64,
+        forms: &BTreeSet<&str>,
     ) -> Vec<Self> {
         vocabulary
             .effects()
@@ -103,7 +107,10 @@ impl EffectPrior {
                         (size, t.shapes.iter().map(|shape| shape.to_vec()).collect())
                     },
                 );
-                let shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                let mut shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                if forms.contains(effect.id()) {
+                    shapes.truncate(1);
+                }
                 Self { effect, typical_size: Some(size), shapes, limit_from_n: None }
             })
             .collect()

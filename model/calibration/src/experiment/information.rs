@@ -144,17 +144,22 @@ impl<'a> Projected<'a> {
     /// Returns the product of the projected parts of two columns.
     pub(super) fn covariance(&self, a: usize, b: usize) -> f64 {
         let Some(factor) = &self.factor else { return 0.0 };
-        let side = |c: usize| {
-            DVector::from_fn(self.nuisance.len(), |i, _| {
-                self.information[(self.nuisance[i], c)] * self.scale[i]
-            })
-        };
-        self.information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+        let fitted = self.fitted(factor, a);
+        let product = if a == b { fitted.norm_squared() } else { fitted.dot(&self.fitted(factor, b)) };
+        self.information[(a, b)] - product
     }
 
     /// Returns the squared length, in standard deviations, of the projected part of a column.
     pub(super) fn squares(&self, column: usize) -> f64 {
         self.covariance(column, column).max(0.0)
+    }
+
+    /// Returns the coordinates of the part of a column that the nuisance absorbs.
+    fn fitted(&self, factor: &Cholesky<f64, Dyn>, column: usize) -> DVector<f64> {
+        let side = |i: usize| self.information[(self.nuisance[i], column)] * self.scale[i];
+        let mut side = DVector::from_fn(self.nuisance.len(), |i, _| side(i));
+        factor.l_dirty().solve_lower_triangular_mut(&mut side);
+        side
     }
 }
 

@@ -39,6 +39,7 @@ pub use rig::RigLimits;
 pub use runs::{PlannedRun, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
+use crate::evidence::MOUNT_SCALE;
 use crate::model::{Model, Noise};
 use crate::model_file::ModelFile;
 use crate::report::Report;
@@ -280,7 +281,12 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnos
     for candidate in paper_protocol(rig, f64::INFINITY) {
         rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
     }
-    Ok((model.in_frame(frame), known.model.noise()))
+    let mut noise = known.model.noise();
+    if noise.mount_scale <= 0.0 {
+        // Not estimated, but planned mounts differ as those of other rigs.
+        noise.mount_scale = MOUNT_SCALE;
+    }
+    Ok((model.in_frame(frame), noise))
 }
 
 /// Returns the runs in the order in which they are made: early ones first, each contact mounted
@@ -378,15 +384,28 @@ fn rounded(probability: f64) -> f64 {
 mod tests {
     use std::collections::BTreeSet;
 
-    use super::*;
-    use crate::calibrate;
-    use crate::test_session::session;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
 
-    fn known(seed: u64) -> (crate::Calibration, ModelFile, Vec<PlateauRow>) {
-        let rows = session(seed);
-        let found = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
-        let file = ModelFile::new(&found.augmented);
-        (found, file, rows)
+    use super::*;
+    use crate::effects::effect_named;
+    use crate::model::Term;
+    use crate::table::Frame;
+    use crate::test_session::{session, session_with};
+    use crate::{Answer, SessionPlan, TrialOutcome, Verdict, calibrate};
+
+    /// Content of a folder of `calibrate`.
+    struct Calibrated {
+        report: Report,
+        model: ModelFile,
+        rows: Vec<PlateauRow>,
+        vocabulary: Vocabulary,
+    }
+
+    fn calibrated(rows: Vec<PlateauRow>, vocabulary: &Vocabulary) -> Calibrated {
+        let found = calibrate(&rows, vocabulary, 1).unwrap();
+        let model = ModelFile::new(&found.augmented);
+        Calibrated { report: found.report, model, rows, vocabulary: vocabulary.clone() }
     }
 
     /// Returns whether a heavier run of the same mount precedes each run with descending loads.
@@ -426,15 +445,20 @@ mod tests {
         assert_eq!(planned(&[&down]).len(), 2);
     }
 
+    fn proposed(calibrated: &Calibrated, rig: &RigLimits, minutes: f64) -> Proposal {
+        let Calibrated { report, model, rows, vocabulary } = calibrated;
+        propose(Known { report, model, rows, vocabulary, name: "d" }, rig, minutes).unwrap()
+    }
+
+    fn outlook<'a>(proposal: &'a Proposal, effect: &str) -> Option<&'a QuestionOutlook> {
+        proposal.questions.iter().find(|q| q.between[0].starts_with(effect))
+    }
+
     #[test]
     fn longer_plans_answer_more_questions() {
-        let (found, model, rows) = known(1);
-        let vocabulary = Vocabulary::built_in();
-        let known =
-            Known { report: &found.report, model: &model, rows: &rows, vocabulary: &vocabulary, name: "d" };
+        let calibrated = calibrated(session(1), &Vocabulary::built_in());
         let rig = RigLimits::default();
-        let proposal = |minutes| propose(known, &rig, minutes).unwrap();
-        let (short, long) = (proposal(9.0), proposal(60.0));
+        let (short, long) = (proposed(&calibrated, &rig, 9.0), proposed(&calibrated, &rig, 60.0));
         for (proposal, minutes) in [(&short, 9.0), (&long, 60.0)] {
             assert!(proposal.minutes <= minutes + 1e-9 && !proposal.runs.is_empty(), "{proposal:?}");
             assert!(proposal.runs.iter().all(|run| !run.asks.is_empty()));
@@ -444,17 +468,105 @@ mod tests {
         assert!(sum(&long) >= sum(&short), "{:?} {:?}", short.questions, long.questions);
         let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
         assert!(sum(&long) > repeated, "{:?}", long.questions);
-        assert_eq!(propose(known, &rig, 60.0).unwrap(), long);
-        // A dwell that is constant in a session is confounded with the specimen.
-        let dwells =
-            |runs: &[PlannedRun]| runs.iter().map(|run| run.dwell_s.to_bits()).collect::<BTreeSet<_>>();
-        let is_asked = |p: &Proposal| {
-            p.questions.iter().any(|q| q.between[0] == "dwell_relaxation" && q.resolved_probability > 0.5)
-        };
-        for proposal in [&short, &long].into_iter().filter(|p| is_asked(p)) {
-            assert!(dwells(&proposal.runs).len() > 1, "{proposal:?}");
-        }
+        assert_eq!(proposed(&calibrated, &rig, 60.0), long);
+        // A dwell that is constant in a session is confounded with the switch.
+        let dwells: BTreeSet<_> = short.runs.iter().map(|run| run.dwell_s.to_bits()).collect();
+        assert!(outlook(&short, "dwell_relaxation").is_some_and(|q| q.resolved_probability > 0.9));
+        assert!(dwells.len() > 1, "{short:?}");
+        let Calibrated { report, model, rows, vocabulary } = &calibrated;
+        let known = Known { report, model, rows, vocabulary, name: "d" };
         let nothing = propose(known, &rig, 1.0).unwrap_err().to_string();
         assert!(nothing.contains("give more --minutes"), "{nothing}");
+        let foreign = propose(Known { rows: &rows[1..], ..known }, &rig, 60.0).unwrap_err();
+        assert_eq!(foreign, ExperimentError::Mismatch("d".to_owned()));
+    }
+
+    /// On bare silicone, drag of the rig and adhesion are the same. Runs on pins separate them, and
+    /// the rig gives the predicted answers.
+    #[test]
+    fn planned_runs_separate_drag_and_adhesion() {
+        for id in ["guide_drag", "adhesion"] {
+            let truth = Term::Named(effect_named(id).unwrap());
+            let mut rows = session_with(1, &[(truth.clone(), &[0.4])]);
+            rows.retain(|row| row.pins.is_empty());
+            let calibrated = calibrated(rows, &Vocabulary::built_in());
+            assert_eq!(calibrated.report.verdict, Verdict::Ambiguous);
+            let silicone_only = RigLimits { layouts: Vec::new(), cell_limit_n: 60.0, ..RigLimits::default() };
+            let proposal = proposed(&calibrated, &silicone_only, 60.0);
+            let is_pair = |between: &[String; 2]| *between == ["guide_drag", "adhesion"];
+            assert!(proposal.unanswerable.iter().any(|q| is_pair(&q.between)), "{proposal:?}");
+            let proposal = proposed(&calibrated, &RigLimits::default(), 60.0);
+            let question = proposal.questions.iter().find(|q| is_pair(&q.between)).unwrap();
+            assert!(question.resolved_probability > 0.95 && question.by_repeating < 0.5, "{question:?}");
+            let after = calibrate(
+                &recorded_after(&calibrated.rows, &proposal.runs, truth, &[0.4]),
+                &calibrated.vocabulary,
+                1,
+            );
+            let after = after.unwrap().report;
+            assert_eq!((after.verdict, after.effects[0].id.as_str()), (Verdict::Attributed, id));
+            let text = serde_json::to_string(&proposal).unwrap();
+            let plan: SessionPlan = serde_json::from_str(&text).unwrap();
+            for question in plan.answered(&after, 40.0).questions {
+                assert!(
+                    question.resolved_probability < 0.95 || question.answer != Answer::Open,
+                    "{question:?}"
+                );
+            }
+        }
+    }
+
+    /// Returns recorded rows and those of a plan on a rig with a term.
+    fn recorded_after(
+        rows: &[PlateauRow],
+        runs: &[PlannedRun],
+        term: Term,
+        values: &[f64],
+    ) -> Vec<PlateauRow> {
+        let mut all = rows.to_vec();
+        all.extend(rows_of(runs, &RigLimits::default(), "next"));
+        let truth = Model::baseline(Frame::new(&all)).with_term(term, values);
+        let readings = truth.predict(&truth.frame.points(&all).unwrap());
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        for (row, reading) in all.iter_mut().zip(readings).skip(rows.len()) {
+            let normal = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+            row.force_n = reading + 0.05 * normal;
+        }
+        all
+    }
+
+    /// Curves extend to heavier loads than the recorded ones, within the range of the load cell.
+    #[test]
+    fn heavier_loads_are_proposed_within_the_cell() {
+        let mut rows = session(3);
+        rows.retain(|row| row.load_mass_g < 3100.0);
+        let calibrated = calibrated(rows, &Vocabulary::built_in());
+        let rig = RigLimits { cell_limit_n: 65.0, ..RigLimits::default() };
+        let proposal = proposed(&calibrated, &rig, 30.0);
+        let question = outlook(&proposal, "friction_above_30_N").unwrap();
+        assert!(question.resolved_probability > 0.9 && question.by_repeating < 0.2, "{question:?}");
+        let planned = rows_of(&proposal.runs, &rig, "next");
+        assert!(planned.iter().any(|row| row.load_n > 40.0));
+        let (readings_n, _) = calibrated.model.predict(&planned, "model.toml").unwrap();
+        assert!(readings_n.iter().all(|reading| 1.1 * reading <= 65.0 + 0.5), "{readings_n:?}");
+    }
+
+    /// Readings from which an effect was derived do not answer whether it acts, however many.
+    #[test]
+    fn derived_effects_need_new_readings() {
+        let text = "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"steeper\"\nside = \"switch\"\n\
+                    covariate = \"speed\"\nacts_on = \"mu\"\ncombine = \"factor\"\n\
+                    formula = \"a * (speed_pct - 50)/20\"\n\
+                    parameters.a = { size = true, start = 0.1, unit = \"1\" }\n";
+        let vocabulary = Vocabulary::built_in().read(text, "steeper.toml").unwrap();
+        let mut calibrated = calibrated(session(1), &vocabulary);
+        let rig = RigLimits::default();
+        assert_eq!(calibrated.report.trials[0].outcome, TrialOutcome::Refuted);
+        assert_eq!(outlook(&proposed(&calibrated, &rig, 30.0), "steeper"), None);
+        calibrated.report.trials[0].outcome = TrialOutcome::Drawn;
+        let proposal = proposed(&calibrated, &rig, 30.0);
+        assert!(outlook(&proposal, "steeper").is_some_and(|q| q.resolved_probability > 0.9), "{proposal:?}");
+        let speeds: BTreeSet<_> = proposal.runs.iter().map(|run| run.speed_pct.to_bits()).collect();
+        assert!(speeds.len() > 1, "{proposal:?}");
     }
 }

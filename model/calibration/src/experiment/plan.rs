@@ -9,7 +9,7 @@ use super::information::Design;
 use super::question::{Question, value};
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, rows_of};
-use super::search::{Candidates, FEW_RUNS, MOST_RUNS, Search, purpose};
+use super::search::{Candidates, FEW_RUNS, LEAST, MOST_RUNS, Search, purpose};
 
 /// Shares of the time for which the paper's protocol is tried before searched runs, since an effect
 /// of previous loads shows only in a sequence of runs.
@@ -42,7 +42,8 @@ impl Planner<'_> {
         self.design.planned(&rows).map(|more| more + self.recorded)
     }
 
-    /// Returns the plan with the most expected information; none is worse than the paper's protocol.
+    /// Returns the plan with the most expected information. No plan is worse than the paper's
+    /// protocol, unless its additional time is not worth the difference.
     pub(super) fn best_plan(&self) -> Option<Vec<PlannedRun>> {
         if self.questions.is_empty() {
             return Some(Vec::new());
@@ -56,7 +57,8 @@ impl Planner<'_> {
             let other = self.protocol((share * self.minutes).min(MOST_PROTOCOL))?;
             let other = if is_very_long { other } else { self.filled(other)? };
             let information = value(self.questions, &self.after(&other)?);
-            if information > most {
+            let longer = (minutes_of(&other) - minutes_of(&best)).max(0.0);
+            if information > most + LEAST * longer {
                 (best, most) = (other, information);
             }
         }
@@ -75,7 +77,7 @@ impl Planner<'_> {
 
     /// Uses the remaining time of a plan.
     fn filled(&self, mut runs: Vec<PlannedRun>) -> Option<Vec<PlannedRun>> {
-        let left = self.minutes - runs.iter().map(|run| run.minutes).sum::<f64>();
+        let left = self.minutes - minutes_of(&runs);
         if left < LITTLE_TIME || runs.len() >= MOST_RUNS {
             return Some(runs);
         }
@@ -102,4 +104,8 @@ impl Planner<'_> {
         }
         Some(runs)
     }
+}
+
+fn minutes_of(runs: &[PlannedRun]) -> f64 {
+    runs.iter().map(|run| run.minutes).sum()
 }

@@ -366,7 +366,7 @@ impl Agenda {
     }
 
     fn asks_about(&self, id: &str) -> bool {
-        self.questions.iter().any(|q| q.between[0] == id && q.between[1] == NONE)
+        self.questions.iter().any(|question| question.between.iter().any(|other| other == id))
     }
 
     /// Returns whether an effect in question is one of this covariate.

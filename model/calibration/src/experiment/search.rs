@@ -12,7 +12,7 @@ use crate::parallel::map_each;
 use crate::table::PlateauRow;
 
 /// Information in nats per minute below which a run is not worth making.
-const LEAST: f64 = 1e-5;
+pub(super) const LEAST: f64 = 1e-5;
 /// Smallest gain of an exchange, in nats.
 const LEAST_EXCHANGE: f64 = 1e-6;
 /// Candidates per parallel task.

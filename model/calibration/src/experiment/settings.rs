@@ -57,15 +57,14 @@ fn with_extremes(
     let mut settings = usual.clone();
     for contribution in contributions {
         let Some(change) = contribution.of_effect(model, &points) else { continue };
-        let sizes: Vec<f64> =
-            change.chunks(each.max(1)).map(|at| at.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
+        let sizes: Vec<f64> = change.chunks(each.max(1)).map(|at| at.iter().sum()).collect();
         let by_size = |a: &usize, b: &usize| sizes[*a].total_cmp(&sizes[*b]);
         let extremes = [(0..sizes.len()).max_by(by_size), (0..sizes.len()).min_by(by_size)];
-        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let largest = sizes.iter().map(|size| size.abs()).fold(0.0, f64::max);
         for extreme in extremes.into_iter().flatten() {
             let differs = |i: usize| (sizes[extreme] - sizes[i]).abs() > DIFFERS * largest;
-            let is_known = settings.contains(&grid[extreme]) || settings.len() == usual.len() + MORE;
-            if !is_known && (0..usual.len()).all(differs) {
+            let is_full = settings.len() == usual.len() + MORE;
+            if !is_full && !settings.contains(&grid[extreme]) && (0..usual.len()).all(differs) {
                 settings.push(grid[extreme]);
             }
         }
@@ -74,7 +73,7 @@ fn with_extremes(
     settings
 }
 
-/// Returns one row on each contact of the rig, at a load in the middle of its range.
+/// Returns one concentric row on each contact of the rig, at a load in the middle of its range.
 fn rows_at(value: f64, set: &impl Fn(&mut PlannedRun, f64), rig: &RigLimits) -> Vec<PlateauRow> {
     let mut loads = rig.loads_g.clone();
     loads.sort_by(f64::total_cmp);

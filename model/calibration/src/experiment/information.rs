@@ -44,27 +44,20 @@ pub(super) enum Contribution {
 }
 
 impl Contribution {
-    /// Returns the change of the readings by the effect, if it is that of one.
-    pub(super) fn of_effect(&self, model: &Model, points: &[Point]) -> Option<Vec<f64>> {
+    fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
         let (with, without) = match self {
             Self::Term { term } => (model.predict(points), model.without_term(*term).predict(points)),
             Self::Added { effect, values } => {
                 (model.with_term(Term::Named(*effect), values).predict(points), model.predict(points))
             }
-            Self::NewSession { .. } | Self::AboveLoads { .. } => return None,
-        };
-        Some(with.iter().zip(&without).map(|(with, without)| with - without).collect())
-    }
-
-    fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
-        match self {
-            Self::NewSession { constant } => constants[*constant].clone(),
+            Self::NewSession { constant } => return constants[*constant].clone(),
             Self::AboveLoads { from_n, to_n } => {
                 let share = |p: &Point| CONSEQUENCE * ((p.load_n - from_n) / (to_n - from_n)).max(0.0);
-                points.iter().zip(model.friction_n(points)).map(|(p, friction)| share(p) * friction).collect()
+                let friction = model.friction_n(points);
+                return points.iter().zip(friction).map(|(p, friction)| share(p) * friction).collect();
             }
-            Self::Term { .. } | Self::Added { .. } => self.of_effect(model, points).unwrap_or_default(),
-        }
+        };
+        with.iter().zip(&without).map(|(with, without)| with - without).collect()
     }
 }
 

@@ -27,7 +27,6 @@ mod question;
 mod rig;
 mod runs;
 mod search;
-mod settings;
 mod whitening;
 
 use nalgebra::DMatrix;
@@ -54,6 +53,8 @@ pub use search::MOST_RUNS;
 
 /// Name and version of `experiment.json`.
 pub const SCHEMA: &str = "pinswitch.experiment/1";
+/// Purpose of a run with a heavier load before descending ones.
+const LIFT: &str = "loads descend from here";
 /// Probability below which a question is not answered by all runs of a rig together.
 const ANSWERABLE: f64 = 0.5;
 
@@ -204,11 +205,11 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });
     }
-    let candidates =
-        Candidates::new(all, &design, &recorded, &questions, rig, minutes).ok_or_else(foreign)?;
-    let everything = &candidates.everything;
+    let candidates = Candidates::new(all, &design, rig, minutes, agenda.asks_of_previous_loads());
+    let candidates = candidates.ok_or_else(foreign)?;
+    let everything = candidates.information.iter().fold(recorded.clone(), |sum, one| sum + one);
     let (open, closed): (Vec<Question>, Vec<Question>) =
-        questions.into_iter().partition(|q| q.answer_probability(everything) >= ANSWERABLE);
+        questions.into_iter().partition(|q| q.answer_probability(&everything) >= ANSWERABLE);
     let planner = Planner {
         candidates: &candidates,
         design: &design,
@@ -232,8 +233,7 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
         })
         .collect();
     sort_by_number(&mut outlooks, |q| -q.resolved_probability);
-    let unanswerable =
-        closed.iter().map(|q| unanswerable(q, &recorded, everything, &agenda, minutes)).collect();
+    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything, &agenda, minutes)).collect();
     Ok(Proposal {
         schema: SCHEMA,
         minutes: (100.0 * spent).round() / 100.0,
@@ -296,7 +296,13 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     let place = |run: &PlannedRun| {
         contacts.iter().position(|(substrate, pins)| *substrate == run.substrate && *pins == run.pins)
     };
-    let mut ordered: Vec<(&Candidate, String)> = chosen.collect();
+    let mut ordered: Vec<(Candidate, String)> =
+        chosen.map(|(candidate, asks)| (candidate.clone(), asks)).collect();
+    for place in 0..ordered.len() {
+        if let Some(lift) = ordered[place].0.lift(ordered.iter().map(|(other, _)| other)) {
+            ordered.push((lift, LIFT.to_owned()));
+        }
+    }
     ordered.sort_by(|(a, _), (b, _)| {
         let down = |c: &Candidate| c.run.sweep == Sweep::Down;
         let rising = a.run.load_mass_g.total_cmp(&b.run.load_mass_g);
@@ -311,8 +317,7 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     });
     let mut runs: Vec<PlannedRun> = Vec::new();
     let mut before: Option<&Candidate> = None;
-    let lifted = with_lifts(ordered);
-    for (candidate, asks) in &lifted {
+    for (candidate, asks) in &ordered {
         let is_mounted = before.is_some_and(|b| b.shares_mount(candidate));
         let mount = runs.last().map_or(0, |run| run.mount) + usize::from(!is_mounted);
         let is_loaded = is_mounted && before.is_some_and(|b| b.run.load_mass_g == candidate.run.load_mass_g);
@@ -327,28 +332,8 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     runs
 }
 
-/// Purpose of a run with a heavier load before descending ones.
-const LIFT: &str = "loads descend from here";
-
-/// Inserts a heavier run before the first descending load of each mount, if there is none.
-fn with_lifts(ordered: Vec<(&Candidate, String)>) -> Vec<(Candidate, String)> {
-    let mut all: Vec<(Candidate, String)> = Vec::new();
-    for (candidate, asks) in ordered {
-        let is_heavier = |(other, _): &(Candidate, String)| other.run.load_mass_g > candidate.run.load_mass_g;
-        let in_mount = all.iter().rev().take_while(|(other, _)| other.shares_mount(candidate));
-        if let Some(run) = candidate.lift()
-            && !in_mount.into_iter().any(is_heavier)
-        {
-            all.push((Candidate { run, down_from_g: None, ..candidate.clone() }, LIFT.to_owned()));
-        }
-        all.push((candidate.clone(), asks));
-    }
-    all
-}
-
 fn unanswerable(
     question: &Question,
-    recorded: &DMatrix<f64>,
     everything: &DMatrix<f64>,
     agenda: &Agenda,
     minutes: f64,
@@ -363,16 +348,9 @@ fn unanswerable(
     } else {
         String::new()
     };
-    let without_structure = question.without_fitted(&agenda.structures, recorded);
-    let why = if without_structure.answer_probability(everything) >= ANSWERABLE {
-        format!(
-            "the model contains unattributed structure in its place, which no run separates from {first}; calibrate the next table with the effect to test it"
-        )
-    } else {
-        format!(
-            "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
-        )
-    };
+    let why = format!(
+        "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
+    );
     Unanswerable { between: question.between.clone(), why }
 }
 
@@ -389,6 +367,7 @@ mod tests {
 
     use super::*;
     use crate::effects::effect_named;
+    use crate::evidence::Session;
     use crate::model::Term;
     use crate::table::Frame;
     use crate::test_session::{session, session_with};
@@ -421,14 +400,13 @@ mod tests {
     fn loads_descend_from_a_heavier_one() {
         let rig = RigLimits::default();
         let run = PlannedRun { minutes: 0.0, ..paper_runs(&rig, 30.0).remove(0) };
-        let of = |load_mass_g, sweep, down_from_g| Candidate {
+        let of = |load_mass_g, sweep, after_g| Candidate {
             run: PlannedRun { load_mass_g, sweep, ..run.clone() },
             late: false,
-            after_g: None,
-            down_from_g,
+            after_g,
         };
-        let (up, down) = (of(2005.0, Sweep::Up, None), of(2005.0, Sweep::Down, Some(3007.2)));
-        let heavier = of(4007.8, Sweep::Up, None);
+        let (up, down) = (of(2005.0, Sweep::Up, 1003.2), of(2005.0, Sweep::Down, 3007.2));
+        let heavier = of(4007.8, Sweep::Up, 3007.2);
         let planned = |chosen: &[&Candidate]| {
             let runs = in_order(chosen.iter().map(|c| (*c, "asked".to_owned())), &rig);
             assert!(descends_from_somewhere(&runs), "{runs:?}");
@@ -547,7 +525,7 @@ mod tests {
         assert!(question.resolved_probability > 0.9 && question.by_repeating < 0.2, "{question:?}");
         let planned = rows_of(&proposal.runs, &rig, "next");
         assert!(planned.iter().any(|row| row.load_n > 40.0));
-        let (readings_n, _) = calibrated.model.predict(&planned, "model.toml").unwrap();
+        let (readings_n, _) = calibrated.model.predict(&planned, Session::New, "model.toml").unwrap();
         assert!(readings_n.iter().all(|reading| 1.1 * reading <= 65.0 + 0.5), "{readings_n:?}");
     }
 

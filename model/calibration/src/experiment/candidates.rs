@@ -176,9 +176,9 @@ pub(super) fn alone(
     rows
 }
 
-/// Returns the paper's protocol, up to a duration in minutes: contact by contact, ascending loads,
+/// Returns the paper's protocol from its beginning, up to a duration in minutes: contact by contact, ascending loads,
 /// speed following load, one dwell.
-pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
+pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
     let (mut runs, mut spent): (Vec<PlannedRun>, f64) = (Vec::new(), 0.0);
     let mut loads = rig.loads_g.clone();
     loads.sort_by(f64::total_cmp);
@@ -222,7 +222,7 @@ mod tests {
             let all = candidates(model, &rig, &Agenda::default());
             all.iter().map(|c| c.run.load_mass_g).fold(0.0, f64::max)
         };
-        let rows: Vec<PlateauRow> = paper_protocol(&rig, f64::INFINITY)
+        let rows: Vec<PlateauRow> = paper_runs(&rig, f64::INFINITY)
             .iter()
             .filter(|run| run.pins.is_empty())
             .flat_map(|run| super::super::runs::rows_of(std::slice::from_ref(run), &rig, ""))

@@ -44,7 +44,8 @@ use crate::model_file::ModelFile;
 use crate::report::Report;
 use crate::session_plan::NONE;
 use crate::table::{PlateauRow, Sweep};
-use candidates::{Candidate, candidates, paper_protocol};
+pub use candidates::paper_runs;
+use candidates::{Candidate, candidates};
 use information::Design;
 use plan::Planner;
 use question::{Agenda, Question};
@@ -222,7 +223,7 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
     let with_runs = planner.after(&runs).ok_or_else(foreign)?;
     // Addition avoids the negative zero of an empty sum.
     let spent = 0.0 + runs.iter().map(|run| run.minutes).sum::<f64>();
-    let repeated = planner.after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
+    let repeated = planner.after(&paper_runs(rig, spent)).ok_or_else(foreign)?;
     let mut outlooks: Vec<QuestionOutlook> = open
         .iter()
         .map(|q| QuestionOutlook {
@@ -264,11 +265,6 @@ fn usual_wrap_deg(rows: &[PlateauRow]) -> f64 {
     longest.map_or(published::WRAP_ANGLE_DEG, |chunk| chunk[0])
 }
 
-/// Returns the paper's protocol from its beginning, up to a duration in minutes.
-pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
-    paper_protocol(rig, minutes)
-}
-
 /// Returns the model of a calibration with the contacts of the rig, and its noise.
 fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnostic> {
     let model = known.model.model(known.name)?;
@@ -278,7 +274,7 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnos
     let all = model.vocabulary.with(own).unwrap_or_else(|_| model.vocabulary.clone());
     let model = model.among(&all);
     let mut frame = model.frame.clone();
-    for candidate in paper_protocol(rig, f64::INFINITY) {
+    for candidate in paper_runs(rig, f64::INFINITY) {
         rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
     }
     let mut noise = known.model.noise();

@@ -1,8 +1,7 @@
 //! Candidate runs of a rig: contact, load, speed, dwell, repetitions, and, if a question depends on
 //! them, the order of the loads and the time in the session.
 
-use rand::SeedableRng;
-use rand::seq::index::sample;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::question::Agenda;
@@ -114,9 +113,15 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     }
     let columns = model.values().len() + agenda.contributions.len();
     let most = (MOST_ELEMENTS / columns / columns).min(MOST_CANDIDATES).min(all.len());
-    let mut chosen = sample(&mut ChaCha8Rng::seed_from_u64(SEED), all.len(), most).into_vec();
-    chosen.sort_unstable();
-    within_cell_only(chosen.into_iter().map(|i| all[i].clone()).collect(), model, rig)
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    for place in 0..most {
+        let other = random.random_range(place..all.len());
+        order.swap(place, other);
+    }
+    order.truncate(most);
+    order.sort_unstable();
+    within_cell_only(order.into_iter().map(|i| all[i].clone()).collect(), model, rig)
 }
 
 /// Returns each candidate with each of some values.

@@ -42,8 +42,8 @@ impl Planner<'_> {
         self.design.planned(&rows).map(|more| more + self.recorded)
     }
 
-    /// Returns the plan with the most expected information. No plan is worse than the paper's
-    /// protocol, unless its additional time is not worth the difference.
+    /// Returns the plan with the most expected information. A longer one is better only if its
+    /// additional time is worth the difference.
     pub(super) fn best_plan(&self) -> Option<Vec<PlannedRun>> {
         if self.questions.is_empty() {
             return Some(Vec::new());

@@ -15,7 +15,7 @@ use crate::confirmation::TrialOutcome;
 use crate::effects::{Covariate, Effect, Side};
 use crate::evidence::STRUCTURE_PROBABILITY;
 use crate::model::{Model, Term};
-use crate::report::{LimitReport, Report};
+use crate::report::{Fate, LimitReport, Report};
 use crate::session_plan::{COVERED, FRICTION_ABOVE, NONE};
 
 /// Probability from which an effect is reported.
@@ -24,6 +24,8 @@ const REPORTED: f64 = 0.9;
 const NO_RIVAL: f64 = 0.05;
 /// Probability of an effect that only new readings can confirm.
 const UNDECIDED: f64 = 0.5;
+/// Probability from which the data suggest an effect: twice the prior one.
+const SUSPECTED: f64 = 0.1;
 /// Smallest probability of an explanation that is not excluded, and largest one of an explanation
 /// that is not established.
 const OPEN: (f64, f64) = (0.01, 0.9);
@@ -217,25 +219,15 @@ impl Agenda {
                 agenda.contributions.push(Contribution::NewSession { constant });
             }
         }
-        let fitted: Vec<usize> = (0..agenda.own + agenda.contributions.len()).collect();
+        // Unnamed structure of the best hypothesis may be the effect in question.
+        let is_structure = |t: &usize| matches!(model.terms[*t], Term::Structure(_));
+        let structures: Vec<usize> =
+            (0..model.terms.len()).filter(is_structure).map(|t| model.term_offset(t)).collect();
+        let all = 0..agenda.own + agenda.contributions.len();
+        let fitted: Vec<usize> = all.filter(|column| !structures.contains(column)).collect();
         agenda.add_pairs(report, model, &fitted);
         agenda.add_unconfirmed(report, model, &fitted);
-        let probability = |id: &str| {
-            let known = report.candidates.iter().find(|candidate| candidate.id == id);
-            known.map_or(f64::NAN, |candidate| candidate.probability)
-        };
-        for limit in report.limits.iter().filter(|limit| !limit.excluded) {
-            let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
-            let values = typical(effect, limit, model);
-            agenda.add_effect(effect, values, probability(&limit.id), fitted.clone());
-        }
-        for invisible in &report.invisible {
-            let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
-            // Effects of the rig that readings cannot contain do not change the curve of a part.
-            if invisible.possible.is_some() || effect.description().side == Side::Switch {
-                agenda.add_effect(effect, start(effect, model), probability(&invisible.id), fitted.clone());
-            }
-        }
+        agenda.add_candidates(report, model, &fitted);
         for own in model.vocabulary.own().map(|own| own.definition()) {
             if agenda.effects.iter().any(|effect| effect.id() == own.id) {
                 agenda.formulas.push(own.id.clone());
@@ -247,8 +239,7 @@ impl Agenda {
         if highest_n <= COVERED * to_n {
             let column = agenda.add(Contribution::AboveLoads { from_n: highest_n, to_n });
             let id = format!("{FRICTION_ABOVE}{highest_n:.0}_N");
-            let question = Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted);
-            agenda.questions.push(question);
+            agenda.questions.push(Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted));
         }
         agenda
     }
@@ -258,7 +249,7 @@ impl Agenda {
         let mut questions = self.questions.clone();
         for question in &mut questions {
             if let [first, second] = &mut question.cases[..] {
-                // Size of the rival that is closest to the effect in the model.
+                // Size of the second effect that is closest to the first.
                 let is_fitted = |column: &usize| *column != second.column;
                 let base: Vec<usize> = first.nuisance.iter().copied().filter(is_fitted).collect();
                 let left = Projected::new(recorded, &base);
@@ -276,28 +267,13 @@ impl Agenda {
         self.own + self.contributions.len() - 1
     }
 
-    /// Adds each pair of an effect in the model and a rival.
+    /// Adds each pair of a reported effect and a rival.
     fn add_pairs(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
-        for found in report.effects.iter().filter(|found| !found.rivals.is_empty()) {
-            let Some((term, named)) = term_of(model, &found.id) else { continue };
-            let of_term = model.term_offset(term)..model.term_offset(term + 1);
-            let column = self.add(Contribution::Term { term });
-            self.effects.push(named);
+        for found in &report.effects {
             for rival in &found.rivals {
-                let Some(effect) = model.vocabulary.named(&rival.id) else { continue };
-                let Some(values) = start(effect, model) else { continue };
-                let other = self.add(Contribution::Added { effect, values });
-                self.effects.push(effect);
-                let others = fitted.iter().copied().filter(|i| !of_term.contains(i));
-                let with_other = others.chain([other]).collect();
-                let cases = [(column, with_other), (other, fitted.to_vec())].map(|(column, nuisance)| Case {
-                    column,
-                    size: 1.0,
-                    nuisance,
-                    recorded: 0.0,
-                });
-                let ids = [found.id.as_str(), effect.id()];
-                self.questions.push(Question::pair(ids, [found.probability, rival.probability], cases));
+                let effects = [&found.id, &rival.id].map(|id| model.vocabulary.named(id));
+                let [Some(effect), Some(other)] = effects else { continue };
+                self.add_pair([effect, other], [found.probability, rival.probability], model, fitted);
             }
         }
     }
@@ -306,52 +282,112 @@ impl Agenda {
     /// only new readings confirm.
     fn add_unconfirmed(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
         let forms = report.effects.iter().filter_map(|found| found.form.as_ref());
-        let forms = forms.map(|form| (form.id.as_str(), UNDECIDED, true));
+        let forms = forms.map(|form| (form.id.as_str(), UNDECIDED));
         let trials = report.trials.iter().filter_map(|trial| match trial.outcome {
-            TrialOutcome::Drawn => Some((trial.id.as_str(), UNDECIDED, true)),
-            TrialOutcome::Suggested => Some((trial.id.as_str(), UNDECIDED, false)),
-            TrialOutcome::Open => Some((trial.id.as_str(), trial.probability.unwrap_or(UNDECIDED), false)),
+            TrialOutcome::Drawn | TrialOutcome::Suggested => Some((trial.id.as_str(), UNDECIDED)),
+            TrialOutcome::Open => Some((trial.id.as_str(), trial.probability.unwrap_or(UNDECIDED))),
             TrialOutcome::Confirmed | TrialOutcome::Refuted => None,
         });
-        for (id, probability, was_drawn) in forms.chain(trials) {
+        for (id, probability) in forms.chain(trials) {
             let Some(effect) = model.vocabulary.named(id) else { continue };
-            if self.asks_about(id) {
-                continue;
+            self.add_presence(effect, None, probability, model, fitted);
+            if let Some(question) = self.questions.last_mut().filter(|q| q.between[0] == id) {
+                question.size = None;
             }
-            let term = term_of(model, id).map(|(term, _)| term);
-            let contribution = match term {
-                Some(term) => Contribution::Term { term },
-                None => match start(effect, model) {
-                    Some(values) => Contribution::Added { effect, values },
-                    None => continue,
-                },
-            };
-            // The effect in the model, or the structure from which it was derived, would absorb it.
-            let stands_for_it =
-                |t: &usize| Some(*t) == term || was_drawn && matches!(model.terms[*t], Term::Structure(_));
-            let constants = |t: usize| model.term_offset(t)..model.term_offset(t + 1);
-            let absorbing: Vec<usize> =
-                (0..model.terms.len()).filter(stands_for_it).flat_map(constants).collect();
-            let nuisance = fitted.iter().copied().filter(|i| !absorbing.contains(i)).collect();
-            let column = self.add(contribution);
-            self.effects.push(effect);
-            self.questions.push(Question::presence(id, probability, None, column, nuisance));
         }
     }
 
-    /// Adds the question whether an effect acts with these constants.
-    fn add_effect(
+    /// Adds effects that are neither reported nor excluded, and pairs of them that the data suggest
+    /// and that are similar.
+    fn add_candidates(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
+        let is_reported = |id: &str| report.effects.iter().any(|found| found.id == id);
+        let open = report.candidates.iter().filter(|c| c.fate != Fate::Excluded && !is_reported(&c.id));
+        let mut suspects: Vec<(&'static dyn Effect, f64)> = Vec::new();
+        for candidate in open {
+            let Some(effect) = model.vocabulary.named(&candidate.id) else { continue };
+            if self.asks_about(effect.id()) {
+                continue;
+            }
+            let limit = report.limits.iter().find(|limit| limit.id == candidate.id);
+            let hidden = report.invisible.iter().find(|hidden| hidden.id == candidate.id);
+            let is_suspected = candidate.probability >= SUSPECTED;
+            // Effects of the rig that readings cannot contain do not change the curve of a part.
+            let is_relevant = is_suspected
+                || limit.is_some()
+                || effect.description().side == Side::Switch
+                || hidden.is_some_and(|hidden| hidden.possible.is_some());
+            if is_relevant {
+                self.add_presence(effect, limit, candidate.probability, model, fitted);
+            }
+            if is_suspected {
+                suspects.push((effect, candidate.probability));
+            }
+        }
+        for (i, (effect, probability)) in suspects.iter().enumerate() {
+            for (other, of_other) in &suspects[i + 1..] {
+                let are_similar =
+                    |a: &dyn Effect, b: &dyn Effect| a.description().confused_with.contains(&b.id());
+                if are_similar(*effect, *other) || are_similar(*other, *effect) {
+                    self.add_pair([*effect, *other], [*probability, *of_other], model, fitted);
+                }
+            }
+        }
+    }
+
+    /// Adds the question whether the first or the second effect acts.
+    fn add_pair(
+        &mut self,
+        effects: [&'static dyn Effect; 2],
+        probabilities: [f64; 2],
+        model: &Model,
+        fitted: &[usize],
+    ) {
+        let columns = effects.map(|effect| self.column_of(effect, None, model));
+        let [Some(first), Some(second)] = columns else { return };
+        let others = effects.map(|effect| without_term_of(effect, model, fitted));
+        let case = |column: usize, nuisance: &[usize], other: usize| Case {
+            column,
+            size: 1.0,
+            nuisance: nuisance.iter().copied().chain([other]).collect(),
+            recorded: 0.0,
+        };
+        let cases = [case(first, &others[0], second), case(second, &others[1], first)];
+        self.questions.push(Question::pair(effects.map(Effect::id), probabilities, cases));
+    }
+
+    /// Adds the question whether an effect acts, at the size of a limit, in the model, or typical.
+    fn add_presence(
         &mut self,
         effect: &'static dyn Effect,
-        values: Option<Vec<f64>>,
+        limit: Option<&LimitReport>,
         probability: f64,
-        nuisance: Vec<usize>,
+        model: &Model,
+        fitted: &[usize],
     ) {
-        let Some(values) = values.filter(|_| !self.asks_about(effect.id())) else { return };
-        let size = values.first().map_or(1.0, |size| size.abs());
-        let column = self.add(Contribution::Added { effect, values });
+        let column = self.column_of(effect, limit, model).filter(|_| !self.asks_about(effect.id()));
+        let Some(column) = column else { return };
+        let size = match &self.contributions[column - self.own] {
+            Contribution::Added { values, .. } => values.first().copied(),
+            _ => term_of(model, effect).map(|term| model.value(model.term_offset(term)).0),
+        };
+        let nuisance = without_term_of(effect, model, fitted);
+        let size = Some(size.unwrap_or(1.0).abs());
+        self.questions.push(Question::presence(effect.id(), probability, size, column, nuisance));
+    }
+
+    /// Returns the column of the contribution of an effect, and adds it if it is new.
+    fn column_of(
+        &mut self,
+        effect: &'static dyn Effect,
+        limit: Option<&LimitReport>,
+        model: &Model,
+    ) -> Option<usize> {
+        let contribution = match term_of(model, effect) {
+            Some(term) => Contribution::Term { term },
+            None => Contribution::Added { effect, values: typical(effect, limit, model)? },
+        };
         self.effects.push(effect);
-        self.questions.push(Question::presence(effect.id(), probability, Some(size), column, nuisance));
+        Some(self.add(contribution))
     }
 
     fn asks_about(&self, id: &str) -> bool {
@@ -380,27 +416,27 @@ impl Agenda {
     }
 }
 
-/// Returns the index and the effect of a named term.
-fn term_of(model: &Model, id: &str) -> Option<(usize, &'static dyn Effect)> {
-    model.terms.iter().enumerate().find_map(|(index, term)| match term {
-        Term::Named(effect) if effect.id() == id => Some((index, *effect)),
-        _ => None,
-    })
+/// Returns the index of the term of an effect.
+fn term_of(model: &Model, effect: &dyn Effect) -> Option<usize> {
+    model.terms.iter().position(|term| matches!(term, Term::Named(_)) && term.id() == effect.id())
 }
 
-/// Returns the start values of an effect.
-fn start(effect: &dyn Effect, model: &Model) -> Option<Vec<f64>> {
-    effect.starts(&model.frame).into_iter().next()
+/// Returns the columns without those of the constants of an effect.
+fn without_term_of(effect: &dyn Effect, model: &Model, columns: &[usize]) -> Vec<usize> {
+    let own = term_of(model, effect).map_or(0..0, |t| model.term_offset(t)..model.term_offset(t + 1));
+    columns.iter().copied().filter(|column| !own.contains(column)).collect()
 }
 
-/// Returns the constants of an effect that a report does not exclude: the typical size, with the
-/// shape for which it was reported.
-fn typical(effect: &dyn Effect, limit: &LimitReport, model: &Model) -> Option<Vec<f64>> {
-    let mut values = start(effect, model)?;
-    for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
-        *value = limit.shape.get(parameter.name).copied().unwrap_or(*value);
+/// Returns the start values of an effect; with a limit, its typical size and the shape for which it
+/// was reported.
+fn typical(effect: &dyn Effect, limit: Option<&LimitReport>, model: &Model) -> Option<Vec<f64>> {
+    let mut values = effect.starts(&model.frame).into_iter().next()?;
+    if let Some(limit) = limit {
+        for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
+            *value = limit.shape.get(parameter.name).copied().unwrap_or(*value);
+        }
+        values.iter_mut().take(1).for_each(|size| *size = limit.typical);
     }
-    values.iter_mut().take(1).for_each(|size| *size = limit.typical);
     Some(values)
 }
 

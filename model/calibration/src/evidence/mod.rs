@@ -38,9 +38,9 @@ use crate::table::{Condition, Frame, PlateauRow, Point};
 pub const CONSEQUENCE: f64 = 0.05;
 
 /// Prior probability of unnamed structure.
-const STRUCTURE_PROBABILITY: f64 = 0.2;
+pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
 /// Scales of the half-normal priors of mount and specimen effects, relative.
-const MOUNT_SCALE: f64 = 0.015;
+pub(crate) const MOUNT_SCALE: f64 = 0.015;
 const SPECIMEN_SCALE: f64 = 0.06;
 /// Median load in newtons of the paper's rig, to which typical forces refer.
 const TYPICAL_LOAD_N: f64 = 25.0;

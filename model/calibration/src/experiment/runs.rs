@@ -37,6 +37,23 @@ pub struct PlannedRun {
 }
 
 impl PlannedRun {
+    /// Returns a run with one repetition at the middle speed and the paper's dwell.
+    pub(super) fn usual(substrate: Substrate, pins: &[usize], load_mass_g: f64, rig: &RigLimits) -> Self {
+        Self {
+            substrate,
+            pins: pins.to_vec(),
+            sweep: Sweep::Up,
+            load_mass_g,
+            speed_pct: rig.speeds_pct[0].midpoint(rig.speeds_pct[1]),
+            dwell_s: published::DWELL_S.clamp(rig.dwells_s[0], rig.dwells_s[1]),
+            repetitions: [0, 1],
+            mount: 1,
+            minutes: 0.0,
+            asks: String::new(),
+            wrap_angle_deg: rig.other_wrap_deg(),
+        }
+    }
+
     /// Returns the duration of the repetitions in minutes.
     pub(super) fn recording_minutes(&self, rig: &RigLimits) -> f64 {
         f64::from(self.repetitions[0] + self.repetitions[1]) * (rig.seconds_per_repetition + self.dwell_s)

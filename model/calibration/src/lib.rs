@@ -67,7 +67,7 @@ mod confirmation;
 mod discovery;
 pub mod effects;
 pub mod evidence;
-//pub mod experiment;
+pub mod experiment;
 mod extrapolation;
 mod least_squares;
 mod median;

@@ -37,7 +37,7 @@ use crate::table::{Condition, Frame, PlateauRow, Point};
 pub const CONSEQUENCE: f64 = 0.05;
 
 /// Prior probability of unnamed structure.
-const STRUCTURE_PROBABILITY: f64 = 0.2;
+pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
 /// Scales of the half-normal priors of mount and specimen effects, relative.
 const MOUNT_SCALE: f64 = 0.015;
 const SPECIMEN_SCALE: f64 = 0.06;

@@ -8,7 +8,7 @@ use super::rig::RigLimits;
 use super::runs::{PlannedRun, append};
 use super::settings::{dwells_s, speeds_pct};
 use crate::effects::{Covariate, Stage};
-use crate::inference::{Model, Term};
+use crate::model::{Model, Term};
 use crate::table::{PlateauRow, Sweep};
 
 /// Numbers of eccentric and concentric repetitions to choose from.
@@ -76,7 +76,7 @@ impl Candidate {
 
 /// Returns all candidates within the range of the load cell.
 pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<Candidate> {
-    let sweeps: &[Sweep] = if agenda.asks_along(Covariate::Sweep) || agenda.asks_of_the_load_before() {
+    let sweeps: &[Sweep] = if agenda.asks_along(Covariate::Sweep) || agenda.asks_of_previous_loads() {
         &[Sweep::Up, Sweep::Down]
     } else {
         &[Sweep::Up]
@@ -87,8 +87,8 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     } else {
         rig.loads_g.clone()
     };
-    let speeds = speeds_pct(model, rig, agenda);
-    let dwells = dwells_s(model, rig, agenda);
+    let speeds = speeds_pct(model, rig, &agenda.contributions);
+    let dwells = dwells_s(model, rig, &agenda.contributions);
     let mut all = Vec::new();
     for (substrate, pins) in rig.contacts() {
         for load_mass_g in &loads_g {
@@ -111,7 +111,7 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
                                     wrap_angle_deg: rig.other_wrap_deg(),
                                 };
                                 let after_g = agenda
-                                    .asks_of_the_load_before()
+                                    .asks_of_previous_loads()
                                     .then(|| neighbour_g(&loads_g, *load_mass_g, *sweep));
                                 all.push(Candidate { run, late: *late, after_g, down_from_g: None });
                             }
@@ -140,7 +140,7 @@ pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -
     };
     // A saturated load cell reads less than the tension.
     let pulled = model.without_terms(is_of_the_cell);
-    let Ok(points) = model.frame.points(rows).ok_or(()) else { return Vec::new() };
+    let Some(points) = model.frame.points(rows) else { return Vec::new() };
     let bears = |force_n: f64| force_n * 1.1 <= rig.cell_limit_n;
     pulled
         .predict(&points)

@@ -1,11 +1,24 @@
-//! The next experiment: the runs that answer most open questions of a calibration per minute of
-//! work.
+//! The next experiment: the runs with the most information about the open questions of a calibration
+//! per minute of work.
 //!
-//! A question is a pair of explanations that the data did not separate, or an effect that is
-//! neither attributed nor excluded. For any runs, the expected deviance is known: the difference of
-//! both explanations after the other one is fitted, in units of all components of the noise
-//! (T-optimality, Atkinson and Fedorov 1975; Ds-optimality for the size of an effect).
-//! `model/doc/next-experiment.md` describes the choice of runs and its performance.
+//! A question has two explanations of the readings: two effects, or an effect and none. Let `d` be
+//! the difference of their predictions for some runs, in standard deviations of the noise with all its
+//! random effects, without the part that the constants of the fitted explanation absorb. Its squared
+//! length is that of T-optimality (Atkinson and Fedorov 1975):
+//!
+//! ```text
+//! S  = min_b (x_a - X b)' V^-1 (x_a - X b)  =  x_a'V^-1 x_a - x_a'V^-1 X (X'V^-1 X)^-1 X'V^-1 x_a
+//! dS = S(recorded and planned rows) - S(recorded rows)
+//! ln odds(a, after)  =  ln odds(a, reported) + N(dS/2, dS)        if a is correct
+//! I  = H(p) - E[H(p, after)]                                      in nats, at most H(p)
+//! ```
+//!
+//! `x_a` is the contribution of explanation `a` to the readings, `X` are the columns of the constants
+//! and of the other explanation, `V` is the covariance of the readings, `p` the reported probability
+//! of an explanation and `H` its entropy. A plan maximizes the sum of the expected information `I`
+//! (Lindley 1956) over all questions within the available time. A question is answered when the log
+//! odds reach those of a reported effect. `model/doc/next-experiment.md` describes the choice of
+//! runs.
 
 mod candidates;
 mod information;
@@ -15,7 +28,7 @@ mod rig;
 mod runs;
 mod search;
 mod settings;
-mod shortlist;
+mod whitening;
 
 use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
@@ -26,17 +39,17 @@ pub use rig::RigLimits;
 pub use runs::{PlannedRun, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
-use crate::inference::{Levels, Model, Noise};
+use crate::model::{Model, Noise};
 use crate::model_file::ModelFile;
 use crate::report::Report;
+use crate::session_plan::NONE;
 use crate::table::{PlateauRow, Sweep};
 use candidates::{Candidate, candidates, paper_protocol};
-use information::{Design, Trace};
+use information::Design;
 use plan::Planner;
 use question::{Agenda, Question};
-pub(crate) use question::{COVERED, FRICTION_ABOVE, NONE};
+use search::Candidates;
 pub use search::MOST_RUNS;
-use shortlist::Shortlist;
 
 /// Name and version of `experiment.json`.
 pub const SCHEMA: &str = "pinswitch.experiment/1";
@@ -57,8 +70,6 @@ pub struct QuestionOutlook {
     pub by_repeating: f64,
 }
 
-/// Probability above which the recorded data count as an answer.
-const KNOWN: f64 = 0.99;
 /// A question that no experiment on the rig answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unanswerable {
@@ -169,32 +180,21 @@ pub struct Known<'a> {
 /// # Errors
 /// [`ExperimentError`] if report, model and rows are not of one calibration, or no run is within
 /// the load cell's range or the time.
-pub fn propose(
-    known: Known<'_>,
-    rig: &RigLimits,
-    minutes: f64,
-    levels: Levels,
-) -> Result<Proposal, ExperimentError> {
+pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Proposal, ExperimentError> {
     let foreign = || ExperimentError::Mismatch(known.name.to_owned());
     // The wrap is that of the table, unless the rig's file gives another.
     let rig = &rig.clone().wrapped_by(usual_wrap_deg(known.rows));
     let (model, noise) = extended(known, rig)?;
-    let of_rows = |traces: &[Trace]| {
-        let design = Design { model: &model, noise, traces };
-        design.of(known.rows).map(|data| data + design.priors())
-    };
     if known.report.data.rows != known.rows.len()
-        || !is_told_in(known.report, &known.model.model(known.name)?)
+        || !is_of_one_calibration(known.report, &known.model.model(known.name)?)
     {
         return Err(foreign());
     }
-    of_rows(&[]).ok_or_else(foreign)?;
     let highest_n = known.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
-    let agenda = Agenda::of(known.report, &model, highest_n, levels, |traces| {
-        of_rows(traces).unwrap_or_else(|| DMatrix::zeros(0, 0))
-    });
-    let design = Design { model: &model, noise, traces: &agenda.traces };
-    let data = agenda.before(of_rows(&agenda.traces).ok_or_else(foreign)?);
+    let agenda = Agenda::new(known.report, &model, highest_n);
+    let design = Design { model: &model, noise, contributions: &agenda.contributions };
+    let recorded = design.recorded(known.rows).ok_or_else(foreign)?;
+    let questions = agenda.questions(&recorded);
     let all = candidates(&model, rig, &agenda);
     if all.is_empty() {
         return Err(ExperimentError::CellTooSmall { limit_n: rig.cell_limit_n });
@@ -203,28 +203,25 @@ pub fn propose(
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });
     }
-    let Shortlist { candidates: all, information: single, everything } =
-        Shortlist::of(all, &design, &data, &agenda.questions, rig, minutes).ok_or_else(foreign)?;
+    let candidates =
+        Candidates::new(all, &design, &recorded, &questions, rig, minutes).ok_or_else(foreign)?;
+    let everything = &candidates.everything;
     let (open, closed): (Vec<Question>, Vec<Question>) =
-        agenda.questions.iter().cloned().partition(|q| q.probability(&everything) >= ANSWERABLE);
-    // More of the same runs will not show what the recorded data should show and did not.
-    let open: Vec<Question> = open.into_iter().filter(|q| q.probability(&data) < KNOWN).collect();
+        questions.into_iter().partition(|q| q.answer_probability(everything) >= ANSWERABLE);
     let planner = Planner {
-        candidates: &all,
-        information: &single,
+        candidates: &candidates,
         design: &design,
-        data: &data,
+        recorded: &recorded,
         questions: &open,
         rig,
         minutes,
     };
     let runs = planner.best_plan().ok_or_else(foreign)?;
-    let after = |runs: &[PlannedRun]| planner.after(runs);
-    let with_runs = after(&runs).ok_or_else(foreign)?;
+    let with_runs = planner.after(&runs).ok_or_else(foreign)?;
     // Addition avoids the negative zero of an empty sum.
     let spent = 0.0 + runs.iter().map(|run| run.minutes).sum::<f64>();
-    let repeated = after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
-    let mut questions: Vec<QuestionOutlook> = open
+    let repeated = planner.after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
+    let mut outlooks: Vec<QuestionOutlook> = open
         .iter()
         .map(|q| QuestionOutlook {
             between: q.between.clone(),
@@ -233,22 +230,28 @@ pub fn propose(
             by_repeating: rounded(q.answer_probability(&repeated)),
         })
         .collect();
-    sort_by_number(&mut questions, |q| -q.resolved_probability);
+    sort_by_number(&mut outlooks, |q| -q.resolved_probability);
     let unanswerable =
-        closed.iter().map(|q| unanswerable(q, &everything, &agenda, &model, minutes)).collect();
-    Ok(Proposal { schema: SCHEMA, minutes: (100.0 * spent).round() / 100.0, questions, unanswerable, runs })
+        closed.iter().map(|q| unanswerable(q, &recorded, everything, &agenda, minutes)).collect();
+    Ok(Proposal {
+        schema: SCHEMA,
+        minutes: (100.0 * spent).round() / 100.0,
+        questions: outlooks,
+        unanswerable,
+        runs,
+    })
 }
 
 /// Returns whether a report contains the constants of a model, which shows that both are of one
 /// calibration.
-fn is_told_in(report: &Report, model: &Model) -> bool {
-    let told = &report.augmented.parameters;
-    let is_one = |((name, _), value): ((String, &str), f64)| {
-        told.get(&name).is_none_or(|known| (known.value - value).abs() <= 1e-6 * value.abs().max(1e-9))
+fn is_of_one_calibration(report: &Report, model: &Model) -> bool {
+    let reported = &report.augmented.parameters;
+    let agrees = |((name, _), value): ((String, &str), f64)| {
+        reported.get(&name).is_none_or(|known| (known.value - value).abs() <= 1e-6 * value.abs().max(1e-9))
     };
     let names = model.names();
-    told.keys().all(|key| names.iter().any(|(name, _)| name == key))
-        && names.into_iter().zip(model.values()).all(is_one)
+    reported.keys().all(|key| names.iter().any(|(name, _)| name == key))
+        && names.into_iter().zip(model.values()).all(agrees)
 }
 
 /// Returns the wrap angle in degrees of most rows.
@@ -269,8 +272,8 @@ pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
 fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnostic> {
     let model = known.model.model(known.name)?;
     // User-defined effects of the model are in its vocabulary already.
-    let beside = known.vocabulary.retaining(|own| model.vocabulary.named(&own.definition().id).is_none());
-    let own: Vec<_> = beside.own().cloned().collect();
+    let others = known.vocabulary.retaining(|own| model.vocabulary.named(&own.definition().id).is_none());
+    let own: Vec<_> = others.own().cloned().collect();
     let all = model.vocabulary.with(own).unwrap_or_else(|_| model.vocabulary.clone());
     let model = model.among(&all);
     let mut frame = model.frame.clone();
@@ -339,30 +342,31 @@ fn with_lifts(ordered: Vec<(&Candidate, String)>) -> Vec<(Candidate, String)> {
 
 fn unanswerable(
     question: &Question,
+    recorded: &DMatrix<f64>,
     everything: &DMatrix<f64>,
     agenda: &Agenda,
-    model: &Model,
     minutes: f64,
 ) -> Unanswerable {
-    let [of, or] = &question.between;
-    let most = 100.0 * question.probability(everything);
-    let does = if or == NONE { format!("identify {of}") } else { format!("separate {of} from {or}") };
+    let [first, second] = &question.between;
+    let most = 100.0 * question.answer_probability(everything);
+    let does =
+        if second == NONE { format!("identify {first}") } else { format!("separate {first} from {second}") };
     // An effect of time may appear later than a short session lasts.
-    let within = if agenda.lies_along(of, Covariate::Time) {
+    let within = if agenda.is_along(first, Covariate::Time) {
         format!("; no run is later than {minutes:.0} minutes into its session, so more --minutes may help")
     } else {
         String::new()
     };
-    let shapes = agenda.shapes_of(model);
-    if most < 100.0 * ANSWERABLE && question.beside_no(&shapes).probability(everything) >= ANSWERABLE {
-        let why = format!(
-            "the model contains unattributed structure in its place, which no run separates from {of}; calibrate the next table with the effect to test it"
-        );
-        return Unanswerable { between: question.between.clone(), why };
-    }
-    let why = format!(
-        "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
-    );
+    let without_structure = question.without_fitted(&agenda.structures, recorded);
+    let why = if without_structure.answer_probability(everything) >= ANSWERABLE {
+        format!(
+            "the model contains unattributed structure in its place, which no run separates from {first}; calibrate the next table with the effect to test it"
+        )
+    } else {
+        format!(
+            "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
+        )
+    };
     Unanswerable { between: question.between.clone(), why }
 }
 
@@ -380,9 +384,8 @@ mod tests {
 
     fn known(seed: u64) -> (crate::Calibration, ModelFile, Vec<PlateauRow>) {
         let rows = session(seed);
-        let found = calibrate(&rows, Levels::default()).unwrap();
-        let s = &found.selection;
-        let file = ModelFile::new(&s.augmented, &found.data, s.noise);
+        let found = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+        let file = ModelFile::new(&found.augmented);
         (found, file, rows)
     }
 
@@ -430,7 +433,7 @@ mod tests {
         let known =
             Known { report: &found.report, model: &model, rows: &rows, vocabulary: &vocabulary, name: "d" };
         let rig = RigLimits::default();
-        let proposal = |minutes| propose(known, &rig, minutes, Levels::default()).unwrap();
+        let proposal = |minutes| propose(known, &rig, minutes).unwrap();
         let (short, long) = (proposal(9.0), proposal(60.0));
         for (proposal, minutes) in [(&short, 9.0), (&long, 60.0)] {
             assert!(proposal.minutes <= minutes + 1e-9 && !proposal.runs.is_empty(), "{proposal:?}");
@@ -441,7 +444,7 @@ mod tests {
         assert!(sum(&long) >= sum(&short), "{:?} {:?}", short.questions, long.questions);
         let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
         assert!(sum(&long) > repeated, "{:?}", long.questions);
-        assert_eq!(propose(known, &rig, 60.0, Levels::default()).unwrap(), long);
+        assert_eq!(propose(known, &rig, 60.0).unwrap(), long);
         // A dwell that is constant in a session is confounded with the specimen.
         let dwells =
             |runs: &[PlannedRun]| runs.iter().map(|run| run.dwell_s.to_bits()).collect::<BTreeSet<_>>();
@@ -451,7 +454,7 @@ mod tests {
         for proposal in [&short, &long].into_iter().filter(|p| is_asked(p)) {
             assert!(dwells(&proposal.runs).len() > 1, "{proposal:?}");
         }
-        let nothing = propose(known, &rig, 1.0, Levels::default()).unwrap_err().to_string();
+        let nothing = propose(known, &rig, 1.0).unwrap_err().to_string();
         assert!(nothing.contains("give more --minutes"), "{nothing}");
     }
 }

@@ -48,12 +48,7 @@ impl Condition {
         Self::with_wrap_rad(substrate, pins, wrap_rad(substrate, wrap_angle_deg), device)
     }
 
-    fn with_wrap_rad(
-        substrate: Option<Substrate>,
-        pins: &[usize],
-        wrap: f64,
-        device: Option<usize>,
-    ) -> Self {
+    fn with_wrap_rad(substrate: Option<Substrate>, pins: &[usize], wrap: f64, device: Option<usize>) -> Self {
         let n = pins.len() as f64;
         let ploughing = Self::ploughing_sum(pins, wrap);
         Self {
@@ -98,11 +93,6 @@ impl Condition {
             let degrees = (self.wrap_rad.to_degrees() * 1e4).round() / 1e4;
             format!("{pins} at {degrees} deg").trim_start().to_owned()
         }
-    }
-
-    /// Returns whether the tendon touches silicone or an unknown material.
-    pub(crate) fn is_silicone_or_plain(&self) -> bool {
-        self.substrate != Some(Substrate::Abs)
     }
 
     /// Returns whether pins touch the tendon (on `abs` or in a device).
@@ -456,18 +446,12 @@ pub(crate) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
 /// Groups rows by a key, in order of first appearance. Returns the group of each row, and the
 /// number of groups.
 pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K) -> (Vec<usize>, usize) {
-    groups_of(rows.len(), |i| key(&rows[i]))
-}
-
-/// Groups the numbers below `count` by a key.
-pub(crate) fn groups_of<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> (Vec<usize>, usize) {
     let mut seen = BTreeMap::new();
-    let of = (0..count)
-        .map(|i| {
-            let next = seen.len();
-            *seen.entry(key(i)).or_insert(next)
-        })
-        .collect();
+    let number = |row: &PlateauRow| {
+        let next = seen.len();
+        *seen.entry(key(row)).or_insert(next)
+    };
+    let of = rows.iter().map(number).collect();
     (of, seen.len())
 }
 

@@ -14,7 +14,7 @@ use crate::scales::{ScalePoint, ScaleProblem};
 /// Degrees of freedom of Student's t distribution of the repetition noise.
 pub(crate) const DEGREES_OF_FREEDOM: f64 = 5.0;
 /// Range of the weights of the scale mixture.
-const WEIGHT_RANGE: (f64, f64) = (1e-3, 1.2);
+const WEIGHT_RANGE: (f64, f64) = (1e-12, 1.2);
 /// Prior standard deviation of a size while its mode is searched, in typical sizes: practically
 /// free, since a prior that is tight about a bad start keeps a fit there.
 const FREE_SIZE_SD: f64 = 300.0;

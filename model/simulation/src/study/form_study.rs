@@ -169,10 +169,10 @@ mod tests {
     use crate::study::cases::study_cases;
 
     #[test]
-    fn step_form_is_confirmed_and_refuted() {
+    fn memory_form_is_confirmed_and_refuted() {
         let case = study_cases()
             .into_iter()
-            .find(|c| c.name == "step of the reading in mid-session" && c.protocol == Protocol::Randomised)
+            .find(|c| c.name == "memory of the load before" && c.protocol == Protocol::Randomised)
             .unwrap();
         let outcome = run_form_case(&case, 2).unwrap();
         assert!(outcome.is_covariate_right && outcome.is_shape_right == Some(true), "{outcome:?}");

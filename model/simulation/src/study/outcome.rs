@@ -24,8 +24,8 @@ pub struct CaseOutcome {
     pub named: Vec<String>,
     /// Root mean square errors on noise-free rows, baseline and augmented, in newtons.
     pub fresh_n: [f64; 2],
-    /// Root mean square errors on the next session of the same rig, baseline and augmented, in
-    /// newtons.
+    /// Root mean square errors on the next session of the same rig without gross errors, baseline and
+    /// augmented, in newtons.
     pub next_n: [f64; 2],
     /// Expected error of a new session over the actual error on the next one; absent if the report
     /// has no expected error.
@@ -65,7 +65,10 @@ pub fn run_case(case: &Case, seed: u64) -> Option<CaseOutcome> {
     let rows = PlateauTable::read(PlateauTable::write(&simulated.rows).as_bytes(), "simulated").ok()?.rows;
     let calibration = calibrate(&rows, &Vocabulary::built_in(), seed).ok()?;
     let Calibration { report, baseline, augmented, .. } = &calibration;
-    let next = next_session(&plan).rows;
+    // The expected error excludes gross errors.
+    let mut sound = plan.clone();
+    sound.noise.outlier_share = 0.0;
+    let next = next_session(&sound).rows;
     let next_n = [error_n(baseline, &next)?, error_n(augmented, &next)?];
     let answer = CalibratorAnswer::new(report);
     let (exact, consistent) = answer.grade(case, &plan);

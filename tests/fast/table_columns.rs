@@ -66,7 +66,7 @@ fn readings_are_unique_in_a_session() {
     assert_eq!(of("tuesday").unwrap().rows.len(), 2 * rows.len());
     let error = of("monday").unwrap_err().to_string();
     let line = rows.len() + 2;
-    assert!(error.starts_with(&format!("t.csv:{line}: repetition = 1: ")), "{error}");
+    assert!(error.starts_with(&format!("t.csv:{line}:45: repetition = 1: ")), "{error}");
     assert!(error.contains("repeats the series, direction and time of line 2"), "{error}");
 }
 

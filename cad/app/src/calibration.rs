@@ -44,7 +44,7 @@ pub(crate) struct CheckedModel {
 
 /// Checks the text of a model before a design uses it; `file` is its name in errors.
 pub(crate) fn check_model(text: &str, file: &str) -> CheckedModel {
-    let trouble = ModelFile::parse(text, file).err().map(|e| Diagnostic::from_error(e).into());
+    let trouble = ModelFile::parse(text, file).err().map(Into::into);
     CheckedModel { is_model: trouble.is_none(), trouble }
 }
 
@@ -61,10 +61,10 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
             .with_location(Location::file(file))
             .with_help(format!("run `pinswitch calibrate {file}`")));
     }
-    let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from_error)?;
-    table.require_baseline(file).map_err(Diagnostic::from_error)?;
+    let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from)?;
+    table.require_baseline(file).map_err(Diagnostic::from)?;
     let calibration = calibrate(&table.rows, &Vocabulary::built_in(), SEED)
-        .map_err(|e| Diagnostic::from_error(e).or_in_file(file))?;
+        .map_err(|e| Diagnostic::from(e).or_in_file(file))?;
     let report = &calibration.report;
     let model = ModelFile::new(&calibration.augmented);
     let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
@@ -77,7 +77,7 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
         adequate: report.adequate,
         effects,
         not_excluded,
-        model: model.to_text().map_err(Diagnostic::from_error)?,
+        model: model.to_text()?,
     })
 }
 

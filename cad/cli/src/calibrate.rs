@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     spinner.end();
     let mut calibration =
-        calibration.map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(&name)))?;
+        calibration.map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(&name)))?;
     calibration.report.ignored_columns = table.ignored_columns();
     if !sessions.is_empty() {
         let last = session_report(&arguments.tables, &plans, &table, &calibration);
@@ -165,7 +165,7 @@ fn earlier_sessions(
         let paths = &paths[..count];
         let (table, name) = joined(paths)?;
         let calibration = calibrate(&table.rows, vocabulary, SEED)
-            .map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(&name)))?;
+            .map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(&name)))?;
         Ok(session_report(paths, plans, &table, &calibration))
     };
     (1..=paths.len()).map(until).collect()

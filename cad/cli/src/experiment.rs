@@ -116,7 +116,7 @@ fn located(error: ExperimentError, arguments: &Arguments) -> Diagnostic {
         ExperimentError::CellTooSmall { .. } => arguments.rig.as_ref().map(|rig| rig.display().to_string()),
         _ => None,
     };
-    let diagnostic = Diagnostic::from_error(error);
+    let diagnostic = Diagnostic::from(error);
     match file {
         Some(file) => diagnostic.or_in_file(&file),
         None => diagnostic,

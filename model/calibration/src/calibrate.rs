@@ -132,15 +132,33 @@ pub fn calibrate(
         return Err(CalibrationError::TooFewRows { found: rows.len(), needed });
     }
     check_finite_effects(&baseline, rows)?;
-    let unfit = |error| CalibrationError::Unfit(error);
+    let unfit = CalibrationError::Unfit;
     // Effects that were derived from these readings are tested on the others only.
     let unseen: Vec<_> =
         vocabulary.own().filter_map(|own| trial_of_unseen(own.definition(), rows, vocabulary, seed)).collect();
     let is_barred = |id: &str| {
         unseen.iter().any(|trial| trial.id == id && trial.outcome != TrialOutcome::Confirmed)
     };
-    let searched = vocabulary.retaining(|own| !is_barred(&own.definition().id));
-    let evidence = Evidence::new(rows, &searched, seed).map_err(unfit)?;
+    let mut searched = vocabulary.retaining(|own| !is_barred(&own.definition().id));
+    let mut evidence = Evidence::new(rows, &searched, seed).map_err(unfit)?;
+    let trials = trials(vocabulary, &evidence, unseen);
+    // A derived effect is attributed only if these readings confirm it.
+    let is_refuted = |id: &str| {
+        let of = trials.iter().find(|trial| trial.id == id && trial.was_drawn);
+        of.is_some_and(|trial| trial.outcome != TrialOutcome::Confirmed)
+    };
+    let is_reported = |name: &str| {
+        evidence.posterior().reported.iter().any(|reported| evidence.name(reported.member) == name)
+    };
+    let refuted: Vec<String> = searched
+        .own()
+        .map(|own| own.definition().id.clone())
+        .filter(|id| is_refuted(id) && is_reported(id))
+        .collect();
+    if !refuted.is_empty() {
+        searched = searched.retaining(|own| !refuted.contains(&own.definition().id));
+        evidence = Evidence::new(rows, &searched, seed).map_err(unfit)?;
+    }
     let not_finite = || {
         CalibrationError::Unfit(
             Diagnostic::new("the friction model is not finite on this table")
@@ -151,7 +169,6 @@ pub fn calibrate(
     let baseline = evidence.fitted(&posterior.baseline).ok_or_else(not_finite)?;
     let best = posterior.window.first().ok_or_else(not_finite)?;
     let mut augmented = evidence.fitted(best).ok_or_else(not_finite)?;
-    let trials = trials(vocabulary, &evidence, unseen);
     let findings = Findings { rows, evidence: &evidence, baseline: &baseline, augmented: &augmented, trials };
     let mut report = report(findings).ok_or_else(not_finite)?;
     let form = draw_form(rows, &evidence, &searched, seed);
@@ -166,4 +183,107 @@ pub fn calibrate(
         }
     }
     Ok(Calibration { report, evidence, baseline, augmented, form })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Term;
+    use crate::report::Verdict;
+    use crate::test_session::{session, session_with};
+
+    fn calibrated(rows: &[PlateauRow]) -> Report {
+        calibrate(rows, &Vocabulary::built_in(), 1).unwrap().report
+    }
+
+    fn offset() -> Term {
+        Term::Named(crate::effects::effect_named("load_cell_offset").unwrap())
+    }
+
+    /// Returns a session of that name with an offset of the load cell.
+    fn day(name: &str, seed: u64, offset_n: f64) -> Vec<PlateauRow> {
+        let mut rows = session_with(seed, &[(offset(), &[offset_n])]);
+        rows.iter_mut().for_each(|r| r.labels.session = name.to_owned());
+        rows
+    }
+
+    /// An offset that one of two sessions has is not an offset of both.
+    #[test]
+    fn sessions_with_different_offsets_are_not_noise() {
+        let report = calibrated(&[day("a", 1, 0.6), day("b", 2, -0.6)].concat());
+        assert_eq!(report.verdict, Verdict::Unattributed, "{:?}", report.effects);
+        assert!(["session", "time"].contains(&report.effects[0].covariate.as_str()));
+        let same = calibrated(&[day("a", 1, 0.6), day("b", 2, 0.6)].concat());
+        assert_eq!(same.verdict, Verdict::Attributed);
+    }
+
+    #[test]
+    fn derived_effects_need_confirmation() {
+        let rows = session_with(3, &[(offset(), &[0.5])]);
+        let file = |start: f64, drawn_from: &str| {
+            format!(
+                "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"rig\"\ncovariate = \"position\"\n\
+                 acts_on = \"reading\"\ncombine = \"add\"\nformula = \"a*exp(-((stroke - 0.5)/0.1)^2)\"\n{drawn_from}\
+                 parameters.a = {{ size = true, start = {start}, unit = \"N\" }}\n"
+            )
+        };
+        let vocabulary = |text: String| Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+        let plain = vocabulary(file(0.5, ""));
+        let bump = Term::Named(plain.named("mine").unwrap());
+        let rows_with = |seed, size: f64| session_with(seed, &[(bump.clone(), &[size])]);
+        let report = |rows: &[PlateauRow], vocabulary| {
+            calibrate(rows, &vocabulary, 1).unwrap().report
+        };
+        let first = rows_with(4, 0.5);
+        let named = |report: &Report| report.effects.iter().any(|e| e.id == "mine");
+        assert!(named(&report(&first, plain.clone())), "a hypothesis is found");
+        let told: Vec<String> = crate::table::readings_by_session(&first).into_values().collect();
+        let drawn = || vocabulary(file(0.5, &format!("drawn_from = [\"{}\"]\n", told[0])));
+        // The readings that it was derived from, and parts of them.
+        for rows in [&first[..], &first[20..], &first[..first.len() / 2]] {
+            let report = report(rows, drawn());
+            assert!(
+                !named(&report) && report.trials[0].outcome == TrialOutcome::Drawn,
+                "{:?}",
+                report.trials
+            );
+        }
+        // Other readings confirm it, or refute it where it is absent or has the opposite sign.
+        let again = report(&rows_with(5, 0.5), drawn());
+        assert!(named(&again) && again.trials[0].outcome == TrialOutcome::Confirmed, "{:?}", again.trials);
+        for other in [rows, rows_with(6, -0.5)] {
+            let report = report(&other, drawn());
+            assert!(
+                !named(&report) && report.trials[0].outcome == TrialOutcome::Refuted,
+                "{:?}",
+                report.trials
+            );
+        }
+    }
+
+    /// Start of the clock: time of day, and seconds since 1970.
+    #[test]
+    fn the_clock_start_is_irrelevant() {
+        let drift = Term::Named(crate::effects::effect_named("thermal_drift").unwrap());
+        let rows = session_with(7, &[(drift, &[0.8])]);
+        let size = |begins_s: f64| {
+            let mut rows = rows.clone();
+            rows.iter_mut().for_each(|r| r.time_s += begins_s);
+            let report = calibrated(&rows);
+            let [effect] = report.effects.as_slice() else { panic!("{begins_s}: {:?}", report.verdict) };
+            assert_eq!(effect.id, "thermal_drift", "{begins_s}");
+            effect.parameters["k"].value
+        };
+        let plain = size(0.0);
+        for begins_s in [32_400.0, -40_000.0, 1.7e9] {
+            assert!((size(begins_s) / plain - 1.0).abs() < 0.02, "{begins_s}: {} {plain}", size(begins_s));
+        }
+    }
+
+    #[test]
+    fn too_few_rows_are_refused() {
+        let rows = session(1);
+        let error = calibrate(&rows[..5], &Vocabulary::built_in(), 1).unwrap_err();
+        assert_eq!(error, CalibrationError::TooFewRows { found: 5, needed: 2 + ROWS_FOR_NOISE });
+    }
 }

@@ -178,7 +178,7 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
     };
     let outcome = if probability >= PRESENT && is_alike {
         if definition.drawn_from.is_some() { TrialOutcome::Confirmed } else { TrialOutcome::Suggested }
-    } else if !reaches && probability < 1.0 - PRESENT {
+    } else if !reaches && (probability < 1.0 - PRESENT || !is_alike) {
         TrialOutcome::Refuted
     } else {
         TrialOutcome::Open

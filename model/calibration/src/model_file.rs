@@ -6,7 +6,7 @@ use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::{Abscissa, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
-use crate::evidence::Fitted;
+use crate::evidence::{Fitted, Session};
 use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
@@ -53,6 +53,7 @@ struct Constant {
 ///
 /// ```
 /// use pinswitch_calibration::effects::Vocabulary;
+/// use pinswitch_calibration::evidence::Session;
 /// use pinswitch_calibration::table::PlateauTable;
 /// use pinswitch_calibration::{ModelFile, calibrate};
 ///
@@ -74,7 +75,7 @@ struct Constant {
 /// let text = ModelFile::new(&found.augmented).to_text()?;
 ///
 /// let model = ModelFile::parse(&text, "model.toml")?;
-/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], "model.toml")?;
+/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], Session::Fitted, "model.toml")?;
 /// assert!((predicted_n[0] - table.rows[0].force_n).abs() < 5.0 * sd_n[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -257,15 +258,25 @@ impl ModelFile {
     }
 
     /// Predicts readings and their standard deviations in newtons. A condition that was not
-    /// calibrated is predicted by the layout law, with a larger standard deviation.
+    /// calibrated is predicted by the layout law, with a larger standard deviation. Drifts have their
+    /// mean over the fitted session in a new one, which may drift differently.
     ///
     /// # Errors
     /// As [`ModelFile::model`], and if a prediction is not finite.
-    pub fn predict(&self, rows: &[PlateauRow], file: &str) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+    pub fn predict(
+        &self,
+        rows: &[PlateauRow],
+        session: Session,
+        file: &str,
+    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
         let (mut frame, model) = (self.frame.clone(), self.model(file)?);
         rows.iter().for_each(|row| frame.extend(row));
         let model = model.in_frame(frame);
-        let points = model.frame.points_of_new_session(rows).unwrap_or_default();
+        let points = match session {
+            Session::New => model.frame.points_of_new_session(rows),
+            Session::Fitted => model.frame.points(rows),
+        };
+        let points = points.unwrap_or_default();
         let predicted = model.predict(&points);
         let mut sd = prediction_sd_n(&model, &points, &self.covariance(), self.noise);
         let (low, high) = self.frame.load_range_n;
@@ -336,7 +347,7 @@ mod tests {
     }
 
     fn sd_n(text: &str) -> f64 {
-        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], "model.toml").unwrap().1[0]
+        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], Session::New, "model.toml").unwrap().1[0]
     }
 
     #[test]

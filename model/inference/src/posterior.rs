@@ -57,7 +57,7 @@ pub struct Posterior {
     pub baseline: Fit,
     /// Reported members.
     pub reported: Vec<Reported>,
-    /// Effects that are not in the best hypothesis and change some reading that it does not absorb.
+    /// Effects that are not reported and change some reading that the best hypothesis does not absorb.
     pub candidates: Vec<Candidate>,
     /// Series and readings with gross errors under the best hypothesis.
     pub outliers: Outliers,
@@ -91,7 +91,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let total = log_sum_exp(&window.iter().map(|fit| fit.score).collect::<Vec<f64>>());
     let probabilities: Vec<f64> = window.iter().map(|fit| libm::exp(fit.score - total)).collect();
     let reported = reported(&window, &probabilities);
-    let candidates = candidates(problem, best);
+    let candidates = candidates(problem, best, &reported);
     let outliers = Outliers::new(problem, best);
     let error_of =
         |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
@@ -111,7 +111,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     })
 }
 
-/// An effect that is not in the best hypothesis.
+/// An effect that is not reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Index of the effect.
@@ -131,9 +131,16 @@ impl Candidate {
     }
 }
 
-/// Returns the effects that could be added to a fit, in the order of the space.
-fn candidates(problem: &Problem, fit: &Fit) -> Vec<Candidate> {
-    let additions = Scores::new(problem, fit).map_or_else(Vec::new, |scores| scores.additions(None));
+/// Returns the effects that could be added to a fit, and those of its members that are not reported, in
+/// the order of the space.
+fn candidates(problem: &Problem, fit: &Fit, reported: &[Reported]) -> Vec<Candidate> {
+    let Some(scores) = Scores::new(problem, fit) else { return Vec::new() };
+    let mut additions = scores.additions(None);
+    let is_reported = |member: &Member| reported.iter().any(|r| r.member == *member);
+    for member in fit.hypothesis.members().filter(|member| !is_reported(member)) {
+        let alone = scores.additions(Some(member)).into_iter();
+        additions.extend(alone.filter(|addition| addition.element.member == member));
+    }
     let mut candidates: BTreeMap<usize, Candidate> = BTreeMap::new();
     for addition in additions {
         let (Member::Effect(effect), Some(size)) = (addition.element.member, addition.size) else { continue };

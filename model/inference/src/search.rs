@@ -253,10 +253,7 @@ impl<'a> Search<'a> {
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
         for member in best.hypothesis.members() {
             let reduced = best.hypothesis.without(member);
-            let known = self.fits.get(&reduced).map(|fit| fit.score);
-            if known.is_some_and(|score| score > best.score - self.selectivity.loss) {
-                self.fit_again(&reduced, &best);
-            }
+            self.fit_again(&reduced, &best);
         }
     }
 }

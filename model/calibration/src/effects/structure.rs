@@ -31,6 +31,8 @@ pub enum Channel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Abscissa {
+    /// Time over session, 0..1; a later session has the mean of the values.
+    Time,
     /// Position over stroke, 0..1.
     Position,
     /// Logarithm of the repetition.
@@ -59,6 +61,7 @@ impl Abscissa {
     /// Returns its value at a point.
     pub fn value(self, p: &Point) -> f64 {
         match self {
+            Self::Time => p.time,
             Self::Position => p.position,
             Self::LogRepetition => libm::log(p.repetition),
             Self::SeriesReadings => p.through,
@@ -254,6 +257,9 @@ impl Shape {
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
             Shape::Constant => 1.0,
+            Shape::Table { over: Abscissa::Time, value, .. } if p.is_new_session => {
+                value.iter().sum::<f64>() / value.len().max(1) as f64
+            }
             Shape::Table { over, at, value, is_factor } => {
                 let x = over.value(p);
                 if *is_factor {
@@ -417,6 +423,7 @@ fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String 
     let low = value.iter().copied().fold(f64::INFINITY, f64::min);
     let high = value.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (kind, name) = match over {
+        Abscissa::Time => ("a curve", "the session"),
         Abscissa::Position => ("a curve", "the position"),
         Abscissa::LogRepetition => ("a curve", "the repetition"),
         Abscissa::SeriesReadings => ("a curve", "the readings of a series"),

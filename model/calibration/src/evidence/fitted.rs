@@ -7,14 +7,14 @@ use super::Evidence;
 use super::forward::Channel;
 use super::priors::EffectPrior;
 use super::structure::{MEMORY_REPETITIONS, Record, Structure};
-use crate::effects::{self, Covariate, REFERENCE_LOAD_N, Shape};
+use crate::effects::{self, Abscissa, Covariate, REFERENCE_LOAD_N, Shape};
 use crate::model::{Discrepancy, Model, Noise, Spread, Term, Wandering};
 use crate::table::Point;
 
 /// Step of a shift of a shape for its finite difference.
 const SHIFT_STEP: f64 = 1e-4;
 /// Most nodes of a table.
-const MOST_NODES: usize = 48;
+const MOST_NODES: usize = 128;
 
 /// A fitted hypothesis.
 #[derive(Clone, Debug)]
@@ -137,10 +137,13 @@ impl Evidence {
             (0..).map_while(|i| coefficients.index(Coefficient::Kernel(kernel, i))).collect();
         let variance: f64 = columns.iter().map(|i| coefficients.covariance[(*i, *i)]).sum();
         let relative = variance / columns.len().max(1) as f64 / square.max(1e-300);
-        let mean = curve.iter().sum::<f64>() / curve.len().max(1) as f64;
         match structure.record {
             Record::Nothing => Vec::new(),
-            Record::Mean => vec![(of(Shape::Constant), mean, relative * square)],
+            Record::Time => {
+                let over = Abscissa::Time;
+                let (at, value) = table(&self.points, curve, |p| over.value(p), false);
+                vec![(of(Shape::Table { over, at, value, is_factor: false }), 1.0, relative)]
+            }
             Record::Latest => {
                 let latest = self.latest_row().and_then(|row| curve.get(row)).copied().unwrap_or(0.0);
                 vec![(of(Shape::Constant), latest, relative * square)]

@@ -39,7 +39,7 @@ pub const CONSEQUENCE: f64 = 0.05;
 /// Prior probability of unnamed structure.
 pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
 /// Scales of the half-normal priors of mount and specimen effects, relative.
-const MOUNT_SCALE: f64 = 0.015;
+pub(crate) const MOUNT_SCALE: f64 = 0.015;
 const SPECIMEN_SCALE: f64 = 0.06;
 /// Median load in newtons of the paper's rig, to which typical forces refer.
 const TYPICAL_LOAD_N: f64 = 25.0;

@@ -36,8 +36,8 @@ type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
 /// How a model file keeps the function of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Record {
-    /// As its mean over the fitted session.
-    Mean,
+    /// As a table over the session, of which a later session has the mean.
+    Time,
     /// As its value in the last session.
     Latest,
     /// As a table over a covariate; with true, over the levels of a factor.
@@ -157,7 +157,7 @@ impl Collector<'_> {
         channels: &[Channel],
         variants: Vec<Variant>,
     ) {
-        let is_session_bound = record == Record::Mean;
+        let is_session_bound = record == Record::Time;
         if variants.is_empty() {
             return;
         }
@@ -208,7 +208,7 @@ impl Collector<'_> {
         let share = if intervals.is_empty() { 0.0 } else { INTERVAL_PROBABILITY };
         let mut variants = self.variants(vec![basis], 1.0 - share);
         variants.extend(intervals);
-        self.add_variants("time", "time", Record::Mean, &channels, variants);
+        self.add_variants("time", "time", Record::Time, &channels, variants);
     }
 
     fn along_a_series(&mut self) {

@@ -44,27 +44,20 @@ pub(super) enum Contribution {
 }
 
 impl Contribution {
-    /// Returns the change of the readings by the effect, if it is that of one.
-    pub(super) fn of_effect(&self, model: &Model, points: &[Point]) -> Option<Vec<f64>> {
+    fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
         let (with, without) = match self {
             Self::Term { term } => (model.predict(points), model.without_term(*term).predict(points)),
             Self::Added { effect, values } => {
                 (model.with_term(Term::Named(*effect), values).predict(points), model.predict(points))
             }
-            Self::NewSession { .. } | Self::AboveLoads { .. } => return None,
-        };
-        Some(with.iter().zip(&without).map(|(with, without)| with - without).collect())
-    }
-
-    fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
-        match self {
-            Self::NewSession { constant } => constants[*constant].clone(),
+            Self::NewSession { constant } => return constants[*constant].clone(),
             Self::AboveLoads { from_n, to_n } => {
                 let share = |p: &Point| CONSEQUENCE * ((p.load_n - from_n) / (to_n - from_n)).max(0.0);
-                points.iter().zip(model.friction_n(points)).map(|(p, friction)| share(p) * friction).collect()
+                let friction = model.friction_n(points);
+                return points.iter().zip(friction).map(|(p, friction)| share(p) * friction).collect();
             }
-            Self::Term { .. } | Self::Added { .. } => self.of_effect(model, points).unwrap_or_default(),
-        }
+        };
+        with.iter().zip(&without).map(|(with, without)| with - without).collect()
     }
 }
 
@@ -144,17 +137,22 @@ impl<'a> Projected<'a> {
     /// Returns the product of the projected parts of two columns.
     pub(super) fn covariance(&self, a: usize, b: usize) -> f64 {
         let Some(factor) = &self.factor else { return 0.0 };
-        let side = |c: usize| {
-            DVector::from_fn(self.nuisance.len(), |i, _| {
-                self.information[(self.nuisance[i], c)] * self.scale[i]
-            })
-        };
-        self.information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+        let fitted = self.fitted(factor, a);
+        let product = if a == b { fitted.norm_squared() } else { fitted.dot(&self.fitted(factor, b)) };
+        self.information[(a, b)] - product
     }
 
     /// Returns the squared length, in standard deviations, of the projected part of a column.
     pub(super) fn squares(&self, column: usize) -> f64 {
         self.covariance(column, column).max(0.0)
+    }
+
+    /// Returns the coordinates of the part of a column that the nuisance absorbs.
+    fn fitted(&self, factor: &Cholesky<f64, Dyn>, column: usize) -> DVector<f64> {
+        let side = |i: usize| self.information[(self.nuisance[i], column)] * self.scale[i];
+        let mut side = DVector::from_fn(self.nuisance.len(), |i, _| side(i));
+        factor.l_dirty().solve_lower_triangular_mut(&mut side);
+        side
     }
 }
 

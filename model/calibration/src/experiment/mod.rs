@@ -27,7 +27,6 @@ mod question;
 mod rig;
 mod runs;
 mod search;
-mod settings;
 mod whitening;
 
 use nalgebra::DMatrix;
@@ -39,12 +38,14 @@ pub use rig::RigLimits;
 pub use runs::{PlannedRun, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
+use crate::evidence::MOUNT_SCALE;
 use crate::model::{Model, Noise};
 use crate::model_file::ModelFile;
 use crate::report::Report;
 use crate::session_plan::NONE;
 use crate::table::{PlateauRow, Sweep};
-use candidates::{Candidate, candidates, paper_protocol};
+pub use candidates::paper_runs;
+use candidates::{Candidate, candidates};
 use information::Design;
 use plan::Planner;
 use question::{Agenda, Question};
@@ -53,6 +54,8 @@ pub use search::MOST_RUNS;
 
 /// Name and version of `experiment.json`.
 pub const SCHEMA: &str = "pinswitch.experiment/1";
+/// Purpose of a run with a heavier load before descending ones.
+const LIFT: &str = "loads descend from here";
 /// Probability below which a question is not answered by all runs of a rig together.
 const ANSWERABLE: f64 = 0.5;
 
@@ -203,11 +206,11 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });
     }
-    let candidates =
-        Candidates::new(all, &design, &recorded, &questions, rig, minutes).ok_or_else(foreign)?;
-    let everything = &candidates.everything;
+    let candidates = Candidates::new(all, &design, rig, minutes, agenda.asks_of_previous_loads());
+    let candidates = candidates.ok_or_else(foreign)?;
+    let everything = candidates.information.iter().fold(recorded.clone(), |sum, one| sum + one);
     let (open, closed): (Vec<Question>, Vec<Question>) =
-        questions.into_iter().partition(|q| q.answer_probability(everything) >= ANSWERABLE);
+        questions.into_iter().partition(|q| q.answer_probability(&everything) >= ANSWERABLE);
     let planner = Planner {
         candidates: &candidates,
         design: &design,
@@ -220,7 +223,7 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
     let with_runs = planner.after(&runs).ok_or_else(foreign)?;
     // Addition avoids the negative zero of an empty sum.
     let spent = 0.0 + runs.iter().map(|run| run.minutes).sum::<f64>();
-    let repeated = planner.after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
+    let repeated = planner.after(&paper_runs(rig, spent)).ok_or_else(foreign)?;
     let mut outlooks: Vec<QuestionOutlook> = open
         .iter()
         .map(|q| QuestionOutlook {
@@ -231,8 +234,7 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
         })
         .collect();
     sort_by_number(&mut outlooks, |q| -q.resolved_probability);
-    let unanswerable =
-        closed.iter().map(|q| unanswerable(q, &recorded, everything, &agenda, minutes)).collect();
+    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything, &agenda, minutes)).collect();
     Ok(Proposal {
         schema: SCHEMA,
         minutes: (100.0 * spent).round() / 100.0,
@@ -263,11 +265,6 @@ fn usual_wrap_deg(rows: &[PlateauRow]) -> f64 {
     longest.map_or(published::WRAP_ANGLE_DEG, |chunk| chunk[0])
 }
 
-/// Returns the paper's protocol from its beginning, up to a duration in minutes.
-pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
-    paper_protocol(rig, minutes)
-}
-
 /// Returns the model of a calibration with the contacts of the rig, and its noise.
 fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnostic> {
     let model = known.model.model(known.name)?;
@@ -277,10 +274,15 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnos
     let all = model.vocabulary.with(own).unwrap_or_else(|_| model.vocabulary.clone());
     let model = model.among(&all);
     let mut frame = model.frame.clone();
-    for candidate in paper_protocol(rig, f64::INFINITY) {
+    for candidate in paper_runs(rig, f64::INFINITY) {
         rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
     }
-    Ok((model.in_frame(frame), known.model.noise()))
+    let mut noise = known.model.noise();
+    if noise.mount_scale <= 0.0 {
+        // Not estimated, but planned mounts differ as those of other rigs.
+        noise.mount_scale = MOUNT_SCALE;
+    }
+    Ok((model.in_frame(frame), noise))
 }
 
 /// Returns the runs in the order in which they are made: early ones first, each contact mounted
@@ -290,7 +292,13 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     let place = |run: &PlannedRun| {
         contacts.iter().position(|(substrate, pins)| *substrate == run.substrate && *pins == run.pins)
     };
-    let mut ordered: Vec<(&Candidate, String)> = chosen.collect();
+    let mut ordered: Vec<(Candidate, String)> =
+        chosen.map(|(candidate, asks)| (candidate.clone(), asks)).collect();
+    for place in 0..ordered.len() {
+        if let Some(lift) = ordered[place].0.lift(ordered.iter().map(|(other, _)| other)) {
+            ordered.push((lift, LIFT.to_owned()));
+        }
+    }
     ordered.sort_by(|(a, _), (b, _)| {
         let down = |c: &Candidate| c.run.sweep == Sweep::Down;
         let rising = a.run.load_mass_g.total_cmp(&b.run.load_mass_g);
@@ -305,8 +313,7 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     });
     let mut runs: Vec<PlannedRun> = Vec::new();
     let mut before: Option<&Candidate> = None;
-    let lifted = with_lifts(ordered);
-    for (candidate, asks) in &lifted {
+    for (candidate, asks) in &ordered {
         let is_mounted = before.is_some_and(|b| b.shares_mount(candidate));
         let mount = runs.last().map_or(0, |run| run.mount) + usize::from(!is_mounted);
         let is_loaded = is_mounted && before.is_some_and(|b| b.run.load_mass_g == candidate.run.load_mass_g);
@@ -321,28 +328,8 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     runs
 }
 
-/// Purpose of a run with a heavier load before descending ones.
-const LIFT: &str = "loads descend from here";
-
-/// Inserts a heavier run before the first descending load of each mount, if there is none.
-fn with_lifts(ordered: Vec<(&Candidate, String)>) -> Vec<(Candidate, String)> {
-    let mut all: Vec<(Candidate, String)> = Vec::new();
-    for (candidate, asks) in ordered {
-        let is_heavier = |(other, _): &(Candidate, String)| other.run.load_mass_g > candidate.run.load_mass_g;
-        let in_mount = all.iter().rev().take_while(|(other, _)| other.shares_mount(candidate));
-        if let Some(run) = candidate.lift()
-            && !in_mount.into_iter().any(is_heavier)
-        {
-            all.push((Candidate { run, down_from_g: None, ..candidate.clone() }, LIFT.to_owned()));
-        }
-        all.push((candidate.clone(), asks));
-    }
-    all
-}
-
 fn unanswerable(
     question: &Question,
-    recorded: &DMatrix<f64>,
     everything: &DMatrix<f64>,
     agenda: &Agenda,
     minutes: f64,
@@ -357,16 +344,9 @@ fn unanswerable(
     } else {
         String::new()
     };
-    let without_structure = question.without_fitted(&agenda.structures, recorded);
-    let why = if without_structure.answer_probability(everything) >= ANSWERABLE {
-        format!(
-            "the model contains unattributed structure in its place, which no run separates from {first}; calibrate the next table with the effect to test it"
-        )
-    } else {
-        format!(
-            "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
-        )
-    };
+    let why = format!(
+        "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
+    );
     Unanswerable { between: question.between.clone(), why }
 }
 
@@ -378,15 +358,29 @@ fn rounded(probability: f64) -> f64 {
 mod tests {
     use std::collections::BTreeSet;
 
-    use super::*;
-    use crate::calibrate;
-    use crate::test_session::session;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
 
-    fn known(seed: u64) -> (crate::Calibration, ModelFile, Vec<PlateauRow>) {
-        let rows = session(seed);
-        let found = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
-        let file = ModelFile::new(&found.augmented);
-        (found, file, rows)
+    use super::*;
+    use crate::effects::effect_named;
+    use crate::evidence::Session;
+    use crate::model::Term;
+    use crate::table::Frame;
+    use crate::test_session::{session, session_with};
+    use crate::{Answer, SessionPlan, TrialOutcome, Verdict, calibrate};
+
+    /// Content of a folder of `calibrate`.
+    struct Calibrated {
+        report: Report,
+        model: ModelFile,
+        rows: Vec<PlateauRow>,
+        vocabulary: Vocabulary,
+    }
+
+    fn calibrated(rows: Vec<PlateauRow>, vocabulary: &Vocabulary) -> Calibrated {
+        let found = calibrate(&rows, vocabulary, 1).unwrap();
+        let model = ModelFile::new(&found.augmented);
+        Calibrated { report: found.report, model, rows, vocabulary: vocabulary.clone() }
     }
 
     /// Returns whether a heavier run of the same mount precedes each run with descending loads.
@@ -402,14 +396,13 @@ mod tests {
     fn loads_descend_from_a_heavier_one() {
         let rig = RigLimits::default();
         let run = PlannedRun { minutes: 0.0, ..paper_runs(&rig, 30.0).remove(0) };
-        let of = |load_mass_g, sweep, down_from_g| Candidate {
+        let of = |load_mass_g, sweep, after_g| Candidate {
             run: PlannedRun { load_mass_g, sweep, ..run.clone() },
             late: false,
-            after_g: None,
-            down_from_g,
+            after_g,
         };
-        let (up, down) = (of(2005.0, Sweep::Up, None), of(2005.0, Sweep::Down, Some(3007.2)));
-        let heavier = of(4007.8, Sweep::Up, None);
+        let (up, down) = (of(2005.0, Sweep::Up, 1003.2), of(2005.0, Sweep::Down, 3007.2));
+        let heavier = of(4007.8, Sweep::Up, 3007.2);
         let planned = |chosen: &[&Candidate]| {
             let runs = in_order(chosen.iter().map(|c| (*c, "asked".to_owned())), &rig);
             assert!(descends_from_somewhere(&runs), "{runs:?}");
@@ -426,15 +419,20 @@ mod tests {
         assert_eq!(planned(&[&down]).len(), 2);
     }
 
+    fn proposed(calibrated: &Calibrated, rig: &RigLimits, minutes: f64) -> Proposal {
+        let Calibrated { report, model, rows, vocabulary } = calibrated;
+        propose(Known { report, model, rows, vocabulary, name: "d" }, rig, minutes).unwrap()
+    }
+
+    fn outlook<'a>(proposal: &'a Proposal, effect: &str) -> Option<&'a QuestionOutlook> {
+        proposal.questions.iter().find(|q| q.between[0].starts_with(effect))
+    }
+
     #[test]
     fn longer_plans_answer_more_questions() {
-        let (found, model, rows) = known(1);
-        let vocabulary = Vocabulary::built_in();
-        let known =
-            Known { report: &found.report, model: &model, rows: &rows, vocabulary: &vocabulary, name: "d" };
+        let calibrated = calibrated(session(1), &Vocabulary::built_in());
         let rig = RigLimits::default();
-        let proposal = |minutes| propose(known, &rig, minutes).unwrap();
-        let (short, long) = (proposal(9.0), proposal(60.0));
+        let (short, long) = (proposed(&calibrated, &rig, 9.0), proposed(&calibrated, &rig, 60.0));
         for (proposal, minutes) in [(&short, 9.0), (&long, 60.0)] {
             assert!(proposal.minutes <= minutes + 1e-9 && !proposal.runs.is_empty(), "{proposal:?}");
             assert!(proposal.runs.iter().all(|run| !run.asks.is_empty()));
@@ -444,17 +442,105 @@ mod tests {
         assert!(sum(&long) >= sum(&short), "{:?} {:?}", short.questions, long.questions);
         let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
         assert!(sum(&long) > repeated, "{:?}", long.questions);
-        assert_eq!(propose(known, &rig, 60.0).unwrap(), long);
-        // A dwell that is constant in a session is confounded with the specimen.
-        let dwells =
-            |runs: &[PlannedRun]| runs.iter().map(|run| run.dwell_s.to_bits()).collect::<BTreeSet<_>>();
-        let is_asked = |p: &Proposal| {
-            p.questions.iter().any(|q| q.between[0] == "dwell_relaxation" && q.resolved_probability > 0.5)
-        };
-        for proposal in [&short, &long].into_iter().filter(|p| is_asked(p)) {
-            assert!(dwells(&proposal.runs).len() > 1, "{proposal:?}");
-        }
+        assert_eq!(proposed(&calibrated, &rig, 60.0), long);
+        // A dwell that is constant in a session is confounded with the switch.
+        let dwells: BTreeSet<_> = short.runs.iter().map(|run| run.dwell_s.to_bits()).collect();
+        assert!(outlook(&short, "dwell_relaxation").is_some_and(|q| q.resolved_probability > 0.9));
+        assert!(dwells.len() > 1, "{short:?}");
+        let Calibrated { report, model, rows, vocabulary } = &calibrated;
+        let known = Known { report, model, rows, vocabulary, name: "d" };
         let nothing = propose(known, &rig, 1.0).unwrap_err().to_string();
         assert!(nothing.contains("give more --minutes"), "{nothing}");
+        let foreign = propose(Known { rows: &rows[1..], ..known }, &rig, 60.0).unwrap_err();
+        assert_eq!(foreign, ExperimentError::Mismatch("d".to_owned()));
+    }
+
+    /// On bare silicone, drag of the rig and adhesion are the same. Runs on pins separate them, and
+    /// the rig gives the predicted answers.
+    #[test]
+    fn planned_runs_separate_drag_and_adhesion() {
+        for id in ["guide_drag", "adhesion"] {
+            let truth = Term::Named(effect_named(id).unwrap());
+            let mut rows = session_with(1, &[(truth.clone(), &[0.4])]);
+            rows.retain(|row| row.pins.is_empty());
+            let calibrated = calibrated(rows, &Vocabulary::built_in());
+            assert_eq!(calibrated.report.verdict, Verdict::Ambiguous);
+            let silicone_only = RigLimits { layouts: Vec::new(), cell_limit_n: 60.0, ..RigLimits::default() };
+            let proposal = proposed(&calibrated, &silicone_only, 60.0);
+            let is_pair = |between: &[String; 2]| *between == ["guide_drag", "adhesion"];
+            assert!(proposal.unanswerable.iter().any(|q| is_pair(&q.between)), "{proposal:?}");
+            let proposal = proposed(&calibrated, &RigLimits::default(), 60.0);
+            let question = proposal.questions.iter().find(|q| is_pair(&q.between)).unwrap();
+            assert!(question.resolved_probability > 0.95 && question.by_repeating < 0.5, "{question:?}");
+            let after = calibrate(
+                &recorded_after(&calibrated.rows, &proposal.runs, truth, &[0.4]),
+                &calibrated.vocabulary,
+                1,
+            );
+            let after = after.unwrap().report;
+            assert_eq!((after.verdict, after.effects[0].id.as_str()), (Verdict::Attributed, id));
+            let text = serde_json::to_string(&proposal).unwrap();
+            let plan: SessionPlan = serde_json::from_str(&text).unwrap();
+            for question in plan.answered(&after, 40.0).questions {
+                assert!(
+                    question.resolved_probability < 0.95 || question.answer != Answer::Open,
+                    "{question:?}"
+                );
+            }
+        }
+    }
+
+    /// Returns recorded rows and those of a plan on a rig with a term.
+    fn recorded_after(
+        rows: &[PlateauRow],
+        runs: &[PlannedRun],
+        term: Term,
+        values: &[f64],
+    ) -> Vec<PlateauRow> {
+        let mut all = rows.to_vec();
+        all.extend(rows_of(runs, &RigLimits::default(), "next"));
+        let truth = Model::baseline(Frame::new(&all)).with_term(term, values);
+        let readings = truth.predict(&truth.frame.points(&all).unwrap());
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        for (row, reading) in all.iter_mut().zip(readings).skip(rows.len()) {
+            let normal = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+            row.force_n = reading + 0.05 * normal;
+        }
+        all
+    }
+
+    /// Curves extend to heavier loads than the recorded ones, within the range of the load cell.
+    #[test]
+    fn heavier_loads_are_proposed_within_the_cell() {
+        let mut rows = session(3);
+        rows.retain(|row| row.load_mass_g < 3100.0);
+        let calibrated = calibrated(rows, &Vocabulary::built_in());
+        let rig = RigLimits { cell_limit_n: 65.0, ..RigLimits::default() };
+        let proposal = proposed(&calibrated, &rig, 30.0);
+        let question = outlook(&proposal, "friction_above_30_N").unwrap();
+        assert!(question.resolved_probability > 0.9 && question.by_repeating < 0.2, "{question:?}");
+        let planned = rows_of(&proposal.runs, &rig, "next");
+        assert!(planned.iter().any(|row| row.load_n > 40.0));
+        let (readings_n, _) = calibrated.model.predict(&planned, Session::New, "model.toml").unwrap();
+        assert!(readings_n.iter().all(|reading| 1.1 * reading <= 65.0 + 0.5), "{readings_n:?}");
+    }
+
+    /// Readings from which an effect was derived do not answer whether it acts, however many.
+    #[test]
+    fn derived_effects_need_new_readings() {
+        let text = "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"steeper\"\nside = \"switch\"\n\
+                    covariate = \"speed\"\nacts_on = \"mu\"\ncombine = \"factor\"\n\
+                    formula = \"a * (speed_pct - 50)/20\"\n\
+                    parameters.a = { size = true, start = 0.1, unit = \"1\" }\n";
+        let vocabulary = Vocabulary::built_in().read(text, "steeper.toml").unwrap();
+        let mut calibrated = calibrated(session(1), &vocabulary);
+        let rig = RigLimits::default();
+        assert_eq!(calibrated.report.trials[0].outcome, TrialOutcome::Refuted);
+        assert_eq!(outlook(&proposed(&calibrated, &rig, 30.0), "steeper"), None);
+        calibrated.report.trials[0].outcome = TrialOutcome::Drawn;
+        let proposal = proposed(&calibrated, &rig, 30.0);
+        assert!(outlook(&proposal, "steeper").is_some_and(|q| q.resolved_probability > 0.9), "{proposal:?}");
+        let speeds: BTreeSet<_> = proposal.runs.iter().map(|run| run.speed_pct.to_bits()).collect();
+        assert!(speeds.len() > 1, "{proposal:?}");
     }
 }

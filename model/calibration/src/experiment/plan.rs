@@ -3,21 +3,21 @@
 
 use nalgebra::DMatrix;
 
-use super::candidates::{paper_protocol, within_cell};
+use super::candidates::{paper_runs, within_cell};
 use super::in_order;
 use super::information::Design;
 use super::question::{Question, value};
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, rows_of};
-use super::search::{Candidates, FEW_RUNS, MOST_RUNS, Search, purpose};
+use super::search::{Candidates, LEAST, MOST_RUNS, Search, purpose};
 
 /// Shares of the time for which the paper's protocol is tried before searched runs, since an effect
 /// of previous loads shows only in a sequence of runs.
 const PROTOCOL_SHARES: [f64; 3] = [0.35, 0.7, 1.0];
 /// Duration in minutes after which it repeats.
 const MOST_PROTOCOL: f64 = 420.0;
-/// Number of runs above which plans are compared before their remaining time is used.
-const VERY_MANY_RUNS: usize = 300;
+/// Number of runs above which only the first share is tried, since each search takes seconds.
+const MANY_RUNS: usize = 100;
 /// Remaining time in minutes that is not worth another search.
 const LITTLE_TIME: f64 = 3.0;
 
@@ -42,25 +42,25 @@ impl Planner<'_> {
         self.design.planned(&rows).map(|more| more + self.recorded)
     }
 
-    /// Returns the plan with the most expected information; none is worse than the paper's protocol.
+    /// Returns the plan with the most expected information. No plan is worse than the paper's
+    /// protocol, unless its additional time is not worth the difference.
     pub(super) fn best_plan(&self) -> Option<Vec<PlannedRun>> {
         if self.questions.is_empty() {
             return Some(Vec::new());
         }
         let mut best = self.searched(self.recorded, self.minutes);
-        // For a long plan each search takes seconds, so only one protocol is tried.
-        let shares = if best.len() > FEW_RUNS { &PROTOCOL_SHARES[..1] } else { &PROTOCOL_SHARES };
+        let shares = if best.len() > MANY_RUNS { &PROTOCOL_SHARES[..1] } else { &PROTOCOL_SHARES };
         let mut most = value(self.questions, &self.after(&best)?);
-        let is_very_long = best.len() > VERY_MANY_RUNS;
         for share in shares {
-            let other = self.protocol((share * self.minutes).min(MOST_PROTOCOL))?;
-            let other = if is_very_long { other } else { self.filled(other)? };
+            let protocol = self.protocol((share * self.minutes).min(MOST_PROTOCOL))?;
+            let other = self.filled(protocol)?;
             let information = value(self.questions, &self.after(&other)?);
-            if information > most {
+            let longer = (minutes_of(&other) - minutes_of(&best)).max(0.0);
+            if information > most + LEAST * longer {
                 (best, most) = (other, information);
             }
         }
-        self.filled(best)
+        Some(best)
     }
 
     /// Returns the runs of a search, given the information so far.
@@ -75,7 +75,7 @@ impl Planner<'_> {
 
     /// Uses the remaining time of a plan.
     fn filled(&self, mut runs: Vec<PlannedRun>) -> Option<Vec<PlannedRun>> {
-        let left = self.minutes - runs.iter().map(|run| run.minutes).sum::<f64>();
+        let left = self.minutes - minutes_of(&runs);
         if left < LITTLE_TIME || runs.len() >= MOST_RUNS {
             return Some(runs);
         }
@@ -89,7 +89,7 @@ impl Planner<'_> {
     /// Returns the paper's protocol for a duration in minutes, within the range of the load cell,
     /// with the question for which each run matters most.
     fn protocol(&self, minutes: f64) -> Option<Vec<PlannedRun>> {
-        let mut runs = paper_protocol(self.rig, minutes);
+        let mut runs = paper_runs(self.rig, minutes);
         let rows = rows_of(&runs, self.rig, "next");
         let fits = within_cell(self.design.model, &rows, self.rig);
         if rows.is_empty() || fits.len() != rows.len() || fits.contains(&false) {
@@ -102,4 +102,8 @@ impl Planner<'_> {
         }
         Some(runs)
     }
+}
+
+fn minutes_of(runs: &[PlannedRun]) -> f64 {
+    runs.iter().map(|run| run.minutes).sum()
 }

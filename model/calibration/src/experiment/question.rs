@@ -130,16 +130,6 @@ impl Question {
         of(self.probability, known) + of(1.0 - self.probability, -known)
     }
 
-    /// Returns the question without fitting these columns.
-    pub(super) fn without_fitted(&self, columns: &[usize], recorded: &DMatrix<f64>) -> Self {
-        let mut question = self.clone();
-        for case in &mut question.cases {
-            case.nuisance.retain(|column| !columns.contains(column));
-        }
-        question.after(recorded);
-        question
-    }
-
     /// Returns the question in words, for a run sheet.
     pub(super) fn words(&self) -> String {
         format!("{} or {}", self.between[0], self.between[1])
@@ -210,8 +200,8 @@ pub(super) struct Agenda {
     effects: Vec<&'static dyn Effect>,
     /// Constants of the model, whose columns come first.
     own: usize,
-    /// Columns of the constants that describe unattributed structure.
-    pub(super) structures: Vec<usize>,
+    /// Ids of the user-defined effects in question.
+    formulas: Vec<String>,
     /// Whether one of the effects depends on the previous load.
     remembers: bool,
 }
@@ -219,9 +209,7 @@ pub(super) struct Agenda {
 impl Agenda {
     /// Returns all open questions of a report, whose rows have loads up to `highest_n` in newtons.
     pub(super) fn new(report: &Report, model: &Model, highest_n: f64) -> Self {
-        let is_structure = |t: &usize| matches!(model.terms[*t], Term::Structure(_));
-        let structures = (0..model.terms.len()).filter(is_structure).map(|t| model.term_offset(t)).collect();
-        let mut agenda = Self { own: model.values().len(), structures, ..Self::default() };
+        let mut agenda = Self { own: model.values().len(), ..Self::default() };
         // A change of friction between sessions, with which an effect that only varies between
         // sessions is confounded.
         for (constant, (name, _)) in model.names().iter().enumerate() {
@@ -248,11 +236,12 @@ impl Agenda {
                 agenda.add_effect(effect, start(effect, model), probability(&invisible.id), fitted.clone());
             }
         }
-        let remembers = |id: &str| {
-            let mut own = model.vocabulary.own().map(|own| own.definition());
-            own.any(|own| own.id == id && own.formula.contains(LOAD_BEFORE))
-        };
-        agenda.remembers = agenda.effects.iter().any(|effect| remembers(effect.id()));
+        for own in model.vocabulary.own().map(|own| own.definition()) {
+            if agenda.effects.iter().any(|effect| effect.id() == own.id) {
+                agenda.formulas.push(own.id.clone());
+                agenda.remembers |= own.formula.contains(LOAD_BEFORE);
+            }
+        }
         // Curves and designs extend beyond the recorded loads.
         let to_n = published::heaviest_load_n();
         if highest_n <= COVERED * to_n {
@@ -337,13 +326,13 @@ impl Agenda {
                     None => continue,
                 },
             };
-            // The formula in the model, or the structure from which it was derived, would absorb it.
-            let of_term = term.map_or(0..0, |t| model.term_offset(t)..model.term_offset(t + 1));
-            if was_drawn {
-                self.structures.extend(of_term.clone());
-            }
-            let stands_for_it = |i: &usize| of_term.contains(i) || was_drawn && self.structures.contains(i);
-            let nuisance = fitted.iter().copied().filter(|i| !stands_for_it(i)).collect();
+            // The effect in the model, or the structure from which it was derived, would absorb it.
+            let stands_for_it =
+                |t: &usize| Some(*t) == term || was_drawn && matches!(model.terms[*t], Term::Structure(_));
+            let constants = |t: usize| model.term_offset(t)..model.term_offset(t + 1);
+            let absorbing: Vec<usize> =
+                (0..model.terms.len()).filter(stands_for_it).flat_map(constants).collect();
+            let nuisance = fitted.iter().copied().filter(|i| !absorbing.contains(i)).collect();
             let column = self.add(contribution);
             self.effects.push(effect);
             self.questions.push(Question::whether(id, probability, None, column, nuisance));
@@ -366,7 +355,7 @@ impl Agenda {
     }
 
     fn asks_about(&self, id: &str) -> bool {
-        self.questions.iter().any(|q| q.between[0] == id && q.between[1] == NONE)
+        self.questions.iter().any(|question| question.between.iter().any(|other| other == id))
     }
 
     /// Returns whether an effect in question is one of this covariate.
@@ -377,6 +366,12 @@ impl Agenda {
     /// Returns whether an effect in question depends on the previous load.
     pub(super) fn asks_of_previous_loads(&self) -> bool {
         self.remembers
+    }
+
+    /// Returns whether a user-defined effect in question, whose form may be any, is one of this
+    /// covariate.
+    pub(super) fn asks_of_formulas_along(&self, covariate: Covariate) -> bool {
+        self.formulas.iter().any(|id| self.is_along(id, covariate))
     }
 
     /// Returns whether any effect in question is one of this covariate.

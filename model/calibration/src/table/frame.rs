@@ -193,6 +193,8 @@ pub struct Point {
     /// Number of the operator, from 1 in the order of [`Frame::operators`]; 1 if there is only one
     /// operator, 0 for an unknown one.
     pub operator: f64,
+    /// Whether it belongs to a later session than the fitted one.
+    pub is_new_session: bool,
     /// Index of its session in [`Frame::sessions`], if listed.
     pub session_group: Option<usize>,
     /// Index of its specimen in [`Frame::specimens`], if listed.
@@ -290,7 +292,9 @@ impl Frame {
     pub(crate) fn points_of_new_session(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
         let mut points = self.points(rows)?;
         if let Some([time, travel]) = self.mean_time {
-            points.iter_mut().for_each(|point| (point.time, point.travel) = (time, travel));
+            for point in &mut points {
+                (point.time, point.travel, point.is_new_session) = (time, travel, true);
+            }
         }
         Some(points)
     }
@@ -364,6 +368,7 @@ impl Frame {
             session: 1.0,
             mount: 1.0,
             operator: self.operator_of(row),
+            is_new_session: false,
             session_group: self.sessions.iter().position(|name| *name == row.labels.session),
             specimen_group: self.specimens.iter().position(|name| *name == row.labels.specimen),
         })

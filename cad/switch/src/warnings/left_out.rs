@@ -1,12 +1,10 @@
 //! Features that do not fit on a part: the set is made without them, and a warning names a value with which they fit.
 
-use super::mould::core_has_lost_label;
-use super::omission::LeftOut;
-use super::{Part, has_split_mould, mount, shell, support};
-use crate::config::{Configuration, MountKind};
+use crate::config::Configuration;
 use crate::design::Design;
 use crate::design::rules::Direction::{self, Lower, Raise, Restore, Set};
 use crate::feasibility::advice;
+use crate::parts::{LeftOut, Part, left_out_features};
 
 /// Text of a note without a value that makes room.
 const NO_ADVICE: &str = "no single value makes room";
@@ -93,27 +91,13 @@ impl Part {
     }
 }
 
-/// Returns all features that a design leaves out, each with its part. No part is built for it.
-fn of_set(design: &Design) -> Vec<(&'static str, LeftOut)> {
-    let c = design.configuration();
-    let on = |part: &'static str, lost: Vec<LeftOut>| lost.into_iter().map(move |feature| (part, feature));
-    let core = (has_split_mould(c) && core_has_lost_label(design)).then_some(LeftOut::Label);
-    let plate = if c.mount.kind == MountKind::None { Vec::new() } else { mount::left_out(design) };
-    on("shell", shell::left_out(design))
-        .chain(on("mould-core", core.into_iter().collect()))
-        .chain(on("support-left", support::left_out(design, support::Side::Left)))
-        .chain(on("support-right", support::left_out(design, support::Side::Right)))
-        .chain(on("plate", plate))
-        .collect()
-}
-
 /// Returns a change that makes room for `feature` on a part, and does not displace another feature.
 fn remedy(part: &str, feature: LeftOut, design: &Design) -> Option<String> {
-    let before = of_set(design);
+    let before = left_out_features(design);
     let is_other = |(on, lost): &(&str, LeftOut)| *lost != feature || (*on != part && *on != "plate");
     let fits = |c: &Configuration| {
         Design::new(c.clone()).is_ok_and(|changed| {
-            let after = of_set(&changed);
+            let after = left_out_features(&changed);
             after.iter().all(|lost| before.contains(lost) && is_other(lost))
         })
     };
@@ -243,7 +227,7 @@ mod tests {
             let parts = printed(&design).unwrap();
             let of_parts: Vec<LeftOut> = parts.iter().flat_map(|part| part.left_out.clone()).collect();
             assert_eq!(
-                of_set(&design).into_iter().map(|(_, feature)| feature).collect::<Vec<_>>(),
+                left_out_features(&design).into_iter().map(|(_, feature)| feature).collect::<Vec<_>>(),
                 of_parts,
                 "{case:?}"
             );

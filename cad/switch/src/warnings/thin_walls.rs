@@ -3,37 +3,18 @@
 
 use pinswitch_solid::solid::ThinPlace;
 
-use super::{Material, Part, Role, printed_part};
 use crate::config::Configuration;
 use crate::design::Design;
 use crate::design::rules::Direction::{self, Lower, Raise, Restore};
 use crate::feasibility::advice;
+use crate::parts::{Part, Role, printed_part};
 
-/// Tolerance of the thickness of walls of exactly two lines, mm.
-const THIN_ROUNDING_MM: f64 = 1e-6;
 /// Thicknesses that differ by less are equal, mm.
 const ALIKE_MM: f64 = 1e-3;
 /// Most changes that a warning names together.
 const TOGETHER: usize = 3;
 
 impl Part {
-    /// Returns the places of a printed part with less than two printed lines of material, the thinnest first.
-    pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
-        if self.material() != Material::Abs {
-            return Vec::new();
-        }
-        let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
-        let (known_limit_mm, places) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
-        if *known_limit_mm == limit_mm { places.clone() } else { self.solid.thin_places(limit_mm) }
-    }
-
-    /// The same part with the known thin places of a part with an equal solid.
-    #[must_use]
-    pub(crate) fn known_by(mut self, twin: &Self) -> Self {
-        self.thin = twin.thin.clone();
-        self
-    }
-
     /// Thin places that no rule of the design reports.
     fn unreported_thin_places(&self, design: &Design) -> Vec<ThinPlace> {
         let mut places = self.thin_places(design);

@@ -11,15 +11,22 @@ use crate::table::Point;
 const STEPS: usize = 25;
 /// Residual, in robust standard deviations, above which a reading has reduced weight (Huber 1964).
 const HUBER: f64 = 1.345;
+/// Step of a coordinate below which a fit has converged.
+const CONVERGED: f64 = 1e-5;
 /// Largest step of a coordinate.
 const MOST_STEP: f64 = 0.5;
 
-/// Returns the paper's model with the three terms, fitted to readings in newtons at points. Each reading
-/// has equal weight up to 1.345 robust standard deviations.
-pub(crate) fn least_squares(baseline: &Model, points: &[Point], readings_n: &[f64]) -> Model {
+/// Returns a model with drag, offset and gain, all zero.
+pub(crate) fn with_rig_terms(baseline: &Model) -> Model {
     let named = |id| effect_named(id).map(Term::Named);
     let terms = ["guide_drag", "load_cell_offset", "load_cell_gain"].into_iter().filter_map(named);
-    let mut model = terms.fold(baseline.clone(), |model, term| model.with_term(term, &[0.0]));
+    terms.fold(baseline.clone(), |model, term| model.with_term(term, &[0.0]))
+}
+
+/// Returns a model, fitted from its constants to readings in newtons at points. Each reading has equal
+/// weight up to 1.345 robust standard deviations.
+pub(crate) fn least_squares(start: &Model, points: &[Point], readings_n: &[f64]) -> Model {
+    let mut model = start.clone();
     for _ in 0..STEPS {
         let predicted = model.predict(points);
         let residual: Vec<f64> = readings_n.iter().zip(&predicted).map(|(y, p)| y - p).collect();
@@ -41,7 +48,7 @@ pub(crate) fn least_squares(baseline: &Model, points: &[Point], readings_n: &[f6
         for (coordinate, step) in model.coordinates.iter_mut().zip(step.iter()) {
             *coordinate += step.clamp(-MOST_STEP, MOST_STEP);
         }
-        if largest < 1e-9 {
+        if largest < CONVERGED {
             break;
         }
     }
@@ -74,7 +81,7 @@ mod tests {
         let baseline = Model::baseline(Frame::new(&rows));
         let points = baseline.frame.points(&rows).unwrap();
         let readings: Vec<f64> = rows.iter().map(|row| row.force_n).collect();
-        let fitted = least_squares(&baseline, &points, &readings);
+        let fitted = least_squares(&with_rig_terms(&baseline), &points, &readings);
         let values = fitted.values();
         let [.., drag, offset, gain] = values[..] else { panic!("no terms") };
         assert!((drag - 0.5).abs() < 0.1 && (offset + 0.3).abs() < 0.1 && (gain - 0.04).abs() < 0.01);

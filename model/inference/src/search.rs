@@ -107,8 +107,16 @@ impl<'a> Search<'a> {
             let Some(best) = self.best_score() else { break };
             let near = self.ranked().into_iter().filter(|fit| fit.score > best - EXPANSION_WINDOW);
             let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
-                break;
+                // Another autoregression may have changed the ranks.
+                self.polish();
+                match self.ranked().first() {
+                    Some(best) if !expanded.contains(&best.hypothesis) => continue,
+                    _ => break,
+                }
             };
+            // All hypotheses that follow start from this mode, and from its autoregression.
+            self.fit_again(&fit.hypothesis, &fit, true);
+            let Some(fit) = self.fits.get(&fit.hypothesis).cloned() else { break };
             expanded.insert(fit.hypothesis.clone());
             self.expand(&fit);
         }
@@ -145,10 +153,11 @@ impl<'a> Search<'a> {
         self.fits.get(hypothesis)
     }
 
-    /// Fits a hypothesis again from another mode, and keeps the better fit.
-    fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit) {
+    /// Fits a hypothesis again from another mode, with its autoregression or with any, and keeps the
+    /// better fit.
+    fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit, is_final: bool) {
         self.fit_count += 1;
-        let start = Start { is_final: true, ..Start::at(start, None) };
+        let start = Start { is_final, ..Start::at(start, None) };
         let Some(again) = Fit::new(self.problem, hypothesis, start) else { return };
         let known = self.fits.get(hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
         if again.score > known {
@@ -248,12 +257,15 @@ impl<'a> Search<'a> {
         let near: Vec<Fit> =
             ranked.take(POLISHED.0).filter(|fit| fit.score > best - POLISHED.1).cloned().collect();
         for fit in &near {
-            self.fit_again(&fit.hypothesis, fit);
+            self.fit_again(&fit.hypothesis, fit, true);
         }
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
         for member in best.hypothesis.members() {
             let reduced = best.hypothesis.without(member);
-            self.fit_again(&reduced, &best);
+            self.fit_again(&reduced, &best, false);
+            if self.fits.get(&reduced).is_none_or(|fit| fit.score < best.score - self.options.window) {
+                self.fit_again(&reduced, &best, true);
+            }
         }
     }
 }

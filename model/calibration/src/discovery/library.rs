@@ -1,6 +1,6 @@
 //! Library of forms: formulas for structure along one covariate, as user-defined effects.
 
-use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Side};
+use crate::effects::{ActsOn, Channel, Combine, Covariate, EffectDefinition, OwnParameter, Side};
 use crate::table::Frame;
 
 /// A form independent of the quantity that it changes: a formula of order one with its shape
@@ -44,17 +44,19 @@ pub(super) fn acts_on_word(of: ActsOn) -> &'static str {
 /// The quantity that a form changes, and how.
 pub(super) type Acting = (ActsOn, Combine);
 
-/// Quantities for which forms are tried: friction, thresholds, a force against the motion, and offset and
-/// gain of the load cell.
-pub(super) const ALL: [Acting; 7] = [
-    (ActsOn::Mu, Combine::Factor),
-    (ActsOn::MuPins, Combine::Factor),
-    (ActsOn::MuSilicone, Combine::Factor),
-    (ActsOn::Threshold, Combine::Factor),
-    (ActsOn::Tension, Combine::Sum),
-    (ActsOn::Reading, Combine::Sum),
-    (ActsOn::Reading, Combine::Factor),
-];
+/// Returns the quantities that a form may change in place of structure on a channel.
+pub(super) fn actings(channel: Channel) -> &'static [Acting] {
+    match channel {
+        Channel::Reading => &[(ActsOn::Reading, Combine::Sum)],
+        Channel::Gain => &[(ActsOn::Reading, Combine::Factor)],
+        Channel::Drag => &[(ActsOn::Tension, Combine::Sum)],
+        Channel::Friction | Channel::FrictionByDirection => {
+            &[(ActsOn::Mu, Combine::Factor), (ActsOn::Threshold, Combine::Factor)]
+        }
+        Channel::Pins => &[(ActsOn::MuPins, Combine::Factor)],
+        Channel::Silicone => &[(ActsOn::MuSilicone, Combine::Factor), (ActsOn::Threshold, Combine::Factor)],
+    }
+}
 
 /// Start sizes: 5 % of the friction, 0.1 N.
 const START_SHARE: f64 = 0.05;
@@ -280,7 +282,16 @@ mod tests {
         for covariate in Covariate::ALL {
             let forms = library(covariate, &frame);
             assert!(!forms.is_empty(), "{covariate:?}");
-            for (form, acting) in forms.iter().flat_map(|form| ALL.map(|acting| (form, acting))) {
+            let channels = [
+                Channel::Reading,
+                Channel::Gain,
+                Channel::Drag,
+                Channel::Friction,
+                Channel::Pins,
+                Channel::Silicone,
+            ];
+            let all: Vec<Acting> = channels.iter().flat_map(|channel| actings(*channel)).copied().collect();
+            for (form, acting) in forms.iter().flat_map(|form| all.iter().map(move |acting| (form, *acting))) {
                 let definition = form.on(acting, covariate, 1).definition;
                 let checked = OwnEffect::new(definition.clone());
                 assert!(checked.is_ok(), "{:?}: {}", definition.formula, checked.unwrap_err());

@@ -11,12 +11,12 @@ use std::collections::BTreeMap;
 use pinswitch_inference::{Fit, Member, best_additions};
 use serde::{Deserialize, Serialize};
 
-use crate::effects::{Covariate, EffectDefinition, OwnEffect, Vocabulary};
+use crate::effects::{Channel, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
 use crate::report::Estimate;
 use crate::reporting::{held_out, parameters};
 use crate::table::{PlateauRow, readings_by_session};
-use library::{ALL, Candidate, acts_on_word, library};
+use library::{Candidate, actings, acts_on_word, library};
 
 /// Most formulas that are fitted.
 const FITTED: usize = 12;
@@ -101,7 +101,8 @@ pub(crate) fn draw_form(
     let covariate = Covariate::ALL.into_iter().find(|c| c.as_str() == evidence.covariate(member));
     let covariate = covariate.unwrap_or(Covariate::Condition);
     let frame = &evidence.frame();
-    let candidates = numbered(&library(covariate, frame), covariate);
+    let channel = evidence.channel(member)?;
+    let candidates = numbered(&library(covariate, frame), covariate, channel);
     let (best, rivals, with_forms) = best_form(evidence, member, vocabulary, &candidates, rows, seed)?;
     let reduced = posterior.best_without(evidence.problem(), member)?.log_evidence;
     let by_structure = posterior.window.first()?.log_evidence - reduced;
@@ -213,9 +214,9 @@ fn best_form(
     Some((best, rivals, with_forms))
 }
 
-/// Returns each form of the library on each quantity, under an id of its own.
-fn numbered(forms: &[library::Form], covariate: Covariate) -> Vec<Candidate> {
-    let pairs = forms.iter().flat_map(|form| ALL.map(|acting| (form, acting)));
+/// Returns each form of the library on each quantity of a channel, under an id of its own.
+fn numbered(forms: &[library::Form], covariate: Covariate, channel: Channel) -> Vec<Candidate> {
+    let pairs = forms.iter().flat_map(|form| actings(channel).iter().map(move |acting| (form, *acting)));
     pairs.enumerate().map(|(i, (form, acting))| form.on(acting, covariate, i)).collect()
 }
 

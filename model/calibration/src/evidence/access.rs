@@ -3,8 +3,9 @@
 use pinswitch_inference::{Kernel, Member, leave_groups_out};
 
 use super::Evidence;
+use super::fitted::channel_of;
 use super::forward::Channel;
-use crate::effects::Effect;
+use crate::effects::{self, Effect};
 use crate::table::{Frame, Point};
 
 impl Evidence {
@@ -111,6 +112,14 @@ impl Evidence {
     pub(crate) fn kernel_at(&self, member: Member) -> Option<&Kernel> {
         match member {
             Member::Kernel(kernel) => self.problem.space().kernels.get(kernel),
+            Member::Effect(_) => None,
+        }
+    }
+
+    /// Returns the channel of structure without a name; `None` for an effect.
+    pub(crate) fn channel(&self, member: Member) -> Option<effects::Channel> {
+        match member {
+            Member::Kernel(kernel) => Some(channel_of(self.setup.structures.get(kernel)?.channel)),
             Member::Effect(_) => None,
         }
     }

@@ -194,7 +194,7 @@ impl Evidence {
     }
 }
 
-fn channel_of(channel: Channel) -> effects::Channel {
+pub(super) fn channel_of(channel: Channel) -> effects::Channel {
     match channel {
         Channel::Reading => effects::Channel::Reading,
         Channel::Drag => effects::Channel::Drag,

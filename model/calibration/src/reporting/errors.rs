@@ -6,7 +6,7 @@ use pinswitch_friction::Substrate;
 use pinswitch_inference::{Fit, Member, leave_groups_out};
 
 use crate::evidence::{Evidence, Fitted};
-use crate::least_squares::least_squares;
+use crate::least_squares::{least_squares, with_rig_terms};
 use crate::model::Model;
 use crate::report::{Estimate, ModelReport};
 use crate::table::{Condition, PlateauRow};
@@ -93,13 +93,18 @@ fn layouts_n(evidence: &Evidence, fit: &Fit, conditions: &[Condition]) -> Option
 
 /// Returns the held-out error in newtons of robust least squares on the parts of the series.
 pub(crate) fn least_squares_n(evidence: &Evidence, rows: &[PlateauRow], model: &Model) -> Option<f64> {
-    let baseline = Model::baseline(model.frame.clone());
     let all: Vec<_> = evidence.rows().collect();
+    // The fit to all rows is a good start for the parts.
+    let baseline = {
+        let points: Vec<_> = all.iter().map(|(.., point)| **point).collect();
+        let readings: Vec<f64> = all.iter().map(|(row, ..)| rows[*row].force_n).collect();
+        least_squares(&with_rig_terms(model), &points, &readings)
+    };
     let mut residuals = vec![f64::NAN; all.len()];
     for fold in 0..FOLDS.min(evidence.series_count()) {
         let is_out = |series: usize| series % FOLDS == fold;
         let seen: Vec<_> = all.iter().filter(|(_, series, _)| !is_out(*series)).collect();
-        if seen.len() < baseline.values().len() + 3 {
+        if seen.len() < baseline.values().len() {
             return None;
         }
         let points: Vec<_> = seen.iter().map(|(.., point)| **point).collect();

@@ -10,7 +10,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// The worked example of `model/doc/next-experiment.md`.
+/// The example of `model/doc/next-experiment.md`.
 #[test]
 fn proposed_runs_resolve_a_confounded_effect() {
     let folder = tempfile::tempdir().unwrap();

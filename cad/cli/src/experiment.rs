@@ -86,8 +86,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let known =
         Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
-    let proposal = propose(known, &rig, arguments.minutes)
-        .map_err(|e| Failure::bad_input(located(e, arguments)))?;
+    let proposal =
+        propose(known, &rig, arguments.minutes).map_err(|e| Failure::bad_input(located(e, arguments)))?;
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
     let mut files = vec![
         file("next-runs.csv", write_runs(&proposal.runs).into_bytes()),

@@ -1,7 +1,7 @@
 //! Calibration of a simulated rig, compared with the truth.
 
 use pinswitch_calibration::effects::{Vocabulary, effect_named};
-use pinswitch_calibration::evidence::Fitted;
+use pinswitch_calibration::evidence::{Fitted, Session};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_calibration::{Calibration, ModelFile, Report, Verdict, calibrate};
 
@@ -121,7 +121,7 @@ fn left_open(plan: &Plan, report: &Report) -> bool {
 
 /// Returns the root mean square error of the model file's predictions of a new session, in newtons.
 pub(super) fn error_n(fitted: &Fitted, rows: &[PlateauRow]) -> Option<f64> {
-    let (predicted, _) = ModelFile::new(fitted).predict(rows, "study").ok()?;
+    let (predicted, _) = ModelFile::new(fitted).predict(rows, Session::New, "study").ok()?;
     root_mean_square_n(&predicted, rows)
 }
 

@@ -258,30 +258,26 @@ fn inconclusive(report: &Report) -> String {
 /// Returns the held-out and expected errors of the paper's model, of least squares and of the model, with
 /// the noise.
 fn errors(report: &Report) -> String {
-    let held = [
-        Some(report.baseline.heldout_series_rmse_n),
-        report.least_squares_n,
-        Some(report.augmented.heldout_series_rmse_n),
-    ];
-    let cell = |value: Option<f64>| value.map_or("unknown".to_owned(), newtons);
-    let row = |name: &str, cells: [String; 3]| {
-        let [before, least_squares, after] = cells;
+    let row = |name: &str, class: &str, held_out: Option<f64>, expected: String| {
+        let held_out = held_out.map_or_else(|| "unknown".to_owned(), newtons);
         format!(
-            "<tr><td>{name}</td><td class=\"n b\">{before}</td><td class=\"n\">{least_squares}</td>\
-             <td class=\"n a\">{after}</td></tr>"
+            "<tr><td>{name}</td><td class=\"n {class}\">{held_out}</td><td class=\"n {class}\">{expected}</td></tr>"
         )
     };
     let expected = report.expected_error_n.map_or_else(
-        || "unknown: too few series".to_owned(),
-        |e| format!("{} [{}, {}]", newtons(e.value), number(e.ci90[0], 4), number(e.ci90[1], 4)),
+        || "too few series".to_owned(),
+        |e| format!("{}<br>[{}, {}]", newtons(e.value), number(e.ci90[0], 4), number(e.ci90[1], 4)),
     );
-    let expected = [report.promise_baseline_n.map_or_else(String::new, newtons), String::new(), expected];
+    let before = report.promise_baseline_n.map_or_else(String::new, newtons);
+    let rows = [
+        row("paper's model", "b", Some(report.baseline.heldout_series_rmse_n), before),
+        row("the same with drag, offset and gain, by least squares", "", report.least_squares_n, String::new()),
+        row("this model", "a", Some(report.augmented.heldout_series_rmse_n), expected),
+    ];
     format!(
-        "<div class=\"wide\"><table><tr><th>error</th><th class=\"b\">paper's model</th><th>least squares with drag, offset, \
-         gain</th><th class=\"a\">this model</th></tr>{}{}\
-         <tr><td>noise of a reading</td><td class=\"n\" colspan=\"3\">{}</td></tr></table></div>",
-        row("held-out series", held.map(cell)),
-        row("expected in a new session, with 90 % interval", expected),
+        "<div class=\"wide\"><table><tr><th>error (RMS)</th><th>held-out series</th><th>new session, expected</th></tr>{}</table></div>\
+         <p>Noise of a reading: {}.</p>",
+        rows.concat(),
         newtons(report.noise_floor_n)
     )
 }

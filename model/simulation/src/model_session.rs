@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;

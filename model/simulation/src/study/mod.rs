@@ -2,6 +2,7 @@
 //! compared with the truth.
 
 mod answer;
+mod bench;
 mod case;
 mod case_study;
 mod cases;

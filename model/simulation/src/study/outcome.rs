@@ -62,13 +62,13 @@ pub struct CaseOutcome {
 pub fn run_case(case: &Case, seed: u64) -> Option<CaseOutcome> {
     let plan = plan_of(case, seed);
     let simulated = simulate(&plan);
-    let rows = PlateauTable::read(PlateauTable::write(&simulated.rows).as_bytes(), "simulated").ok()?.rows;
+    let rows = read_back(&simulated.table(&plan))?;
     let calibration = calibrate(&rows, &Vocabulary::built_in(), seed).ok()?;
     let Calibration { report, baseline, augmented, .. } = &calibration;
     // The expected error excludes gross errors.
     let mut sound = plan.clone();
     sound.noise.outlier_share = 0.0;
-    let next = next_session(&sound).rows;
+    let next = read_back(&next_session(&sound).table(&sound))?;
     let next_n = [error_n(baseline, &next)?, error_n(augmented, &next)?];
     let answer = CalibratorAnswer::new(report);
     let (exact, consistent) = answer.grade(case, &plan);
@@ -102,6 +102,11 @@ pub fn run_case(case: &Case, seed: u64) -> Option<CaseOutcome> {
         extras,
         named,
     })
+}
+
+/// Reads the text of a table.
+fn read_back(table: &str) -> Option<Vec<PlateauRow>> {
+    Some(PlateauTable::read(table.as_bytes(), "simulated").ok()?.rows)
 }
 
 /// Whether every unreported true effect is left open: reported as invisible, or with a size within

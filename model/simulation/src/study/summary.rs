@@ -94,8 +94,21 @@ fn group_lines(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
             ),
         ]
     };
+    let without_effect =
+        |what: &str| vec![format!("{what}, false alarms: {}", share(outcomes, |o| !o.exact))];
+    let outside = |what: &str| {
+        vec![
+            format!("{what}, unattributed with the right covariate: {consistent}"),
+            format!(
+                "... of those that are visible despite mount effects: {}",
+                share(&visible, |o| o.exact || o.consistent)
+            ),
+            format!("{what}, and no effect reported: {exact}"),
+        ]
+    };
     match group {
-        Group::Nulls => vec![format!("rigs without effect, false alarms: {}", share(outcomes, |o| !o.exact))],
+        Group::Nulls => without_effect("rigs without effect"),
+        Group::BenchNulls => without_effect("small bench without effect"),
         Group::Singles => {
             let mut lines = attributed("single effects");
             let ratio = median_of(outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)));
@@ -103,20 +116,16 @@ fn group_lines(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
             lines
         }
         Group::Scattered => attributed("single effects with scatter"),
+        Group::BenchSingles => attributed("single effects on the small bench"),
         Group::Pairs => attributed("pairs"),
+        Group::BenchPairs => attributed("pairs on the small bench"),
         Group::Masks => attributed("effects with a drag that may mask them"),
         Group::Confounded => vec![
             format!("confounded effects, ambiguous (or inconclusive if small): {exact}"),
             format!("confounded effects, attributed or among the rivals: {consistent}"),
         ],
-        Group::Outside => vec![
-            format!("outside the vocabulary, unattributed with the right covariate: {consistent}"),
-            format!(
-                "... of those that are visible despite mount effects: {}",
-                share(&visible, |o| o.exact || o.consistent)
-            ),
-            format!("outside the vocabulary, and no effect reported: {exact}"),
-        ],
+        Group::Outside => outside("outside the vocabulary"),
+        Group::BenchOutside => outside("outside the vocabulary on the small bench"),
     }
 }
 

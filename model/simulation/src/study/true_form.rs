@@ -11,7 +11,7 @@ use pinswitch_calibration::table::Frame;
 use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
 /// Returns the vocabulary with the true forms of a disturbance, and their ids. `None` for
-/// operators, which no variable of a formula describes.
+/// operators and alternation, which no variable of a formula describes.
 pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vocabulary, Vec<String>)> {
     let shape = shape_formula(disturbance, frame)?;
     let size = disturbance.size;
@@ -93,7 +93,7 @@ fn shape_formula(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
             "(previous_load_n - load_n)/{:.6}*exp(-repetitions_so_far/{repetitions})",
             frame.load_range_n.1
         ),
-        DisturbanceKind::Operators { .. } => return None,
+        DisturbanceKind::Alternation | DisturbanceKind::Operators { .. } => return None,
     })
 }
 
@@ -113,7 +113,7 @@ pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] 
         }
         DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &["bump", "dip"],
         DisturbanceKind::Memory { .. } => &["memory"],
-        DisturbanceKind::Operators { .. } => &[],
+        DisturbanceKind::Alternation | DisturbanceKind::Operators { .. } => &[],
     }
 }
 

@@ -1,6 +1,10 @@
 //! Candidate runs of a rig: contact, load, speed, dwell, repetitions, and, if a question depends on
 //! them, the order of the loads and the time in the session.
 
+use rand::SeedableRng;
+use rand::seq::index::sample;
+use rand_chacha::ChaCha8Rng;
+
 use super::question::Agenda;
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, append};
@@ -12,10 +16,12 @@ use crate::table::{PlateauRow, Sweep};
 const REPETITIONS: [[u32; 2]; 2] = [[4, 4], [10, 10]];
 /// Repetitions of the paper's protocol.
 const PAPER_REPETITIONS: [u32; 2] = [12, 29];
-/// Most candidates. With more settings, only some of the weights are candidates.
+/// Most candidates, of which there is a random sample: a rig may have many contacts and weights.
 const MOST_CANDIDATES: usize = 6_000;
-/// Fewest of these weights.
-const FEWEST_LOADS: usize = 5;
+/// Most elements of the information of all candidates (80 MB).
+const MOST_ELEMENTS: usize = 10_000_000;
+/// Seed of the sample.
+const SEED: u64 = 1;
 /// Factor of a predicted force that allows for errors of the model.
 const FORCE_MARGIN: f64 = 1.1;
 
@@ -81,11 +87,10 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     let times: &[bool] = if agenda.asks_along(Covariate::Time) { &[false, true] } else { &[false] };
     let speeds = rig.speeds(agenda.asks_of_formulas_along(Covariate::Speed));
     let dwells = rig.dwells(agenda.asks_of_formulas_along(Covariate::Dwell));
-    let settings = REPETITIONS.len() * sweeps.len() * times.len() * speeds.len() * dwells.len();
-    let contacts = rig.contacts();
-    let loads_g = spread(&rig.loads_g, (MOST_CANDIDATES / settings / contacts.len()).max(FEWEST_LOADS));
+    let mut loads_g = rig.loads_g.clone();
+    loads_g.sort_by(f64::total_cmp);
     let mut all = Vec::new();
-    for (substrate, pins) in contacts {
+    for (substrate, pins) in rig.contacts() {
         let runs = loads_g.iter().map(|load_g| PlannedRun::usual(substrate, &pins, *load_g, rig));
         let of_contact = runs.map(|run| Candidate { run, late: false, after_g: 0.0 }).collect();
         let mut of_contact = within_cell_only(of_contact, model, rig);
@@ -105,9 +110,13 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
         }
         // No heavier weight precedes the heaviest one.
         of_contact.retain(|c| c.run.sweep == Sweep::Up || c.after_g > c.run.load_mass_g);
-        all.extend(within_cell_only(of_contact, model, rig));
+        all.extend(of_contact);
     }
-    all
+    let columns = model.values().len() + agenda.contributions.len();
+    let most = (MOST_ELEMENTS / columns / columns).min(MOST_CANDIDATES).min(all.len());
+    let mut chosen = sample(&mut ChaCha8Rng::seed_from_u64(SEED), all.len(), most).into_vec();
+    chosen.sort_unstable();
+    within_cell_only(chosen.into_iter().map(|i| all[i].clone()).collect(), model, rig)
 }
 
 /// Returns each candidate with each of some values.
@@ -143,18 +152,6 @@ pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -
     let fits = |force_n: f64| force_n * FORCE_MARGIN <= rig.cell_limit_n;
     let readings_n = model.predict(&points);
     pulled.predict(&points).into_iter().zip(readings_n).map(|(a, b)| fits(a) && fits(b)).collect()
-}
-
-/// Returns `most` of the values, evenly spaced by rank, ascending and including the extremes.
-fn spread(values: &[f64], most: usize) -> Vec<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    let last = sorted.len().saturating_sub(1);
-    let steps = most.min(sorted.len()).saturating_sub(1).max(1);
-    let mut kept: Vec<f64> = (0..=steps).filter_map(|i| sorted.get(i * last / steps).copied()).collect();
-    kept.dedup();
-    kept
 }
 
 /// Returns the rows of a candidate in its own session, which began `begins_s` seconds before; with
@@ -232,15 +229,5 @@ mod tests {
         assert_eq!(within_cell(&model, &rows, &rig), within_cell(&saturated, &rows, &rig));
         assert!(within_cell(&model, &rows, &rig).contains(&false));
         assert!(heaviest(&saturated) <= heaviest(&model));
-    }
-
-    #[test]
-    fn few_loads_include_the_extremes() {
-        let many: Vec<f64> = (0..40).rev().map(|i| 50.0 + 100.0 * f64::from(i)).collect();
-        let few = spread(&many, 6);
-        assert_eq!(few.len(), 6);
-        assert_eq!((few[0], few[5]), (50.0, 3950.0));
-        assert!(few.is_sorted());
-        assert_eq!(spread(&[7.0, 7.0], 6), [7.0]);
     }
 }

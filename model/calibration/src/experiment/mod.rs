@@ -523,6 +523,27 @@ mod tests {
         assert!(planned.iter().any(|row| row.load_n > 40.0));
         let (readings_n, _) = calibrated.model.predict(&planned, Session::New, "model.toml").unwrap();
         assert!(readings_n.iter().all(|reading| 1.1 * reading <= 65.0 + 0.5), "{readings_n:?}");
+        let Calibrated { report, model, rows, vocabulary } = &calibrated;
+        let known = Known { report, model, rows, vocabulary, name: "d" };
+        let tiny = propose(known, &RigLimits { cell_limit_n: 0.1, ..rig }, 30.0);
+        assert_eq!(tiny, Err(ExperimentError::CellTooSmall { limit_n: 0.1 }));
+    }
+
+    /// A rig with forty layouts and weights is planned in seconds.
+    #[test]
+    fn large_rigs_are_sampled() {
+        let mut rows = session(1);
+        rows.retain(|row| row.pins.is_empty());
+        let calibrated = calibrated(rows, &Vocabulary::built_in());
+        let layouts = (1..=8).flat_map(|i| (i + 3..=8 + i).map(move |j| vec![i, j]).take(5));
+        let rig = RigLimits {
+            loads_g: (1..=40).map(|i| 125.0 * f64::from(i)).collect(),
+            layouts: layouts.collect(),
+            ..RigLimits::default()
+        };
+        let proposal = proposed(&calibrated, &rig, 20.0);
+        assert!(proposal.minutes <= 20.0, "{proposal:?}");
+        assert!(proposal.questions.iter().any(|q| q.resolved_probability > 0.9), "{proposal:?}");
     }
 
     /// Readings from which an effect was derived do not answer whether it acts, however many.

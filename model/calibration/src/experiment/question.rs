@@ -85,7 +85,7 @@ impl Question {
     /// Returns the question whether an effect acts. It is found at the probability of a reported
     /// effect. Its absence is shown by readings, not by its small prior odds, so even odds precede
     /// them.
-    fn whether(id: &str, probability: f64, size: Option<f64>, column: usize, nuisance: Vec<usize>) -> Self {
+    fn presence(id: &str, probability: f64, size: Option<f64>, column: usize, nuisance: Vec<usize>) -> Self {
         let probability = if probability.is_finite() { probability.clamp(OPEN.0, OPEN.1) } else { UNDECIDED };
         Self {
             between: [id.to_owned(), NONE.to_owned()],
@@ -247,7 +247,7 @@ impl Agenda {
         if highest_n <= COVERED * to_n {
             let column = agenda.add(Contribution::AboveLoads { from_n: highest_n, to_n });
             let id = format!("{FRICTION_ABOVE}{highest_n:.0}_N");
-            let question = Question::whether(&id, STRUCTURE_PROBABILITY, None, column, fitted);
+            let question = Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted);
             agenda.questions.push(question);
         }
         agenda
@@ -335,7 +335,7 @@ impl Agenda {
             let nuisance = fitted.iter().copied().filter(|i| !absorbing.contains(i)).collect();
             let column = self.add(contribution);
             self.effects.push(effect);
-            self.questions.push(Question::whether(id, probability, None, column, nuisance));
+            self.questions.push(Question::presence(id, probability, None, column, nuisance));
         }
     }
 
@@ -351,7 +351,7 @@ impl Agenda {
         let size = values.first().map_or(1.0, |size| size.abs());
         let column = self.add(Contribution::Added { effect, values });
         self.effects.push(effect);
-        self.questions.push(Question::whether(effect.id(), probability, Some(size), column, nuisance));
+        self.questions.push(Question::presence(effect.id(), probability, Some(size), column, nuisance));
     }
 
     fn asks_about(&self, id: &str) -> bool {
@@ -409,7 +409,7 @@ mod tests {
     use super::*;
 
     fn asked(probability: f64) -> Question {
-        Question::whether("adhesion", probability, Some(0.2), 0, Vec::new())
+        Question::presence("adhesion", probability, Some(0.2), 0, Vec::new())
     }
 
     fn after(question: &Question, squares: f64) -> f64 {

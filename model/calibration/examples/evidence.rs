@@ -74,7 +74,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 Ok((squares.sum::<f64>() / next.rows.len() as f64).sqrt())
             };
             let (new, fitted) = (error(Session::New)?, error(Session::Fitted)?);
-            println!("  second table by {name}: {new:.3} N as a new session, {fitted:.3} N as the fitted one");
+            println!(
+                "  second table by {name}: {new:.3} N as a new session, {fitted:.3} N as the fitted one"
+            );
         }
     }
     println!("  {seconds:.2} s");

@@ -35,10 +35,8 @@ pub(crate) fn is_adequate(residuals: &[Residual<'_>]) -> bool {
         cells.entry((residual.series, residual.point.sign > 0.0)).or_default().push(residual);
     }
     let mean = |cell: &[&Residual<'_>]| cell.iter().map(|r| r.residual_n).sum::<f64>() / cell.len() as f64;
-    let within: Vec<(&Point, f64)> = cells
-        .values()
-        .flat_map(|cell| cell.iter().map(|r| (r.point, r.residual_n - mean(cell))))
-        .collect();
+    let within: Vec<(&Point, f64)> =
+        cells.values().flat_map(|cell| cell.iter().map(|r| (r.point, r.residual_n - mean(cell)))).collect();
     let between: Vec<(&Point, f64)> =
         cells.values().filter_map(|cell| Some((cell.first()?.point, mean(cell)))).collect();
     let side = |p: &Point| i64::from(p.sign > 0.0);
@@ -108,8 +106,10 @@ mod tests {
         let points = points();
         let residuals: Vec<Residual<'_>> = points
             .iter()
-            .map(|(series, point, noise)| {
-                Residual { point, series: *series, residual_n: noise + change(point) }
+            .map(|(series, point, noise)| Residual {
+                point,
+                series: *series,
+                residual_n: noise + change(point),
             })
             .collect();
         is_adequate(&residuals)

@@ -134,11 +134,12 @@ pub fn calibrate(
     check_finite_effects(&baseline, rows)?;
     let unfit = CalibrationError::Unfit;
     // Effects that were derived from these readings are tested on the others only.
-    let unseen: Vec<_> =
-        vocabulary.own().filter_map(|own| trial_of_unseen(own.definition(), rows, vocabulary, seed)).collect();
-    let is_barred = |id: &str| {
-        unseen.iter().any(|trial| trial.id == id && trial.outcome != TrialOutcome::Confirmed)
-    };
+    let unseen: Vec<_> = vocabulary
+        .own()
+        .filter_map(|own| trial_of_unseen(own.definition(), rows, vocabulary, seed))
+        .collect();
+    let is_barred =
+        |id: &str| unseen.iter().any(|trial| trial.id == id && trial.outcome != TrialOutcome::Confirmed);
     let mut searched = vocabulary.retaining(|own| !is_barred(&own.definition().id));
     let mut evidence = Evidence::new(rows, &searched, seed).map_err(unfit)?;
     let trials = trials(vocabulary, &evidence, unseen);
@@ -231,9 +232,7 @@ mod tests {
         let plain = vocabulary(file(0.5, ""));
         let bump = Term::Named(plain.named("mine").unwrap());
         let rows_with = |seed, size: f64| session_with(seed, &[(bump.clone(), &[size])]);
-        let report = |rows: &[PlateauRow], vocabulary| {
-            calibrate(rows, &vocabulary, 1).unwrap().report
-        };
+        let report = |rows: &[PlateauRow], vocabulary| calibrate(rows, &vocabulary, 1).unwrap().report;
         let first = rows_with(4, 0.5);
         let named = |report: &Report| report.effects.iter().any(|e| e.id == "mine");
         assert!(named(&report(&first, plain.clone())), "a hypothesis is found");

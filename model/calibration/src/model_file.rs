@@ -101,10 +101,9 @@ pub struct ModelFile {
 /// Returns whether a term depends on the operator.
 fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
     match term {
-        Term::Structure(structure) => matches!(
-            structure.form,
-            Shape::OperatorIs { .. } | Shape::Table { over: Abscissa::Operator, .. }
-        ),
+        Term::Structure(structure) => {
+            matches!(structure.form, Shape::OperatorIs { .. } | Shape::Table { over: Abscissa::Operator, .. })
+        }
         Term::Named(effect) => vocabulary
             .own()
             .any(|own| own.definition().id == effect.id() && own.definition().formula.contains("operator")),
@@ -347,7 +346,11 @@ mod tests {
     }
 
     fn sd_n(text: &str) -> f64 {
-        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], Session::New, "model.toml").unwrap().1[0]
+        ModelFile::parse(text, "model.toml")
+            .unwrap()
+            .predict(&session(3)[..1], Session::New, "model.toml")
+            .unwrap()
+            .1[0]
     }
 
     #[test]

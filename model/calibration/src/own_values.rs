@@ -6,10 +6,7 @@ use crate::model::{Model, Term};
 use crate::table::PlateauRow;
 
 /// Checks that every user-defined effect is finite on every row at all start values of its fit.
-pub(crate) fn check_finite_effects(
-    baseline: &Model,
-    rows: &[PlateauRow],
-) -> Result<(), CalibrationError> {
+pub(crate) fn check_finite_effects(baseline: &Model, rows: &[PlateauRow]) -> Result<(), CalibrationError> {
     let vocabulary = &baseline.vocabulary;
     let points = baseline.frame.points(rows).unwrap_or_default();
     for effect in vocabulary.own().filter_map(|own| vocabulary.named(&own.definition().id)) {

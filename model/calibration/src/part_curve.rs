@@ -75,10 +75,10 @@ impl ModelFile {
         }
         if !inside.is_empty() {
             let drawn = |id: &str| {
-                model
-                    .vocabulary
-                    .own()
-                    .any(|own| own.definition().id == id && own.definition().drawn_from.as_ref().is_some_and(|from| !from.is_empty()))
+                model.vocabulary.own().any(|own| {
+                    own.definition().id == id
+                        && own.definition().drawn_from.as_ref().is_some_and(|from| !from.is_empty())
+                })
             };
             let names: Vec<String> = inside
                 .iter()

@@ -44,7 +44,8 @@ impl Coefficients {
         let Linearised { design, point } = Linearised::new(problem, fit)?;
         let mut roles: Vec<Coefficient> = Vec::new();
         for role in &design.roles {
-            let count = |is_alike: &dyn Fn(&Coefficient) -> bool| roles.iter().filter(|r| is_alike(r)).count();
+            let count =
+                |is_alike: &dyn Fn(&Coefficient) -> bool| roles.iter().filter(|r| is_alike(r)).count();
             roles.push(match *role {
                 Role::Constant(i) => Coefficient::Constant(i),
                 Role::Size(effect) => Coefficient::Size(effect),

@@ -68,7 +68,13 @@ pub(crate) struct Start<'a> {
 impl<'a> Start<'a> {
     /// Returns a start at the mode of a fit.
     pub(crate) fn at(fit: &'a Fit, hint: Option<(usize, f64)>) -> Self {
-        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), is_final: false, hint, excluded: &[] }
+        Self {
+            mode: Some(&fit.mode),
+            hypothesis: Some(&fit.hypothesis),
+            is_final: false,
+            hint,
+            excluded: &[],
+        }
     }
 }
 

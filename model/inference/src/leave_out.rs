@@ -13,8 +13,8 @@ use std::collections::BTreeSet;
 use nalgebra::DMatrix;
 
 use crate::design::{Design, Role};
-use crate::marginal::posterior_mean;
 use crate::fit::{Fit, size_variances};
+use crate::marginal::posterior_mean;
 use crate::problem::Problem;
 use crate::scales::{ScalePoint, ScaleProblem};
 

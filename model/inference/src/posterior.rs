@@ -7,9 +7,9 @@ use crate::expected_error::{ExpectedError, expected_error, kernel_curve};
 use crate::fit::{Fit, Start};
 use crate::hypothesis::{Hypothesis, Member};
 use crate::leave_out::Linearised;
+use crate::outliers::Outliers;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, normal_cdf};
-use crate::outliers::Outliers;
 use crate::score::{Scores, SizeLimits};
 use crate::search::{Search, SearchOptions};
 
@@ -78,7 +78,10 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let mut fits = search.fit_count;
     for _ in 0..MOST_EXCLUSIONS {
         let suspected = Outliers::suspected(problem, window.first()?);
-        let is_new = suspected.iter().enumerate().any(|(row, out)| *out != excluded.get(row).copied().unwrap_or(false));
+        let is_new = suspected
+            .iter()
+            .enumerate()
+            .any(|(row, out)| *out != excluded.get(row).copied().unwrap_or(false));
         if !is_new {
             break;
         }

@@ -39,13 +39,16 @@ pub(super) fn influence(
         .margin(8)
         .x_label_area_size(38)
         .y_label_area_size(50)
-        .build_cartesian_2d(drawable(0.0, count + 1.0), drawable(-high, high))?;
+        .build_cartesian_2d(drawable(0.0, count + 1.0), drawable(-high, 1.3 * high))?;
     let whole = |x: &f64| super::whole_at(*x);
+    // Without a negative zero.
+    let rounded = |y: &f64| format!("{}", (1e6 * y).round() / 1e6 + 0.0);
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .x_labels(LABELS)
         .x_label_formatter(&whole)
+        .y_label_formatter(&rounded)
         .x_desc("series, in the order of the session")
         .y_desc("mean of reading - prediction (N)")
         .draw()?;

@@ -98,9 +98,8 @@ fn residuals(plots: &[Plot]) -> String {
     if let Some(plot) = plots.iter().find(|p| p.file == "noise-quantiles.svg") {
         html.push_str(
             "<h3>Distribution of the noise</h3><p>Each dot is a reading: its repetition noise, in units of the scale of the noise, \
-             over the quantile that the assumed distribution has there. Dots near the line are as expected. Ends that are \
-             steeper than the line mean more large errors than expected, a slope below 1 noise that is smaller than \
-             estimated.</p>\n",
+             over the quantile that the assumed distribution has there. Dots near the line are as expected; dots \
+             beyond it at the ends are more large errors than expected, and dots short of it fewer.</p>\n",
         );
         html.push_str(&figure(plot));
     }

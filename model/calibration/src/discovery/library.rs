@@ -291,7 +291,8 @@ mod tests {
                 Channel::Silicone,
             ];
             let all: Vec<Acting> = channels.iter().flat_map(|channel| actings(*channel)).copied().collect();
-            for (form, acting) in forms.iter().flat_map(|form| all.iter().map(move |acting| (form, *acting))) {
+            for (form, acting) in forms.iter().flat_map(|form| all.iter().map(move |acting| (form, *acting)))
+            {
                 let definition = form.on(acting, covariate, 1).definition;
                 let checked = OwnEffect::new(definition.clone());
                 assert!(checked.is_ok(), "{:?}: {}", definition.formula, checked.unwrap_err());

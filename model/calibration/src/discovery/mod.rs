@@ -141,8 +141,8 @@ pub(crate) fn draw_form(
         })
         .collect();
     // The prior odds of a structure are those of its formula.
-    let in_model = best.fit.log_evidence >= posterior.window.first()?.log_evidence
-        && !kernel.is_session_bound;
+    let in_model =
+        best.fit.log_evidence >= posterior.window.first()?.log_evidence && !kernel.is_session_bound;
     Some(DrawnForm {
         report: FormReport {
             shape,

@@ -65,7 +65,13 @@ impl Abscissa {
             Self::Position => p.position,
             Self::LogRepetition => libm::log(p.repetition),
             Self::SeriesReadings => p.through,
-            Self::Alternation => if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 },
+            Self::Alternation => {
+                if p.repetition % 2.0 > 0.5 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
             Self::Load => p.load_n,
             Self::LogSpeed => p.log_speed,
             Self::LogDwell => p.log_dwell,

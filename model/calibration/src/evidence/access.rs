@@ -175,9 +175,11 @@ impl Evidence {
     /// Returns the session or specimen of each row of the problem.
     pub(crate) fn groups(&self, by: &str) -> impl Iterator<Item = &str> {
         let is_session = by == "session";
-        self.groups.iter().map(move |[session, specimen]| {
-            if is_session { session.as_str() } else { specimen.as_str() }
-        })
+        self.groups.iter().map(
+            move |[session, specimen]| {
+                if is_session { session.as_str() } else { specimen.as_str() }
+            },
+        )
     }
 }
 

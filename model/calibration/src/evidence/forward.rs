@@ -173,9 +173,15 @@ impl FrictionModel {
         let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
         let states: Vec<ContactState> =
             self.conditions.iter().map(|c| self.contact(c, mu, constants, factors)).collect();
+        let moves = acting.iter().any(|(prior, _)| prior.effect.moves_along_a_series());
+        let mut last: Option<(&Point, f64)> = None;
         points
             .iter()
             .map(|point| {
+                // Repetitions at one setting have one expectation, unless an effect varies within a series.
+                if let Some((_, reading)) = last.filter(|(known, _)| !moves && known.has_setting_of(point)) {
+                    return reading;
+                }
                 let condition = &self.conditions[point.condition];
                 let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
                 for (prior, values) in &acting {
@@ -189,6 +195,7 @@ impl FrictionModel {
                 for (prior, values) in &acting {
                     reading = prior.effect.on_reading(values, point, condition, reading);
                 }
+                last = Some((point, reading));
                 reading
             })
             .collect()

@@ -29,7 +29,7 @@ use self::covariates::{Covariates, RowLabels};
 use self::forward::{Baseline, Channel, FrictionModel, is_of_friction};
 use self::priors::EffectPrior;
 use self::structure::{Structure, structures};
-use crate::effects::{Vocabulary};
+use crate::effects::Vocabulary;
 use crate::model::{DiscrepancyFactor, Largest, Model};
 use crate::table::{Condition, Frame, PlateauRow, Point};
 
@@ -132,7 +132,12 @@ impl Evidence {
             Diagnostic::new("the friction model is not finite on this table")
                 .with_help("check loads and readings for values that a rig cannot have")
         })?;
-        let groups = rows.labels.iter().map(|l| (l.session.clone(), l.specimen.clone())).map(|(session, specimen)| [session, specimen]).collect();
+        let groups = rows
+            .labels
+            .iter()
+            .map(|l| (l.session.clone(), l.specimen.clone()))
+            .map(|(session, specimen)| [session, specimen])
+            .collect();
         let Covariates { source, points, readings, .. } = rows;
         Ok(Self { problem, posterior, setup, source, points, readings, groups })
     }

@@ -218,20 +218,44 @@ impl Collector<'_> {
             let scale = Interval::of(&at);
             let waves: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
             let steps: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
-            self.add("position", "position", Record::Table(Abscissa::Position, false), COMMON, vec![waves, steps]);
+            self.add(
+                "position",
+                "position",
+                Record::Table(Abscissa::Position, false),
+                COMMON,
+                vec![waves, steps],
+            );
         }
         let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
         let at = repetition(self.rows);
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
             let settling: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
-            self.add("repetition", "repetition", Record::Table(Abscissa::LogRepetition, false), COMMON, vec![settling]);
+            self.add(
+                "repetition",
+                "repetition",
+                Record::Table(Abscissa::LogRepetition, false),
+                COMMON,
+                vec![settling],
+            );
             let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
             let alternation: Basis = Box::new(move |rows| kernel::single(&rows.column(sign)));
-            self.add("alternate repetitions", "repetition", Record::Table(Abscissa::Alternation, true), COMMON, vec![alternation]);
+            self.add(
+                "alternate repetitions",
+                "repetition",
+                Record::Table(Abscissa::Alternation, true),
+                COMMON,
+                vec![alternation],
+            );
             let scale = Interval::of(&self.rows.series_time_s);
             let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
-            self.add("time in a series", "repetition", Record::Table(Abscissa::SeriesReadings, false), COMMON, vec![creep]);
+            self.add(
+                "time in a series",
+                "repetition",
+                Record::Table(Abscissa::SeriesReadings, false),
+                COMMON,
+                vec![creep],
+            );
         }
     }
 
@@ -253,14 +277,26 @@ impl Collector<'_> {
             self.add("load", "load", Record::Table(Abscissa::Load, false), &channels, vec![curve]);
         }
         if (4..=MOST_LOADS).contains(&distinct(&loads)) {
-            self.levels("weight", "load", Record::Table(Abscissa::Load, true), &[Channel::Reading, Channel::Gain], load_level);
+            self.levels(
+                "weight",
+                "load",
+                Record::Table(Abscissa::Load, true),
+                &[Channel::Reading, Channel::Gain],
+                load_level,
+            );
         }
         let memory = |p: &Point| {
             let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
             (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
         };
         let memory: Basis = Box::new(move |rows| kernel::single(&rows.column(memory)));
-        self.add("previous load", "load", Record::Memory, &[Channel::Silicone, Channel::Friction], vec![memory]);
+        self.add(
+            "previous load",
+            "load",
+            Record::Memory,
+            &[Channel::Silicone, Channel::Friction],
+            vec![memory],
+        );
     }
 
     fn protocol(&mut self) {
@@ -272,14 +308,26 @@ impl Collector<'_> {
             self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), COMMON, vec![curve]);
         } else if distinct(&speeds) == 2 {
             let sign: Basis = Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
-            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), &[Channel::Drag], vec![sign]);
+            self.add(
+                "speed",
+                "speed",
+                Record::Table(Abscissa::LogSpeed, false),
+                &[Channel::Drag],
+                vec![sign],
+            );
         }
         let dwell = |rows: &Covariates| rows.column(|p| p.log_dwell);
         let dwells = dwell(self.rows);
         if distinct(&dwells) > 1 {
             let scale = Interval::of(&dwells);
             let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
-            self.add("dwell", "dwell", Record::Table(Abscissa::LogDwell, false), &[Channel::Reading, Channel::Friction], vec![curve]);
+            self.add(
+                "dwell",
+                "dwell",
+                Record::Table(Abscissa::LogDwell, false),
+                &[Channel::Reading, Channel::Friction],
+                vec![curve],
+            );
         }
         let descending = self.rows.column(|p| p.descending);
         if distinct(&descending) == 2 {
@@ -289,18 +337,35 @@ impl Collector<'_> {
     }
 
     fn factors(&mut self) {
-        self.levels("condition", "condition", Record::Table(Abscissa::Condition, true), COMMON, |_, label| label.condition.clone());
+        self.levels(
+            "condition",
+            "condition",
+            Record::Table(Abscissa::Condition, true),
+            COMMON,
+            |_, label| label.condition.clone(),
+        );
         let wraps = distinct(&self.rows.wrap_deg);
         if wraps < self.rows.level_names(|label| &label.condition).len() {
             let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
-            self.levels("wrap angle", "condition", Record::Table(Abscissa::Condition, true), &[Channel::Reading, Channel::Friction], wrap);
+            self.levels(
+                "wrap angle",
+                "condition",
+                Record::Table(Abscissa::Condition, true),
+                &[Channel::Reading, Channel::Friction],
+                wrap,
+            );
         }
         // The mount effect on friction is in every hypothesis.
         let forces = &[Channel::Reading, Channel::Drag];
         self.levels("mount", "mount", Record::Nothing, forces, |_, label| label.mount.clone());
-        let switches = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
-        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| label.specimen.clone());
-        self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| label.operator.clone());
+        let switches =
+            &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
+        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
+            label.specimen.clone()
+        });
+        self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| {
+            label.operator.clone()
+        });
         self.levels("session", "session", Record::Latest, switches, |_, label| label.session.clone());
     }
 

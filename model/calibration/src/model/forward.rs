@@ -80,8 +80,8 @@ impl Model {
         for (index, term) in self.terms.iter().enumerate() {
             let constants = &values[at..at + term.constants()];
             at += term.constants();
-            let is_kept = !is_part
-                || matches!(term, Term::Named(effect) if effect.description().side == Side::Switch);
+            let is_kept =
+                !is_part || matches!(term, Term::Named(effect) if effect.description().side == Side::Switch);
             let discrepancies = self.discrepancies.iter().filter(|d| d.term == index).collect();
             terms.extend(is_kept.then_some(Acting { term, constants, discrepancies }));
         }

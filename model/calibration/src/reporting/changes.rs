@@ -15,8 +15,11 @@ pub(super) fn changes(evidence: &Evidence) -> Vec<ChangeReport> {
             let Member::Kernel(kernel) = reported.member else { return None };
             let curve = evidence.posterior().curve(evidence.problem(), kernel)?;
             let by = evidence.covariate(reported.member);
-            let factors: BTreeMap<String, f64> =
-                evidence.groups(by).zip(curve).map(|(group, value)| (group.to_owned(), 1.0 + value)).collect();
+            let factors: BTreeMap<String, f64> = evidence
+                .groups(by)
+                .zip(curve)
+                .map(|(group, value)| (group.to_owned(), 1.0 + value))
+                .collect();
             Some(ChangeReport {
                 constant: evidence.changing_constant(kernel).to_owned(),
                 by: by.to_owned(),

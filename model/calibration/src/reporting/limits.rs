@@ -105,7 +105,8 @@ fn acts(evidence: &Evidence, effect: &'static dyn Effect, baseline: &Fitted) -> 
 /// Returns every effect with its probability and outcome, the most probable first.
 pub(super) fn candidates(evidence: &Evidence) -> Vec<CandidateReport> {
     let posterior = evidence.posterior();
-    let is_rival = |member: Member| posterior.reported.iter().any(|r| r.rivals.iter().any(|(m, _)| *m == member));
+    let is_rival =
+        |member: Member| posterior.reported.iter().any(|r| r.rivals.iter().any(|(m, _)| *m == member));
     let mut all: Vec<CandidateReport> = (0..evidence.problem().space().effects.len())
         .map(|index| {
             let member = Member::Effect(index);

@@ -202,6 +202,19 @@ pub struct Point {
 }
 
 impl Point {
+    /// Returns whether two rows differ at most in repetition, position, time and order.
+    pub(crate) fn has_setting_of(&self, other: &Point) -> bool {
+        self.has_contact_of(other)
+            && self.load_n == other.load_n
+            && self.sign == other.sign
+            && self.descending == other.descending
+            && self.log_speed == other.log_speed
+            && self.log_dwell == other.log_dwell
+            && self.session == other.session
+            && self.mount == other.mount
+            && self.operator == other.operator
+    }
+
     /// Returns whether two rows have the same contact before any effect.
     pub(crate) fn has_contact_of(&self, other: &Point) -> bool {
         self.condition == other.condition

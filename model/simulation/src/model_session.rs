@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::{Frame, PlateauRow};

@@ -26,7 +26,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n, report.noise_floor_n
     );
     if let Some(error) = report.expected_error_n {
-        println!("expected error of a new session: {:.3} N [{:.3}, {:.3}]", error.value, error.ci90[0], error.ci90[1]);
+        println!(
+            "expected error of a new session: {:.3} N [{:.3}, {:.3}]",
+            error.value, error.ci90[0], error.ci90[1]
+        );
     }
     for effect in &report.effects {
         println!("{} with probability {:.4}: {}", effect.id, effect.probability, effect.formula);

@@ -1,6 +1,8 @@
 //! Effects in words, for the terminal and for pages.
 
-use pinswitch_calibration::{EffectReport, Report, StructureReport};
+use std::collections::BTreeMap;
+
+use pinswitch_calibration::{EffectReport, Estimate, Report, StructureReport};
 use pinswitch_friction::sort_by_number;
 
 /// Built-in effects by id, each as a clause that follows `that`.
@@ -41,6 +43,38 @@ pub fn reported_clause(effect: &EffectReport) -> String {
         Some(_) => effect_clause(&effect.id),
         None => format!("an effect without a name acts over {}", effect.covariate),
     }
+}
+
+/// Returns the constants of a reported effect with their 95 % intervals, such as
+/// `-0.14 N [-0.18, -0.10]`; several constants have their names. Structure has none: its curve is in its
+/// formula.
+pub fn constants_words(effect: &EffectReport) -> String {
+    if effect.side.is_none() {
+        return String::new();
+    }
+    parameters_words(&effect.parameters)
+}
+
+/// Returns constants with their 95 % intervals; a single one without its name.
+pub fn parameters_words(parameters: &BTreeMap<String, Estimate>) -> String {
+    let each = parameters.iter().map(|(name, estimate)| {
+        let name = if parameters.len() == 1 { String::new() } else { format!("{name} = ") };
+        format!("{name}{}", estimate_words(estimate))
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Most decimals of an estimate.
+const MAX_DECIMALS: f64 = 9.0;
+
+/// Returns an estimate with its unit and interval, rounded to one digit of half the interval.
+fn estimate_words(estimate: &Estimate) -> String {
+    let Estimate { value, ci95: [low, high], unit } = estimate;
+    let digits = -libm::floor(libm::log10(0.5 * (high - low)));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to MAX_DECIMALS")]
+    let decimals = if digits.is_finite() { digits.clamp(0.0, MAX_DECIMALS) as usize } else { 4 };
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    format!("{value:.decimals$}{unit} [{low:.decimals$}, {high:.decimals$}]")
 }
 
 /// Returns effects and structures with a probability above `least` that are neither reported nor rivals,
@@ -84,5 +118,23 @@ mod tests {
         }
         assert!(CLAUSES.is_sorted_by_key(|(id, _)| *id));
         assert_eq!(effect_clause("lubricant_dip"), "lubricant_dip acts");
+    }
+    #[test]
+    fn estimates_have_digits_of_their_interval() {
+        let words =
+            |value, ci95, unit: &str| estimate_words(&Estimate { value, ci95, unit: unit.to_owned() });
+        assert_eq!(words(-0.1402, [-0.1803, -0.0998], "N"), "-0.14 N [-0.18, -0.10]");
+        assert_eq!(words(9.9881, [9.9745, 10.0021], "N"), "9.99 N [9.97, 10.00]");
+        assert_eq!(words(0.0304, [0.0299, 0.0308], "1"), "0.0304 [0.0299, 0.0308]");
+        assert_eq!(words(1.0, [1.0, 1.0], "1"), "1.0000 [1.0000, 1.0000]");
+    }
+
+    #[test]
+    fn single_constants_have_no_name() {
+        let offset = |value| Estimate { value, ci95: [-0.18, -0.1], unit: "N".to_owned() };
+        let one = BTreeMap::from([("b".to_owned(), offset(-0.14))]);
+        assert_eq!(parameters_words(&one), "-0.14 N [-0.18, -0.10]");
+        let two = BTreeMap::from([("b".to_owned(), offset(-0.14)), ("k".to_owned(), offset(-0.15))]);
+        assert_eq!(parameters_words(&two), "b = -0.14 N [-0.18, -0.10], k = -0.15 N [-0.18, -0.10]");
     }
 }

@@ -1,12 +1,12 @@
 //! The summary of a calibration for the terminal; report.html has the details.
 
-use std::collections::BTreeMap;
-
 use pinswitch_calibration::{
-    Estimate, ExpectedErrorReport, FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict,
+    ExpectedErrorReport, FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict,
 };
 use pinswitch_diagnostic::neutral_line;
-use pinswitch_report::{effect_clause, other_probabilities, reported_clause};
+use pinswitch_report::{
+    constants_words, effect_clause, other_probabilities, parameters_words, reported_clause,
+};
 
 /// Most series, effects and columns that a line lists.
 const MAX_LISTED: usize = 6;
@@ -114,26 +114,13 @@ fn probability(p: f64) -> String {
     }
 }
 
-/// Formats a number with three significant digits.
-fn short(value: f64) -> String {
-    let size = value.abs();
-    let decimals = [(100.0, 0), (10.0, 1), (1.0, 2), (0.1, 3), (0.01, 4)];
-    match size {
-        size if size > 0.0 && !(1e-3..1e6).contains(&size) => format!("{value:.2e}"),
-        size => {
-            let decimals = decimals.iter().find(|(from, _)| size >= *from).map_or(5, |(_, decimals)| *decimals);
-            format!("{value:.decimals$}")
-        }
-    }
-}
-
 /// Formats the reported effects with their probabilities and rivals.
 fn effects(report: &Report) -> String {
     let mut text = String::new();
     for effect in &report.effects {
         let named = effect.side.is_some();
         let name = if named { &effect.id } else { &effect.formula };
-        let constants = constants(&effect.parameters);
+        let constants = constants_words(effect);
         let constants = if constants.is_empty() { constants } else { format!(": {constants}") };
         text.push_str(&format!(
             "probability {} that {}{constants} ({name})\n",
@@ -156,16 +143,6 @@ fn effects(report: &Report) -> String {
         }
     }
     text
-}
-
-/// Formats constants with their intervals; a single one without its name.
-fn constants(parameters: &BTreeMap<String, Estimate>) -> String {
-    let each = parameters.iter().map(|(name, e)| {
-        let name = if parameters.len() == 1 { String::new() } else { format!("{name} = ") };
-        let unit = if e.unit == "1" { String::new() } else { format!(" {}", e.unit) };
-        format!("{name}{}{unit} [{}, {}]", short(e.value), short(e.ci95[0]), short(e.ci95[1]))
-    });
-    each.collect::<Vec<_>>().join(", ")
 }
 
 /// Formats the other effects and structures that are not improbable.
@@ -223,7 +200,7 @@ fn fitted_form(form: &FormReport) -> String {
         "  resembles {} on {}: {}; explains {:.0} %{rivals}; {}; see discovered.toml\n",
         form.words(),
         form.acts_on,
-        constants(&form.parameters),
+        parameters_words(&form.parameters),
         100.0 * form.explains,
         if form.in_model { "included in the model" } else { "the model keeps the shapes" }
     )
@@ -297,18 +274,6 @@ fn bad_series(report: &Report) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn single_constants_have_no_name() {
-        let offset = |value, unit: &str| Estimate { value, ci95: [-0.18, -0.1], unit: unit.to_owned() };
-        let one = BTreeMap::from([("b".to_owned(), offset(-0.1402, "N"))]);
-        assert_eq!(constants(&one), "-0.140 N [-0.180, -0.100]");
-        let two = BTreeMap::from([
-            ("b".to_owned(), offset(-0.1402, "N")),
-            ("k".to_owned(), offset(-0.15, "1")),
-        ]);
-        assert_eq!(constants(&two), "b = -0.140 N [-0.180, -0.100], k = -0.150 [-0.180, -0.100]");
-    }
 
     #[test]
     fn probabilities_are_never_certain() {

@@ -214,10 +214,8 @@ fn residual(
     root.fill(&WHITE)?;
     let stride = readings.len().div_ceil(MAX_POINTS);
     let panels = root.split_evenly((1, 2));
-    let sides = [
-        (&readings.baseline_n, BASELINE, "baseline"),
-        (&readings.augmented_n, AUGMENTED, "augmented model"),
-    ];
+    let sides =
+        [(&readings.baseline_n, BASELINE, "baseline"), (&readings.augmented_n, AUGMENTED, "augmented model")];
     for (panel, (residual, colour, title)) in panels.iter().zip(sides) {
         let mut chart = ChartBuilder::on(panel)
             .margin(8)

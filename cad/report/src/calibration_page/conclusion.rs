@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use pinswitch_calibration::{Answer, EffectReport, PlanQuestion, Report, SessionPlan, TrialReport, Verdict};
 
-use super::super::effect_words::{effect_clause, other_probabilities, reported_clause};
+use super::super::effect_words::{constants_words, effect_clause, other_probabilities, reported_clause};
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
 use super::number::{newtons, number, probability, short};
@@ -54,25 +54,10 @@ fn effects(report: &Report) -> String {
 
 fn effect(effect: &EffectReport) -> String {
     let name = if effect.side.is_some() { &effect.id } else { &effect.formula };
-    let constants: Vec<String> = effect
-        .parameters
-        .iter()
-        .map(|(name, e)| {
-            format!(
-                "{} = {} [{}, {}] {}",
-                escape(name),
-                short(e.value),
-                short(e.ci95[0]),
-                short(e.ci95[1]),
-                if e.unit == "1" { "".into() } else { escape(&e.unit) }
-            )
-            .trim_end()
-            .to_owned()
-        })
-        .collect();
-    let constants = if constants.is_empty() { String::new() } else { format!(": {}", constants.join(", ")) };
+    let constants = constants_words(effect);
+    let constants = if constants.is_empty() { constants } else { format!(": {}", escape(&constants)) };
     let mut html = format!(
-        "<p>Probability <b>{}</b> that {} ({}){constants}",
+        "<p>Probability <b>{}</b> that {}{constants} ({})",
         probability(effect.probability),
         escape(&reported_clause(effect)),
         escape(name)
@@ -119,7 +104,8 @@ fn gross_errors(report: &Report) -> String {
     if report.bad_series.is_empty() {
         return String::new();
     }
-    let each: Vec<String> = report.bad_series.iter().take(MAX_NAMED).map(|bad| escape(&bad.place())).collect();
+    let each: Vec<String> =
+        report.bad_series.iter().take(MAX_NAMED).map(|bad| escape(&bad.place())).collect();
     let more = report.bad_series.len().saturating_sub(MAX_NAMED);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     format!("<p>Gross errors, see section 6: {}{more}.</p>", each.join(", "))
@@ -223,7 +209,9 @@ fn verdict(report: &Report) -> String {
         Verdict::Inconclusive => return inconclusive(report),
         Verdict::Attributed if named == 1 => "the paper's model lacks one effect, which the data identify.",
         Verdict::Attributed => "the paper's model lacks these effects, which the data identify.",
-        Verdict::Ambiguous => "the paper's model lacks an effect, and the data cannot separate it from its rivals.",
+        Verdict::Ambiguous => {
+            "the paper's model lacks an effect, and the data cannot separate it from its rivals."
+        }
         Verdict::Unattributed => "the residuals have structure that no named effect explains.",
     };
     format!("<p>Verdict: <b>{}</b>: {words}</p>", report.verdict.as_str())
@@ -271,7 +259,12 @@ fn errors(report: &Report) -> String {
     let before = report.promise_baseline_n.map_or_else(String::new, newtons);
     let rows = [
         row("paper's model", "b", Some(report.baseline.heldout_series_rmse_n), before),
-        row("the same with drag, offset and gain, by least squares", "", report.least_squares_n, String::new()),
+        row(
+            "the same with drag, offset and gain, by least squares",
+            "",
+            report.least_squares_n,
+            String::new(),
+        ),
         row("this model", "a", Some(report.augmented.heldout_series_rmse_n), expected),
     ];
     format!(
@@ -285,7 +278,8 @@ fn errors(report: &Report) -> String {
 /// Returns whether repeated readings are as close to the model as to each other.
 fn adequacy(report: &Report) -> String {
     if report.adequate {
-        return "<p>The model is adequate: repeated readings are as close to it as to each other.</p>".to_owned();
+        return "<p>The model is adequate: repeated readings are as close to it as to each other.</p>"
+            .to_owned();
     }
     "<p><b>The model is not adequate.</b> Repeated readings are closer to each other than to the model. Check the right panels of \
      section 5, and the series in section 6.</p>"

@@ -171,7 +171,9 @@ fn discovered(form: &FormReport) -> String {
         let rivals: Vec<String> = form
             .rivals
             .iter()
-            .map(|r| format!("{} on {} (log evidence smaller by {})", r.shape, r.acts_on, number(r.worse_by, 1)))
+            .map(|r| {
+                format!("{} on {} (log evidence smaller by {})", r.shape, r.acts_on, number(r.worse_by, 1))
+            })
             .collect();
         let _ = write!(html, "<p>Equally good shapes: {}.</p>", escape(&rivals.join(", ")));
     }

@@ -69,11 +69,7 @@ fn group(effect: &EffectReport) -> Vec<Bar<'_>> {
 
 fn row(bar: &Bar<'_>) -> String {
     let mut html = String::new();
-    let name = if bar.class == "rival" {
-        format!("or {}", escape(bar.name))
-    } else {
-        escape(bar.name)
-    };
+    let name = if bar.class == "rival" { format!("or {}", escape(bar.name)) } else { escape(bar.name) };
     let width = if bar.probability.is_finite() { 100.0 * bar.probability.clamp(0.0, 1.0) } else { 0.0 };
     let _ = writeln!(
         html,

@@ -1,9 +1,8 @@
 //! Calibration with a table of measured plateaus that was dropped on the page.
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{ModelFile, SessionReport, calibrate_among};
+use pinswitch_calibration::{ModelFile, SessionReport, calibrate};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
@@ -14,6 +13,8 @@ use crate::refusal::Refusal;
 /// a browser.
 pub(crate) const MAX_TABLE_MB: usize = 20;
 const MAX_TABLE_BYTES: usize = MAX_TABLE_MB * 1_000_000;
+/// Seed of the interval of the expected error; it is fixed, so that a table has one result.
+const SEED: u64 = 1;
 
 /// What the page shows of a calibration.
 #[derive(Serialize)]
@@ -62,10 +63,10 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
     }
     let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from)?;
     table.require_baseline(file).map_err(Diagnostic::from)?;
-    let calibration = calibrate_among(&table.rows, &Vocabulary::built_in(), Levels::default())
+    let calibration = calibrate(&table.rows, &Vocabulary::built_in(), SEED)
         .map_err(|e| Diagnostic::from(e).or_in_file(file))?;
-    let (report, selection) = (&calibration.report, &calibration.selection);
-    let model = ModelFile::new(&selection.augmented, &calibration.data, selection.noise);
+    let report = &calibration.report;
+    let model = ModelFile::new(&calibration.augmented);
     let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
     Ok(Summary {
         verdict: report.verdict.as_str(),

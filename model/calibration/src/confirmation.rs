@@ -81,9 +81,10 @@ impl TrialReport {
         let known = if self.was_drawn { "derived before" } else { "typical" };
         let size = self.size.as_ref().zip(self.probability).map(|(size, probability)| {
             let [low, high] = size.ci95;
+            let unit = if size.unit == "1" { String::new() } else { format!(" {}", size.unit) };
             format!(
-                "probability {probability:.3}; size if it acts: {:.4} [{low:.4}, {high:.4}] {} ({known}: {:.4})",
-                size.value, size.unit, self.start
+                "probability {probability:.3}; size if it acts: {:.4}{unit} [{low:.4}, {high:.4}] ({known}: {:.4})",
+                size.value, self.start
             )
         });
         let words: Vec<String> = size.into_iter().chain(self.note.clone()).collect();

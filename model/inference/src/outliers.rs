@@ -62,6 +62,9 @@ pub struct Outliers {
     /// Root mean square of the other readings about their expectation from all readings, in scales of
     /// the noise of a reading.
     pub scatter: f64,
+    /// Every reading minus its expectation from all readings, in scales of the noise of a reading; not a
+    /// number for rows that the fit excludes.
+    pub standardised: Vec<f64>,
     rows: Vec<bool>,
 }
 
@@ -83,7 +86,11 @@ impl Outliers {
     }
 
     fn found(problem: &Problem, fit: &Fit, least: f64) -> Option<Self> {
-        let mut outliers = Self { rows: vec![false; problem.len()], ..Self::default() };
+        let mut outliers = Self {
+            rows: vec![false; problem.len()],
+            standardised: vec![f64::NAN; problem.len()],
+            ..Self::default()
+        };
         let linearised = Linearised::new(problem, fit)?;
         outliers.find_readings(problem, fit, &linearised);
         outliers.find_series(problem, fit, &linearised, least)?;
@@ -105,6 +112,7 @@ impl Outliers {
         for row in (0..problem.len()).filter(|row| fit.mode.weights[*row] != EXCLUDED) {
             let offset = (noise.own_variance(row) + quantum) * precise[row];
             let sd = (noise.independent_variance(row) + quantum).max(1e-24).sqrt();
+            self.standardised[row] = offset / sd;
             if student_tail(offset / sd) * (problem.len() as f64) < FAMILY_PROBABILITY {
                 self.readings.push(OutlyingReading { row, offset, sd });
                 self.rows[row] = true;

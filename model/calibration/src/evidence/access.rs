@@ -1,6 +1,6 @@
 //! What reports read off a posterior.
 
-use pinswitch_inference::{Kernel, Member};
+use pinswitch_inference::{Kernel, Member, leave_groups_out};
 
 use super::Evidence;
 use super::fitted::channel_of;
@@ -33,6 +33,43 @@ impl Evidence {
             outliers[*source] = self.posterior.outliers.contains(row);
         }
         outliers
+    }
+
+    /// Returns the reading of each row of the table in newtons.
+    pub fn readings_n(&self) -> Vec<f64> {
+        self.in_table_order(&self.readings)
+    }
+
+    /// Returns the weight of each row of the table in the best fit: below 1 for large residuals, 0 for a
+    /// row that is excluded.
+    pub fn weights(&self) -> Vec<f64> {
+        let best = self.posterior.window.first();
+        self.in_table_order(&best.map_or_else(Vec::new, |fit| fit.weights().collect()))
+    }
+
+    /// Returns the repetition noise of each row of the table in units of its scale, under the best
+    /// hypothesis: Student's t with 5 degrees of freedom if the noise is as assumed. A row that is
+    /// excluded has none.
+    pub fn standardised_noise(&self) -> Vec<f64> {
+        self.in_table_order(&self.posterior.outliers.standardised)
+    }
+
+    /// Returns reading minus prediction of each row of the table in newtons, where each series is
+    /// predicted from the others under the best hypothesis; `None` without a finite fit.
+    pub fn left_out_residuals_n(&self) -> Option<Vec<f64>> {
+        let best = self.posterior.window.first()?;
+        let groups: Vec<usize> = (0..self.series_count()).collect();
+        let residuals = leave_groups_out(&self.problem, best, &groups, |_| Vec::new())?;
+        Some(self.in_table_order(&residuals))
+    }
+
+    /// Returns numbers in the order of the problem in that of the table.
+    fn in_table_order(&self, values: &[f64]) -> Vec<f64> {
+        let mut ordered = vec![f64::NAN; self.source.len()];
+        for (row, value) in self.source.iter().zip(values) {
+            ordered[*row] = *value;
+        }
+        ordered
     }
 
     /// Returns the reading of a row of the table in newtons.
@@ -143,5 +180,28 @@ impl Evidence {
                 if is_session { session.as_str() } else { specimen.as_str() }
             },
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    /// The problem sorts the rows of a table by series and time.
+    #[test]
+    fn values_of_rows_are_in_table_order() {
+        let mut rows = session(3);
+        rows.reverse();
+        let evidence = Evidence::baseline(&rows, 1).unwrap();
+        let readings: Vec<f64> = rows.iter().map(|row| row.force_n).collect();
+        assert_eq!(evidence.readings_n(), readings);
+        let left_out = evidence.left_out_residuals_n().unwrap();
+        let fitted = evidence.fitted(&evidence.posterior().baseline).unwrap();
+        for ((left_out, reading), predicted) in left_out.iter().zip(&readings).zip(&fitted.predicted_n) {
+            assert!((left_out - (reading - predicted)).abs() < 0.1, "{left_out} {reading} {predicted}");
+        }
+        assert!(evidence.weights().iter().all(|weight| (0.0..1.3).contains(weight)));
+        assert!(evidence.standardised_noise().iter().all(|noise| noise.abs() < 8.0));
     }
 }

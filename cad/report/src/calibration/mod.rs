@@ -1,5 +1,9 @@
-//! Figures of a calibration: friction per condition, and residuals of baseline and augmented model
-//! over each covariate.
+//! Figures of a calibration: friction per condition, residuals of baseline and augmented model over
+//! each covariate, quantiles of the noise, and the left-out error of each series.
+
+mod influence;
+mod quantiles;
+mod readings;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -11,11 +15,16 @@ use plotters::prelude::*;
 
 use super::PlotError;
 use super::scale::drawable;
+use influence::influence;
+use quantiles::quantiles;
+use readings::Readings;
 
 /// Width and height of a condition's figure in pixels.
 const CONDITION: (u32, u32) = (440, 300);
 /// Width and height of both residual panels in pixels.
 const RESIDUAL: (u32, u32) = (900, 320);
+/// Width and height of one panel of that size in pixels.
+const RESIDUAL_PANEL: (u32, u32) = (450, 320);
 /// Colour of the baseline.
 pub(super) const BASELINE: RGBColor = RGBColor(190, 80, 20);
 /// Colour of the augmented model.
@@ -94,23 +103,25 @@ impl Axis {
     }
 }
 
-/// Draws all figures: one per condition, and one per covariate that varies.
+/// Draws all figures: one per condition, one per covariate that varies, the quantiles of the noise, and
+/// the left-out error of each series.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
 pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotError> {
     let mut all = Vec::new();
     let failure = |e: Box<dyn Error>| PlotError::new(&*e);
-    let frame = &calibration.selection.baseline.model.frame;
+    let frame = &calibration.baseline.model.frame;
+    let readings = Readings::new(calibration);
     for (index, condition) in frame.conditions.iter().enumerate() {
         let mut svg = String::new();
-        curve(&mut svg, calibration, index).map_err(failure)?;
+        let title = format!("{}: {}", index + 1, condition.name());
+        curve(&mut svg, &readings, index, title).map_err(failure)?;
         all.push(Plot { file: format!("condition-{index}.svg"), caption: condition.name(), svg });
     }
     for covariate in Covariate::ALL {
         let axis = Axis::new(covariate, frame);
-        let range = calibration
-            .data
+        let range = readings
             .points
             .iter()
             .map(|p| (axis.read)(p))
@@ -119,7 +130,7 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotError> {
             continue;
         }
         let mut svg = String::new();
-        residual(&mut svg, calibration, &axis, range).map_err(failure)?;
+        residual(&mut svg, &readings, &axis, range).map_err(failure)?;
         all.push(Plot {
             file: format!("residual-{}.svg", covariate.as_str()),
             caption: format!(
@@ -129,20 +140,32 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotError> {
             svg,
         });
     }
+    let mut svg = String::new();
+    quantiles(&mut svg, &calibration.evidence.standardised_noise()).map_err(failure)?;
+    let caption = "quantiles of the noise against Student's t with 5 degrees of freedom".to_owned();
+    all.push(Plot { file: "noise-quantiles.svg".to_owned(), caption, svg });
+    let mut svg = String::new();
+    if influence(&mut svg, calibration, &readings).map_err(failure)?.is_some() {
+        let caption = "mean error of each series, predicted from the others".to_owned();
+        all.push(Plot { file: "left-out-series.svg".to_owned(), caption, svg });
+    }
     Ok(all)
 }
 
 /// Draws mean readings per load and direction of one condition, with both models.
-fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Result<(), Box<dyn Error>> {
-    let (data, selection) = (&calibration.data, &calibration.selection);
+fn curve(
+    svg: &mut String,
+    readings: &Readings<'_>,
+    condition: usize,
+    title: String,
+) -> Result<(), Box<dyn Error>> {
     // Per direction and load: sums of readings, of the baseline and of the augmented model, and
     // their number.
     let mut means: BTreeMap<(bool, u64), [f64; 5]> = BTreeMap::new();
-    for (i, p) in data.points.iter().enumerate().filter(|(_, p)| p.condition == condition) {
-        let y = data.force_n[i];
+    for (i, p) in readings.points.iter().enumerate().filter(|(_, p)| p.condition == condition) {
+        let y = readings.reading_n[i];
         let entry = means.entry((p.sign > 0.0, p.load_n.to_bits())).or_insert([0.0; 5]);
-        let values =
-            [p.load_n, y, y - selection.baseline.residual_n[i], y - selection.augmented.residual_n[i], 1.0];
+        let values = [p.load_n, y, y - readings.baseline_n[i], y - readings.augmented_n[i], 1.0];
         entry.iter_mut().zip(values).for_each(|(e, v)| *e += v);
     }
     let lines: Vec<(bool, [f64; 4])> = means
@@ -157,14 +180,9 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
     let (low, high) = (1..4).map(span).fold((0.0f64, 0.0f64), |a, b| (a.0.min(b.0), a.1.max(b.1)));
     let root = SVGBackend::with_string(svg, CONDITION).into_drawing_area();
     root.fill(&WHITE)?;
-    let name = format!(
-        "{}: {}",
-        condition + 1,
-        calibration.selection.baseline.model.frame.conditions[condition].name()
-    );
     let mut chart = ChartBuilder::on(&root)
         .margin(8)
-        .caption(name, ("sans-serif", 15))
+        .caption(title, ("sans-serif", 15))
         .x_label_area_size(38)
         .y_label_area_size(50)
         .build_cartesian_2d(drawable(0.0, 1.04 * span(0).1), drawable(1.1 * low - 0.05, 1.1 * high + 0.05))?;
@@ -182,25 +200,22 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
 /// Draws residuals of both models over one covariate, with means, on equal axes.
 fn residual(
     svg: &mut String,
-    calibration: &Calibration,
+    readings: &Readings<'_>,
     axis: &Axis,
     (least, most): (f64, f64),
 ) -> Result<(), Box<dyn Error>> {
-    let (data, selection) = (&calibration.data, &calibration.selection);
-    let xs: Vec<f64> = data.points.iter().map(|p| (axis.read)(p)).collect();
+    let xs: Vec<f64> = readings.points.iter().map(|p| (axis.read)(p)).collect();
     let named = !axis.names.is_empty();
     let pad = if named { 0.5 } else { 0.03 * (most - least) };
-    let mut sizes: Vec<f64> = selection.baseline.residual_n.iter().map(|r| r.abs()).collect();
+    let mut sizes: Vec<f64> = readings.baseline_n.iter().map(|r| r.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let high = sizes.get(sizes.len() * 995 / 1000).copied().unwrap_or(1.0).max(1e-3) * 1.1;
     let root = SVGBackend::with_string(svg, RESIDUAL).into_drawing_area();
     root.fill(&WHITE)?;
-    let stride = data.points.len().div_ceil(MAX_POINTS);
+    let stride = readings.len().div_ceil(MAX_POINTS);
     let panels = root.split_evenly((1, 2));
-    let sides = [
-        (&selection.baseline.residual_n, BASELINE, "baseline"),
-        (&selection.augmented.residual_n, AUGMENTED, "augmented model"),
-    ];
+    let sides =
+        [(&readings.baseline_n, BASELINE, "baseline"), (&readings.augmented_n, AUGMENTED, "augmented model")];
     for (panel, (residual, colour, title)) in panels.iter().zip(sides) {
         let mut chart = ChartBuilder::on(panel)
             .margin(8)
@@ -226,7 +241,7 @@ fn residual(
             shown.map(|i| Circle::new((xs[i] + spread(i), residual[i]), 2, colour.mix(0.3).filled())),
         )?;
         chart.draw_series(LineSeries::new([(least - pad, 0.0), (most + pad, 0.0)], BLACK.stroke_width(1)))?;
-        let means = means(&xs, residual, &data.weights, least, most);
+        let means = means(&xs, residual, &readings.weights, least, most);
         if !named {
             chart.draw_series(LineSeries::new(means.iter().copied(), colour.stroke_width(2)))?;
         }

@@ -68,7 +68,7 @@ pub fn parameters_words(parameters: &BTreeMap<String, Estimate>) -> String {
 const MAX_DECIMALS: f64 = 9.0;
 
 /// Returns an estimate with its unit and interval, rounded to one digit of half the interval.
-fn estimate_words(estimate: &Estimate) -> String {
+pub fn estimate_words(estimate: &Estimate) -> String {
     let Estimate { value, ci95: [low, high], unit } = estimate;
     let digits = -libm::floor(libm::log10(0.5 * (high - low)));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to MAX_DECIMALS")]

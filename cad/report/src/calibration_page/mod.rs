@@ -136,7 +136,7 @@ fn detected(report: &Report) -> String {
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
-                "<p>Rival: <b>{}</b>. {}.<br><b>Experiment that would decide:</b> {}.</p>",
+                "<p>Rival: <b>{}</b>: {}.<br><b>Experiment that would decide:</b> {}.</p>",
                 escape(&rival.id),
                 escape(&rival.why),
                 escape(&rival.experiment)

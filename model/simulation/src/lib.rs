@@ -106,6 +106,6 @@ pub use raw::{Faults, RawLog, RawRun};
 pub use series_traits::{SeriesTraits, SessionTraits};
 pub use simulate::{SimulatedSession, simulate, simulate_rows};
 pub use study::{
-    Case, CaseOutcome, Forecast, FormOutcome, FormStudy, Group, Study, Truth, plan_of, run_case,
-    run_form_case, study_cases,
+    Attribution, Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, Forecast, FormOutcome, FormStudy,
+    Group, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case, study_cases,
 };

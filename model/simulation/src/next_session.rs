@@ -35,7 +35,6 @@ fn next_plan(plan: &Plan) -> Plan {
 }
 
 /// Returns the plan of a later session with these rows.
-#[expect(dead_code, reason = "the study of experiments follows the port of proposals")]
 pub(crate) fn plan_for(plan: &Plan, rows: &[PlateauRow]) -> Plan {
     with_constants_of(later(plan), plan, &layouts(rows))
 }

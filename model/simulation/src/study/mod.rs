@@ -6,8 +6,7 @@ mod bench;
 mod case;
 mod case_study;
 mod cases;
-// Until proposals of experiments use posterior probabilities.
-// mod experiment_study;
+mod experiment_study;
 mod figures;
 mod forecast;
 mod form_study;
@@ -22,9 +21,9 @@ mod visibility;
 pub use case::{Case, Group, Truth};
 pub use case_study::Study;
 pub use cases::{plan_of, study_cases};
-// pub use experiment_study::{
-//     Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,
-// };
+pub use experiment_study::{
+    Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,
+};
 pub use forecast::Forecast;
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::confirmation::TrialOutcome;
 use crate::report::Report;
 
-/// Second explanation of a question that asks whether an effect acts at all.
+/// Second explanation of a question about the presence of an effect.
 pub(crate) const NONE: &str = "none";
 /// Start of the name of a question about friction above a load.
 pub(crate) const FRICTION_ABOVE: &str = "friction_above_";

@@ -79,7 +79,8 @@ pub(super) fn is_visible(plan: &Plan, traits: &SessionTraits) -> Option<bool> {
         let s = information(problem, &evidence.posterior().baseline, change, &others)?;
         let gain = REPORTED_ODDS.ln() - odds + 0.5 * s.ln_1p();
         let least_z = (2.0 * gain.max(0.0) * (1.0 + s) / s).sqrt();
-        if !(s.sqrt() >= least_z + VISIBLE_QUANTILE) {
+        let is_detected = s.sqrt() >= least_z + VISIBLE_QUANTILE;
+        if !is_detected {
             return Some(false);
         }
     }

@@ -157,7 +157,7 @@ fn odds(odds: f64) -> String {
     }
 }
 
-/// Describes the discovered effect of a structure, and its confirmation test.
+/// Describes the discovered effect of a structure, and how to test it.
 fn discovered(form: &FormReport) -> String {
     let mut html = format!(
         "<p>Discovered effect: <b>{}</b> on {}: <code>{}</code>. It explains {:.0} % of the shapes; held-out error with \

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::{EffectReport, Estimate, Report, StructureReport};
+use pinswitch_calibration::{CandidateReport, EffectReport, Estimate, Fate, Report, StructureReport};
 use pinswitch_friction::sort_by_number;
 
 /// Built-in effects by id, each as a clause that follows `that`.
@@ -68,7 +68,7 @@ pub fn parameters_words(parameters: &BTreeMap<String, Estimate>) -> String {
 const MAX_DECIMALS: f64 = 9.0;
 
 /// Returns an estimate with its unit and interval, rounded to one digit of half the interval.
-fn estimate_words(estimate: &Estimate) -> String {
+pub fn estimate_words(estimate: &Estimate) -> String {
     let Estimate { value, ci95: [low, high], unit } = estimate;
     let digits = -libm::floor(libm::log10(0.5 * (high - low)));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to MAX_DECIMALS")]
@@ -77,8 +77,8 @@ fn estimate_words(estimate: &Estimate) -> String {
     format!("{value:.decimals$}{unit} [{low:.decimals$}, {high:.decimals$}]")
 }
 
-/// Returns effects and structures with a probability above `least` that are neither reported nor rivals,
-/// the most probable first.
+/// Returns identifiable effects and structures with a probability above `least` that are neither reported
+/// nor rivals, the most probable first.
 pub fn other_probabilities(report: &Report, least: f64) -> Vec<(&str, f64)> {
     let is_shown = |id: &str| {
         report.effects.iter().any(|effect| {
@@ -91,7 +91,10 @@ pub fn other_probabilities(report: &Report, least: f64) -> Vec<(&str, f64)> {
     let is_change = |structure: &&StructureReport| {
         report.changes.iter().any(|c| c.by == structure.covariate && c.probability == structure.probability)
     };
-    let effects = report.candidates.iter().map(|candidate| (candidate.id.as_str(), candidate.probability));
+    // The probability of an effect that is not identifiable is that of its prior.
+    let is_visible = |candidate: &&CandidateReport| candidate.fate != Fate::Invisible;
+    let effects = report.candidates.iter().filter(is_visible);
+    let effects = effects.map(|candidate| (candidate.id.as_str(), candidate.probability));
     let structures = report.structures.iter().filter(|structure| !is_change(structure));
     let structures = structures.map(|structure| (structure.name.as_str(), structure.probability));
     let mut others: Vec<(&str, f64)> =

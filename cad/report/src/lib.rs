@@ -75,7 +75,7 @@ pub use calibration::{Plot, plots};
 pub use calibration_page::page;
 pub use contact::contact_svg;
 pub use effect_words::{
-    constants_words, effect_clause, other_probabilities, parameters_words, reported_clause,
+    constants_words, effect_clause, estimate_words, other_probabilities, parameters_words, reported_clause,
 };
 pub use finger::{FingerLayout, finger_svg};
 pub use friction::friction_svg;

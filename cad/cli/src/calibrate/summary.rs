@@ -5,7 +5,7 @@ use pinswitch_calibration::{
 };
 use pinswitch_diagnostic::neutral_line;
 use pinswitch_report::{
-    constants_words, effect_clause, other_probabilities, parameters_words, reported_clause,
+    constants_words, effect_clause, estimate_words, other_probabilities, parameters_words, reported_clause,
 };
 
 /// Most series, effects and columns that a line lists.
@@ -101,7 +101,7 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
 /// Formats the friction coefficient of a plain contact.
 fn friction(report: &Report) -> String {
     report.augmented.parameters.get("mu").map_or_else(String::new, |mu| {
-        format!("mu = {:.3} [{:.3}, {:.3}]\n", mu.value, mu.ci95[0], mu.ci95[1])
+        format!("mu = {}\n", estimate_words(mu))
     })
 }
 

@@ -20,7 +20,7 @@ pub(super) fn quantiles(svg: &mut String, standardised: &[f64]) -> Result<(), Bo
     let count = values.len();
     let expected = |i: usize| student_quantile((i as f64 + 0.5) / count as f64);
     let stride = count.div_ceil(MAX_POINTS).max(1);
-    let is_drawn = |i: &usize| i % stride == 0 || *i < ALWAYS || i + ALWAYS >= count;
+    let is_drawn = |i: &usize| i.is_multiple_of(stride) || *i < ALWAYS || i + ALWAYS >= count;
     let points: Vec<(f64, f64)> = (0..count).filter(is_drawn).map(|i| (expected(i), values[i])).collect();
     let high = points.iter().flat_map(|(x, y)| [x.abs(), y.abs()]).fold(1.0, f64::max) * 1.05;
     let root = SVGBackend::with_string(svg, RESIDUAL_PANEL).into_drawing_area();

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use pinswitch_calibration::{Answer, EffectReport, PlanQuestion, Report, SessionPlan, TrialReport, Verdict};
 
-use super::super::effect_words::{constants_words, effect_clause, other_probabilities, reported_clause};
+use super::super::effect_words::{
+    constants_words, effect_clause, estimate_words, other_probabilities, reported_clause,
+};
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
 use super::number::{newtons, number, probability, short};
@@ -34,14 +36,11 @@ pub(super) fn conclusion(report: &Report) -> String {
 
 /// Returns the friction coefficient of a plain contact.
 fn friction(report: &Report) -> String {
-    report.augmented.parameters.get("mu").map_or_else(String::new, |mu| {
-        format!(
-            "<p><b>mu = {}</b> [{}, {}]</p>",
-            number(mu.value, 3),
-            number(mu.ci95[0], 3),
-            number(mu.ci95[1], 3)
-        )
-    })
+    report
+        .augmented
+        .parameters
+        .get("mu")
+        .map_or_else(String::new, |mu| format!("<p><b>mu = {}</b></p>", estimate_words(mu)))
 }
 
 /// Returns the reported effects with their probabilities and rivals.

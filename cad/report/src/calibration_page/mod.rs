@@ -63,9 +63,11 @@ fn data(report: &Report) -> String {
     html
 }
 
-/// Returns a figure with its caption as its accessible name.
+/// Returns a figure with its caption as its accessible name; a broad one scrolls on a narrow screen.
 fn figure(plot: &Plot) -> String {
-    format!("<figure class=\"plot\" aria-label=\"{}\">{}</figure>\n", escape(&plot.caption), plot.svg)
+    let is_broad = plot.file.starts_with("residual-") || plot.file == "left-out-series.svg";
+    let class = if is_broad { "plot broad" } else { "plot" };
+    format!("<figure class=\"{class}\" aria-label=\"{}\">{}</figure>\n", escape(&plot.caption), plot.svg)
 }
 
 fn conditions(plots: &[Plot]) -> String {
@@ -136,7 +138,7 @@ fn detected(report: &Report) -> String {
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
-                "<p>Rival: <b>{}</b>. {}.<br><b>Experiment that would decide:</b> {}.</p>",
+                "<p>Rival: <b>{}</b>: {}.<br><b>Experiment that would decide:</b> {}.</p>",
                 escape(&rival.id),
                 escape(&rival.why),
                 escape(&rival.experiment)

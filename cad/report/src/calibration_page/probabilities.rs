@@ -21,7 +21,8 @@ struct Bar<'a> {
 /// Returns the section: reported effects with their rivals, then the others.
 pub(super) fn probabilities(report: &Report) -> String {
     let mut html = "<h2>1. Probabilities</h2><p>Posterior probability that each effect acts on this rig, and that structure \
-                    without a name acts. Rivals follow the effect whose place they may take.</p>\n\
+                    without a name acts. An effect that is not identifiable may have its prior probability. Rivals follow the effect whose place they \
+                    may take.</p>\n\
                     <div class=\"wide\"><table class=\"bars\"><tr><th>effect</th><th></th><th>probability</th><th>outcome</th></tr>\n"
         .to_owned();
     let mut shown: BTreeSet<&str> = BTreeSet::new();

@@ -324,9 +324,6 @@ impl Report {
         if !hidden.is_empty() {
             reasons.push(format!("the data are too few to exclude {}", hidden.join(" or ")));
         }
-        if !self.adequate {
-            reasons.push("repeated readings are closer to each other than to the model".to_owned());
-        }
         reasons
     }
 }

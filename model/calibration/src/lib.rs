@@ -1,18 +1,22 @@
 //! Calibration of the friction model with measured data.
 //!
-//! The crate converts raw logs to plateau tables, selects the effects that a table shows and the
-//! paper's model lacks, and writes a model that predicts readings. It does not depend on simulated
-//! rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
+//! The crate converts raw logs to plateau tables, computes the probability of each effect that the
+//! paper's model lacks, and writes a model that predicts readings. The statistics are those of
+//! [`pinswitch_inference`]; this crate has the friction model, the priors and the report. It does
+//! not depend on simulated rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
 //!
 //! Each step can be used alone:
 //!
 //! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
 //! 2. [`table`] reads and checks a plateau table.
-//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`evidence`]) and
-//!    returns a [`Report`] with the held-out errors of the baseline and of the selected model.
-//! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a
-//!    printed part without the effects of the rig.
-//! 5. [`experiment`] proposes the runs that answer most open questions of a report.
+//! 3. [`evidence`] computes the posterior over hypotheses: sets of [`effects`], and of structure
+//!    without a name, in addition to the refitted model of the paper.
+//! 4. [`calibrate`] returns the posterior as a [`Report`]: probabilities, rivals, limits, the
+//!    verdict, held-out errors, and the expected error of a new session. It tests user-defined
+//!    effects ([`TrialReport`]), and derives a formula of unnamed structure ([`DrawnForm`]).
+//! 5. [`ModelFile`] stores the best hypothesis as a [`model`]. It predicts readings, and the
+//!    friction curve of a printed part without the effects of the rig.
+//! 6. [`experiment`] proposes the runs that answer most open questions of a report.
 //!
 //! # Model
 //!
@@ -29,7 +33,8 @@
 //! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` the weight for `n`
 //! pins, `S` the share of the contact that has switched from pins to silicone, `F_half` the half
 //! load and `s` the steepness (`model/doc/friction-laws.md`). A reading is this tension with the
-//! effects of the model, plus noise with random effects ([`model::Noise`]).
+//! effects of a hypothesis `H`, plus unnamed structure and noise with random effects. The score
+//! `ln p(y | H) + ln p(H)` of the readings `y` gives the posterior probability of `H`.
 //!
 //! # Examples
 //!
@@ -55,8 +60,9 @@
 //! ```
 //!
 //! Readers take text, bytes or [`std::io::Read`], and writers return text: the crate does not open
-//! files, and does not read clocks or environment variables. `model/doc/file-formats.md` describes the files,
-//! `model/doc/effect-catalogue.md` the effects and `model/doc/naming-an-effect.md` their selection.
+//! files, and does not read clocks or environment variables. `model/doc/file-formats.md` describes
+//! the files, `model/doc/effect-catalogue.md` the effects, and `model/doc/naming-an-effect.md` the
+//! inference with its equations.
 
 #![warn(clippy::disallowed_methods)]
 

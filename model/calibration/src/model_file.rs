@@ -37,6 +37,8 @@ struct TermEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct DiscrepancyEntry {
     value: f64,
+    #[serde(default)]
+    sd: f64,
     #[serde(flatten)]
     factor: DiscrepancyFactor,
 }
@@ -86,8 +88,8 @@ pub struct ModelFile {
     #[serde(default)]
     terms: Vec<TermEntry>,
     noise: Noise,
-    /// Growth of the error with the distance from the loads fitted, in newtons per newton; zero in files
-    /// of this version, whose discrepancies grow with the load.
+    /// Growth of the error with the distance from the loads fitted, in newtons per newton, in files of
+    /// earlier versions; the discrepancies of this version grow with the load.
     #[serde(default)]
     beyond_range: f64,
     frame: Frame,
@@ -132,7 +134,7 @@ impl ModelFile {
         }
         let discrepancies = |index: usize| {
             let of = model.discrepancies.iter().filter(|d| d.term == index);
-            of.map(|d| DiscrepancyEntry { value: d.value, factor: d.factor }).collect()
+            of.map(|d| DiscrepancyEntry { value: d.value, sd: d.sd, factor: d.factor }).collect()
         };
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
@@ -235,8 +237,8 @@ impl ModelFile {
             };
             let zeros = vec![0.0; term.constants()];
             model = model.with_term(term, &zeros);
-            for DiscrepancyEntry { value, factor } in &entry.discrepancies {
-                model = model.with_discrepancy(Discrepancy { term: i, value: *value, factor: *factor });
+            for DiscrepancyEntry { value, sd, factor } in entry.discrepancies.iter().copied() {
+                model = model.with_discrepancy(Discrepancy { term: i, value, sd, factor });
             }
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
@@ -277,7 +279,19 @@ impl ModelFile {
         };
         let points = points.unwrap_or_default();
         let predicted = model.predict(&points);
-        let mut sd = prediction_sd_n(&model, &points, &self.covariance(), self.noise);
+        // The mounts of the fitted session are known up to the uncertainty of its constants.
+        let noise = match session {
+            Session::New => self.noise,
+            Session::Fitted => Noise { mount_scale: 0.0, ..self.noise },
+        };
+        let mut sd = prediction_sd_n(&model, &points, &self.covariance(), noise);
+        if session == Session::New {
+            // What the fitted session drew for itself, another one draws again.
+            let drifting = model.predict(&model.frame.points(rows).unwrap_or_default());
+            let squares: f64 = drifting.iter().zip(&predicted).map(|(a, b)| (a - b).powi(2)).sum();
+            let drift_n = (squares / predicted.len().max(1) as f64).sqrt();
+            sd.iter_mut().for_each(|sd| *sd = libm::hypot(*sd, drift_n));
+        }
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
             let beyond = (point.load_n - high).max(low - point.load_n).max(0.0);

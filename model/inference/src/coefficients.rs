@@ -1,6 +1,6 @@
 //! Posterior of the coefficients of a fitted hypothesis, for models that leave the inference.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::design::{Component, Role};
 use crate::fit::Fit;
@@ -33,8 +33,7 @@ pub struct Coefficients {
     pub mean: Vec<f64>,
     /// Posterior covariance.
     pub covariance: DMatrix<f64>,
-    /// Prediction of each fitted reading, without the levels of random effects that a new session draws
-    /// again.
+    /// Expectation of each fitted reading, without the offsets of its series.
     pub predicted: Vec<f64>,
 }
 
@@ -63,14 +62,7 @@ impl Coefficients {
             });
         }
         let solution = point.solution;
-        let redrawn = |role: &Role| match role {
-            Role::Variance(Component::Random(i)) => problem.space.random_effects[*i].is_redrawn,
-            _ => false,
-        };
-        let lasting = solution.mean.iter().zip(&design.roles);
-        let lasting = lasting.map(|(mean, role)| if redrawn(role) { 0.0 } else { *mean });
-        let lasting = DVector::from_iterator(solution.mean.len(), lasting);
-        let residual = &design.target - &design.matrix * lasting;
+        let residual = &design.target - &design.matrix * &solution.mean;
         let predicted = problem.readings.iter().zip(residual.iter()).map(|(y, r)| y - r).collect();
         let mean = solution.mean.iter().zip(&design.prior_mean).map(|(x, prior)| x + prior).collect();
         Some(Self { roles, mean, covariance: solution.covariance, predicted })

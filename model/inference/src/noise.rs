@@ -9,9 +9,10 @@
 //! ```
 //!
 //! with the repetition noise `sigma` that grows with the load `F` by the ratio `c`, the weights `w`
-//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset per
-//! series and direction with a constant part `o_d` and a part `o_l` that grows with load, an offset `o_s` per series, and a scale of friction `s` per series, where
-//! `g` is the reading's sensitivity to friction. Rows of different series are independent.
+//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset per series
+//! and direction with a constant part `o_d` and a part `o_l` that grows with load, an offset `o_s`
+//! per series, and a scale of friction `s` per series, where `g` is the reading's sensitivity to
+//! friction. Rows of different series are independent.
 
 use nalgebra::{DMatrix, DVector};
 

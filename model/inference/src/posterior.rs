@@ -55,6 +55,9 @@ pub struct Posterior {
     pub probabilities: Vec<f64>,
     /// Fit of the baseline alone.
     pub baseline: Fit,
+    /// Whether each row was excluded from the fits, as part of a series with a suspected gross error;
+    /// empty if none was.
+    pub excluded: Vec<bool>,
     /// Reported members.
     pub reported: Vec<Reported>,
     /// Effects that are not reported and change some reading that the best hypothesis does not absorb.
@@ -105,6 +108,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
         window,
         probabilities,
         baseline,
+        excluded,
         reported,
         candidates,
         outliers,
@@ -268,8 +272,9 @@ pub fn best_additions(problem: &Problem, fit: &Fit, effects: &[usize], most: usi
 }
 
 impl Fit {
-    /// Fits a hypothesis from scratch; `None` if its readings are not finite at any mode.
-    pub fn of_hypothesis(problem: &Problem, hypothesis: &Hypothesis) -> Option<Self> {
-        Self::new(problem, hypothesis, Start { is_final: true, ..Start::default() })
+    /// Fits a hypothesis from scratch without the rows that are `excluded`, a list that may be empty;
+    /// `None` if its readings are not finite at any mode.
+    pub fn of_hypothesis(problem: &Problem, hypothesis: &Hypothesis, excluded: &[bool]) -> Option<Self> {
+        Self::new(problem, hypothesis, Start { is_final: true, excluded, ..Start::default() })
     }
 }

@@ -84,7 +84,7 @@ fn inconclusive(report: &Report) -> String {
     } else if report.limits.iter().any(|limit| !limit.excluded) {
         text.push_str(", and effects of consequence are not excluded");
     } else {
-        text.push_str(&format!("; {}", report.reservations().join("; ")));
+        report.reservations().iter().for_each(|reason| text.push_str(&format!("; {reason}")));
     }
     text
 }

@@ -192,7 +192,7 @@ fn best_form(
     let ids = candidates.iter().map(|c| c.definition.id.as_str()).collect();
     let with_forms = Evidence::of_forms(rows, &extended, &ids, seed).ok()?;
     let hypothesis = evidence.posterior().window.first()?.hypothesis.without(structure);
-    let reduced = Fit::of_hypothesis(with_forms.problem(), &hypothesis)?;
+    let reduced = Fit::of_hypothesis(with_forms.problem(), &hypothesis, &evidence.posterior().excluded)?;
     let is_form = |name: &str| candidates.iter().any(|c| c.definition.id == name);
     let effects = &with_forms.problem().space().effects;
     let forms: Vec<usize> = (0..effects.len()).filter(|i| is_form(&effects[*i].name)).collect();

@@ -5,6 +5,7 @@ use pinswitch_inference::{Kernel, Member, leave_groups_out};
 use super::Evidence;
 use super::fitted::channel_of;
 use super::forward::Channel;
+use super::structure::Record;
 use crate::effects::{self, Effect};
 use crate::table::{Frame, Point};
 
@@ -106,6 +107,19 @@ impl Evidence {
     /// Returns the conditions and reference values of the table.
     pub(crate) fn frame(&self) -> &Frame {
         &self.setup.frame
+    }
+
+    /// Returns the number of a structure among those of the model file, from 1; `None` if the file does
+    /// not keep it.
+    pub(crate) fn structure_number(&self, member: Member) -> Option<usize> {
+        let best = &self.posterior.window.first()?.hypothesis;
+        let is_kept = |kernel: &usize| self.setup.structures[*kernel].record != Record::Nothing;
+        let kernels = best.members().filter_map(|of| match of {
+            Member::Kernel(kernel) => Some(kernel),
+            Member::Effect(_) => None,
+        });
+        let place = kernels.filter(is_kept).position(|kernel| Member::Kernel(kernel) == member)?;
+        Some(place + 1)
     }
 
     /// Returns the kernel of a member; `None` for an effect.

@@ -25,7 +25,8 @@ pub struct Fitted {
     pub noise: Noise,
     /// Posterior covariance of the coordinates of the model's constants.
     pub covariance: DMatrix<f64>,
-    /// Prediction of each row of the table in newtons, in its order, without new mounts.
+    /// Expectation of each row of the table in newtons, in its order, with its mount and without the
+    /// offsets of its series.
     pub predicted_n: Vec<f64>,
 }
 
@@ -104,7 +105,8 @@ impl Evidence {
         for (i, factor) in self.setup.discrepancy_factors(prior).into_iter().enumerate() {
             let role = Coefficient::Discrepancy(sized.effect, i);
             if let Some(at) = coefficients.index(role) {
-                model = model.with_discrepancy(Discrepancy { term, value: coefficients.mean[at], factor });
+                let (value, sd) = (coefficients.mean[at], coefficients.covariance[(at, at)].max(0.0).sqrt());
+                model = model.with_discrepancy(Discrepancy { term, value, sd, factor });
             }
         }
         model

@@ -6,12 +6,11 @@ use pinswitch_inference::{Constant, ForwardModel, SizedEffect};
 
 use super::priors::EffectPrior;
 use crate::effects::{ContactState, Stage};
-use crate::model::{PLAIN_MU, PRIOR_LOG_PLAIN};
+use crate::model::{PLAIN_MU, PRIOR_LOG_HALF_LOAD, PRIOR_LOG_PLAIN};
 use crate::table::{Condition, Frame, Point};
 
 /// Prior standard deviations of the baseline's constants, in logarithms.
 const LOG_MU_SD: f64 = 1.0;
-const LOG_HALF_LOAD_SD: f64 = 0.5;
 const LOG_STEEPNESS_SD: f64 = 0.5;
 /// Relative step of a channel for its finite difference.
 const CHANNEL_STEP: f64 = 1e-4;
@@ -102,7 +101,7 @@ impl Baseline {
             .collect();
         for (i, mean) in self.device_means.iter().enumerate() {
             let (name, sd) = if i % 2 == 0 {
-                (format!("ln F_half[{}]", i / 2), LOG_HALF_LOAD_SD)
+                (format!("ln F_half[{}]", i / 2), PRIOR_LOG_HALF_LOAD)
             } else {
                 (format!("ln s[{}]", i / 2), LOG_STEEPNESS_SD)
             };

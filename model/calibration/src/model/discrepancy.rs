@@ -76,6 +76,8 @@ pub struct Discrepancy {
     pub term: usize,
     /// Value of the factor's coefficient.
     pub value: f64,
+    /// Standard deviation of it.
+    pub sd: f64,
     /// The factor.
     #[serde(flatten)]
     pub factor: DiscrepancyFactor,

@@ -85,6 +85,12 @@ impl Model {
             let discrepancies = self.discrepancies.iter().filter(|d| d.term == index).collect();
             terms.extend(is_kept.then_some(Acting { term, constants, discrepancies }));
         }
+        // Effects act in the order of their stages between the weight and the reading, whatever the
+        // order of the terms. Structure without a name comes last: it was fitted on top of the others.
+        terms.sort_by_key(|acting| match acting.term {
+            Term::Named(effect) => (0, Some(effect.description().stage)),
+            Term::Structure(_) => (1, None),
+        });
         terms
     }
 

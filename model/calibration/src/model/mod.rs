@@ -100,7 +100,7 @@ pub struct Model {
 /// Standard deviations of the weak priors on the baseline, in logarithms: friction coefficients,
 /// threshold, steepness.
 const PRIOR_LOG_MU: f64 = 1.0;
-const PRIOR_LOG_HALF_LOAD: f64 = 0.35;
+pub(crate) const PRIOR_LOG_HALF_LOAD: f64 = 0.5;
 const PRIOR_LOG_STEEPNESS: f64 = 0.5;
 /// Prior of the exponent or the friction coefficient of a `plain` contact, and its standard deviation in
 /// the logarithm.

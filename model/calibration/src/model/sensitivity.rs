@@ -35,10 +35,12 @@ pub(crate) fn prediction_sd_n(
 ) -> Vec<f64> {
     let (at, friction) = (model.predict(points), model.friction_n(points));
     let columns = jacobian(model, points);
+    let discrepant = discrepancies_n(model, points, &at);
     let is_measured = covariance.nrows() == columns.len();
     (0..points.len())
         .map(|row| {
             let mut variance = noise.at(points[row].load_n, friction[row]).powi(2);
+            variance += discrepant.iter().map(|change| change[row] * change[row]).sum::<f64>();
             if is_measured {
                 let slope = nalgebra::DVector::from_fn(columns.len(), |j, _| columns[j][row]);
                 variance += slope.dot(&(covariance * &slope));
@@ -49,4 +51,15 @@ pub(crate) fn prediction_sd_n(
             variance.max(0.0).sqrt()
         })
         .collect()
+}
+
+/// Returns the change of the predictions in newtons by one standard deviation of each discrepancy. Beyond
+/// the fitted loads its factor grows, and with it the change.
+fn discrepancies_n(model: &Model, points: &[Point], at: &[f64]) -> Vec<Vec<f64>> {
+    let change = |index: usize| -> Vec<f64> {
+        let mut moved = model.clone();
+        moved.discrepancies[index].value += moved.discrepancies[index].sd;
+        moved.predict(points).iter().zip(at).map(|(after, before)| after - before).collect()
+    };
+    (0..model.discrepancies.len()).map(change).collect()
 }

@@ -35,14 +35,14 @@ pub struct DataSummary {
     pub series: usize,
     /// Number of conditions.
     pub conditions: usize,
-    /// Number of rows with reduced weight (outliers).
+    /// Number of rows with a gross error, or in a series that has one.
     pub outliers: usize,
 }
 
 /// A fitted model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelReport {
-    /// In-sample RMSE in newtons, without outliers.
+    /// In-sample RMSE in newtons, without gross errors; predictions do not contain mount effects.
     #[serde(rename = "rmse_N")]
     pub rmse_n: f64,
     /// Held-out RMSE in newtons, over series and loads.
@@ -277,14 +277,14 @@ pub struct Report {
     pub noise_floor_n: f64,
     /// Noise, as in the model file.
     pub noise: Noise,
-    /// Components of the noise, with intervals.
+    /// Components of the noise.
     pub noise_parts: Vec<NoisePart>,
     /// Constants of the switch that differ between sessions or specimens.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<ChangeReport>,
     /// The refitted model of the paper.
     pub baseline: ModelReport,
-    /// The model with all effects.
+    /// The best hypothesis.
     pub augmented: ModelReport,
     /// Effects of the model.
     pub effects: Vec<EffectReport>,
@@ -323,9 +323,6 @@ impl Report {
         let mut reasons = Vec::new();
         if !hidden.is_empty() {
             reasons.push(format!("the data are too few to exclude {}", hidden.join(" or ")));
-        }
-        if !self.adequate {
-            reasons.push("repeated readings are closer to each other than to the model".to_owned());
         }
         reasons
     }

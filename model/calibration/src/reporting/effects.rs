@@ -45,7 +45,7 @@ fn effect_report(
         formula,
         probability: reported.probability,
         odds,
-        parameters: constants(augmented, &id, effect),
+        parameters: constants(augmented, &id, effect, evidence.structure_number(reported.member)),
         error_before_n: before,
         error_after_n: held.both_n(),
         rivals: reported.rivals.iter().map(|rival| rival_report(findings, reported.member, rival)).collect(),
@@ -54,31 +54,38 @@ fn effect_report(
     }
 }
 
-/// Returns the constants of an effect by name; those of structure keep their full names.
+/// Returns the constants of an effect by name; that of a structure keeps its full name.
 fn constants(
     augmented: &ModelReport,
     id: &str,
     effect: Option<&'static dyn Effect>,
+    number: Option<usize>,
 ) -> BTreeMap<String, Estimate> {
+    if effect.is_none() {
+        let name = number.map_or_else(String::new, |number| format!("{UNATTRIBUTED}.{number}"));
+        return augmented
+            .parameters
+            .get_key_value(&name)
+            .map(|(k, v)| (k.clone(), v.clone()))
+            .into_iter()
+            .collect();
+    }
     let prefix = format!("{id}.");
-    let of = augmented.parameters.iter().filter_map(|(name, estimate)| {
-        let short = name.strip_prefix(&prefix)?;
-        Some((if effect.is_some() { short } else { name }.to_owned(), estimate.clone()))
-    });
-    of.collect()
+    let of = augmented.parameters.iter();
+    of.filter_map(|(name, estimate)| Some((name.strip_prefix(&prefix)?.to_owned(), estimate.clone())))
+        .collect()
 }
 
 fn structure_words(findings: &Findings<'_>, member: Member) -> String {
     let name = findings.evidence.name(member);
-    let covariate = findings.evidence.covariate(member);
     let model = &findings.augmented.model;
-    let described = model.terms.iter().find_map(|term| match term {
-        Term::Structure(structure) if structure.covariate.as_str() == covariate => {
-            Some(structure.describe(&model.frame))
-        }
-        _ => None,
+    let structures = model.terms.iter().filter_map(|term| match term {
+        Term::Structure(structure) => Some(structure),
+        Term::Named(_) => None,
     });
-    described.map_or_else(|| name.to_owned(), |words| format!("{name}: {words}"))
+    let number = findings.evidence.structure_number(member);
+    let described = number.and_then(|number| structures.into_iter().nth(number - 1));
+    described.map_or_else(|| name.to_owned(), |s| format!("{name}: {}", s.describe(&model.frame)))
 }
 
 fn rival_report(findings: &Findings<'_>, of: Member, (member, probability): &(Member, f64)) -> RivalReport {

@@ -226,7 +226,7 @@ impl EffectDefinition {
             require(is_fingerprint(fingerprint), Part::DrawnFrom, || {
                 advised(
                     format!("'{}' in drawn_from is not a fingerprint", excerpt(fingerprint, LONGEST_NAME)),
-                    "keep drawn_from as `calibrate` wrote it, or remove it if the effect is your own hypothesis",
+                    "keep drawn_from as `calibrate` wrote it, or write `drawn_from = []` if the effect was derived from no readings",
                 )
             })?;
         }

@@ -254,7 +254,7 @@ fn derived_forms_need_another_session() {
     let own = ["-q", "calibrate", "step/plateaus.csv", "--effects", "first/discovered.toml", "--out"];
     let output = printed(path, &[&own[..], &["own"]].concat());
     assert!(
-        output.starts_with("verdict: unattributed") && output.contains(&format!("test of {id}: drawn")),
+        output.contains("verdict: unattributed") && output.contains(&format!("trial of {id}: drawn")),
         "{output}"
     );
     let (code, output) = ended(path, &[&own[..], &["first"]].concat());
@@ -268,7 +268,10 @@ fn derived_forms_need_another_session() {
     let confirmed =
         [&["-q", "calibrate", "step/plateaus-next.csv"], &discovered[..], &["--out", "second"]].concat();
     let output = printed(path, &confirmed);
-    assert!(output.starts_with("verdict: attributed") && output.contains(id), "{output}");
+    assert!(
+        output.contains("verdict: attributed") && output.contains(&format!("that {id} acts")),
+        "{output}"
+    );
     let size = json(&path.join("second/report.json"))["effects"][0]["parameters"]["a"].clone();
     assert!((size["value"].as_f64().unwrap() - 0.15).abs() < 0.04, "{size}");
     // On a rig without it, the effect is not attributed, and its size is excluded or open.

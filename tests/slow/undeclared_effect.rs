@@ -46,7 +46,7 @@ fn ids(report: &Value) -> Vec<String> {
 /// Returns the root mean square error of a model on fresh rows, from the command line.
 fn fresh_error(model: &Path, fresh: &Path, folder: &Path) -> f64 {
     let out = folder.join("predicted.csv");
-    pinswitch(0, &[&"predict", &"--model", &model, &"--rows", &fresh, &"--out", &out]);
+    pinswitch(0, &[&"predict", &"--model", &model, &"--rows", &fresh, &"--fitted-session", &"--out", &out]);
     let text = std::fs::read_to_string(out).unwrap();
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();

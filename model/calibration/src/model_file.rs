@@ -124,7 +124,9 @@ impl ModelFile {
         };
         if frame.changes.is_empty() {
             // The model does not depend on them.
-            frame.sessions = Vec::new();
+            if !is_over(Abscissa::Session) {
+                frame.sessions = Vec::new();
+            }
             if !is_over(Abscissa::Specimen) {
                 frame.specimens = Vec::new();
             }

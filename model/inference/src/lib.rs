@@ -70,6 +70,7 @@
 //!         is_one_sided: false,
 //!         probability: 0.05,
 //!         starts: vec![0.1],
+//!         shape_probabilities: vec![],
 //!         shape_constants: 0,
 //!     }],
 //!     ..Space::default()

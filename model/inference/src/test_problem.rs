@@ -58,6 +58,7 @@ fn space() -> Space {
             is_one_sided: false,
             probability: 0.1,
             starts: vec![0.15],
+            shape_probabilities: vec![],
             shape_constants: 0,
         }],
         kernels: vec![Kernel {

@@ -53,6 +53,8 @@ pub enum Abscissa {
     Condition,
     /// Number of the operator, from 1.
     Operator,
+    /// Index of the session among those of the frame; a later one has the value of the last.
+    Session,
     /// Index of the specimen among those of the frame; -1 for an unknown one.
     Specimen,
 }
@@ -78,6 +80,7 @@ impl Abscissa {
             Self::Descending => p.descending,
             Self::Condition => p.condition as f64,
             Self::Operator => p.operator,
+            Self::Session => p.session_group.map_or(f64::INFINITY, |group| group as f64),
             Self::Specimen => p.specimen_group.map_or(-1.0, |group| group as f64),
         }
     }
@@ -268,7 +271,9 @@ impl Shape {
             }
             Shape::Table { over, at, value, is_factor } => {
                 let x = over.value(p);
-                if *is_factor {
+                if *over == Abscissa::Session && x.is_infinite() {
+                    value.last().copied().unwrap_or(0.0)
+                } else if *is_factor {
                     let level = at.iter().position(|node| (node - x).abs() < LEVEL_TOLERANCE);
                     level.and_then(|level| value.get(level)).copied().unwrap_or(0.0)
                 } else {
@@ -440,6 +445,7 @@ fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String 
         Abscissa::Descending => ("a difference", "ascending and descending loads"),
         Abscissa::Condition => ("levels", "the conditions"),
         Abscissa::Operator => ("levels", "the operators"),
+        Abscissa::Session => ("levels", "the sessions"),
         Abscissa::Specimen => ("levels", "the specimens"),
     };
     let unit = if unit == "1" { "" } else { " N" };

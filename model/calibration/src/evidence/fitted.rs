@@ -146,10 +146,6 @@ impl Evidence {
                 let (at, value) = table(&self.points, curve, |p| over.value(p), false);
                 vec![(of(Shape::Table { over, at, value, is_factor: false }), 1.0, relative)]
             }
-            Record::Latest => {
-                let latest = self.latest_row().and_then(|row| curve.get(row)).copied().unwrap_or(0.0);
-                vec![(of(Shape::Constant), latest, relative * square)]
-            }
             Record::Memory => {
                 let form = Shape::Memory { r0: MEMORY_REPETITIONS, unit_n: REFERENCE_LOAD_N };
                 let size = slope(curve, &self.points, |p| form.value(p));
@@ -160,12 +156,6 @@ impl Evidence {
                 vec![(of(Shape::Table { over, at, value, is_factor }), 1.0, relative)]
             }
         }
-    }
-
-    /// Returns the row of the problem that is the last of the table.
-    fn latest_row(&self) -> Option<usize> {
-        let last = self.source.len().checked_sub(1)?;
-        self.source.iter().position(|source| *source == last)
     }
 
     /// Returns the noise of a fit.

@@ -4,13 +4,18 @@ use std::collections::BTreeSet;
 
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
-use crate::effects::{Covariate, Effect, Vocabulary};
+use crate::effects::{Covariate, Effect, Vocabulary, effect_named};
 use crate::table::Frame;
 
 /// Prior probability of the effects that most rigs have.
 const USUAL_PROBABILITY: f64 = 0.30;
 /// Prior probability of any other effect.
 const OTHER_PROBABILITY: f64 = 0.05;
+/// Prior probability of a user-defined effect: whoever writes one expects it about as much as any
+/// structure without a name.
+const USER_PROBABILITY: f64 = 0.2;
+/// Prior probability of the shape at the start values of a user-defined effect, before its variants.
+const START_PROBABILITY: f64 = 0.5;
 /// Effects that most rigs have.
 const USUAL: [&str; 3] = ["guide_drag", "load_cell_offset", "load_cell_gain"];
 /// Share of the typical size at which an effect is scored first.
@@ -151,10 +156,28 @@ impl EffectPrior {
             name: self.effect.id().to_owned(),
             typical_size: self.typical_size,
             is_one_sided: self.effect.description().one_sided || self.limit_from_n.is_some(),
-            probability: if self.is_usual() { USUAL_PROBABILITY } else { OTHER_PROBABILITY },
+            probability: match (self.is_usual(), self.is_built_in()) {
+                (true, _) => USUAL_PROBABILITY,
+                (false, true) => OTHER_PROBABILITY,
+                (false, false) => USER_PROBABILITY,
+            },
+            shape_probabilities: self.shape_probabilities(starts.len()),
             shape_constants: self.shape_constants(),
             starts,
         }
+    }
+
+    fn is_built_in(&self) -> bool {
+        effect_named(self.effect.id()).is_some()
+    }
+
+    /// Returns the prior probabilities of the shapes; empty if they are equal.
+    fn shape_probabilities(&self, count: usize) -> Vec<f64> {
+        if self.is_built_in() || count < 2 {
+            return Vec::new();
+        }
+        let other = (1.0 - START_PROBABILITY) / (count - 1) as f64;
+        (0..count).map(|shape| if shape == 0 { START_PROBABILITY } else { other }).collect()
     }
 
     /// Returns whether most rigs have it.

@@ -38,8 +38,6 @@ type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
 pub(super) enum Record {
     /// As a table over the session, of which a later session has the mean.
     Time,
-    /// As its value in the last session.
-    Latest,
     /// As a table over a covariate; with true, over the levels of a factor.
     Table(Abscissa, bool),
     /// As the memory of the previous load.
@@ -366,7 +364,9 @@ impl Collector<'_> {
         self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| {
             label.operator.clone()
         });
-        self.levels("session", "session", Record::Latest, switches, |_, label| label.session.clone());
+        self.levels("session", "session", Record::Table(Abscissa::Session, true), switches, |_, label| {
+            label.session.clone()
+        });
     }
 
     /// Adds independent levels of a factor that has several.
@@ -387,7 +387,8 @@ impl Collector<'_> {
             return;
         }
         // A new session is like the last one.
-        let latest = names_of(self.rows, &level).pop().filter(|_| record == Record::Latest);
+        let latest =
+            names_of(self.rows, &level).pop().filter(|_| record == Record::Table(Abscissa::Session, true));
         let latest = latest.and_then(|name| names.binary_search(&name).ok());
         let basis: Basis = Box::new(move |rows| {
             let level_of: Vec<Option<usize>> =

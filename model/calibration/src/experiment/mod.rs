@@ -197,6 +197,7 @@ pub fn propose(known: Known<'_>, rig: &RigLimits, minutes: f64) -> Result<Propos
     let agenda = Agenda::new(known.report, &model, highest_n);
     let design = Design { model: &model, noise, contributions: &agenda.contributions };
     let recorded = design.recorded(known.rows).ok_or_else(foreign)?;
+    let recorded = agenda.without_unconfirmed(recorded);
     let questions = agenda.questions(&recorded);
     let all = candidates(&model, rig, &agenda);
     if all.is_empty() {

@@ -202,6 +202,8 @@ pub(super) struct Agenda {
     effects: Vec<&'static dyn Effect>,
     /// Constants of the model, whose columns come first.
     own: usize,
+    /// Columns of effects that only new readings can confirm.
+    unconfirmed: Vec<usize>,
     /// Ids of the user-defined effects in question.
     formulas: Vec<String>,
     /// Whether one of the effects depends on the previous load.
@@ -242,6 +244,16 @@ impl Agenda {
             agenda.questions.push(Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted));
         }
         agenda
+    }
+
+    /// Removes what the recorded data show of effects that were derived from them, and that only new
+    /// readings can confirm.
+    pub(super) fn without_unconfirmed(&self, mut recorded: DMatrix<f64>) -> DMatrix<f64> {
+        for column in &self.unconfirmed {
+            recorded.column_mut(*column).fill(0.0);
+            recorded.row_mut(*column).fill(0.0);
+        }
+        recorded
     }
 
     /// Returns the questions, given the information of the recorded data.
@@ -293,6 +305,7 @@ impl Agenda {
             self.add_presence(effect, None, probability, model, fitted);
             if let Some(question) = self.questions.last_mut().filter(|q| q.between[0] == id) {
                 question.size = None;
+                self.unconfirmed.extend(question.cases.iter().map(|case| case.column));
             }
         }
     }

@@ -106,9 +106,16 @@ pub(crate) fn log_prior_odds(space: &Space, element: Element) -> f64 {
             libm::log(odds * effect.shape_probabilities.get(element.form).copied().unwrap_or(equal))
         }
         Member::Kernel(index) => {
-            let share = space.structure_probability / space.kernels.len() as f64;
-            let variant = space.kernels[index].variants.get(element.form).copied().unwrap_or(0.0);
-            libm::log(share * variant)
+            let kernel = &space.kernels[index];
+            let variant = kernel.variants.get(element.form).copied().unwrap_or(0.0);
+            let odds = kernel.noise_probability.map_or_else(
+                || {
+                    let structures = space.kernels.iter().filter(|k| k.noise_probability.is_none());
+                    space.structure_probability / structures.count() as f64
+                },
+                |probability| probability / (1.0 - probability),
+            );
+            libm::log(odds * variant)
         }
     }
 }

@@ -96,7 +96,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let best = window.first()?;
     let total = log_sum_exp(&window.iter().map(|fit| fit.score).collect::<Vec<f64>>());
     let probabilities: Vec<f64> = window.iter().map(|fit| libm::exp(fit.score - total)).collect();
-    let reported = reported(&window, &probabilities);
+    let reported = reported(problem, &window, &probabilities);
     let candidates = candidates(problem, best, &reported);
     let outliers = Outliers::new(problem, best);
     let error_of =
@@ -163,16 +163,21 @@ fn candidates(problem: &Problem, fit: &Fit, reported: &[Reported]) -> Vec<Candid
 }
 
 /// Returns the members of the best hypothesis that are probable, or that have only rivals instead.
-fn reported(window: &[Fit], probabilities: &[f64]) -> Vec<Reported> {
+fn reported(problem: &Problem, window: &[Fit], probabilities: &[f64]) -> Vec<Reported> {
     let Some(best) = window.first().map(|fit| &fit.hypothesis) else { return Vec::new() };
     let hypotheses: Vec<(&Hypothesis, f64)> =
         window.iter().map(|fit| &fit.hypothesis).zip(probabilities.iter().copied()).collect();
-    let has_kernel = best.kernels().next().is_some();
+    // Noise is in the sum of all hypotheses, but it is neither reported nor a rival.
+    let is_noise = |member: &Member| match member {
+        Member::Kernel(kernel) => problem.space.kernels[*kernel].noise_probability.is_some(),
+        Member::Effect(_) => false,
+    };
+    let has_kernel = best.members().any(|m| matches!(m, Member::Kernel(_)) && !is_noise(&m));
     let mut reported = Vec::new();
-    for member in best.members() {
+    for member in best.members().filter(|member| !is_noise(member)) {
         let mut places: BTreeMap<Member, f64> = BTreeMap::new();
         for (hypothesis, probability) in hypotheses.iter().filter(|(h, _)| !h.contains(member)) {
-            for other in hypothesis.members().filter(|other| !best.contains(*other)) {
+            for other in hypothesis.members().filter(|other| !best.contains(*other) && !is_noise(other)) {
                 *places.entry(other).or_insert(0.0) += probability;
             }
         }

@@ -56,6 +56,9 @@ pub struct Kernel {
     pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
+    /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
+    /// structure, which shares [`Space::structure_probability`].
+    pub noise_probability: Option<f64>,
 }
 
 /// A random effect that every hypothesis contains, such as that of mounts.

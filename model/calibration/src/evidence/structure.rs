@@ -22,6 +22,15 @@ const FEW_SERIES: usize = 4;
 const INTERVAL_PROBABILITY: f64 = 0.5;
 /// Series up to which every interval is a variant; in a longer table, only those up to its end.
 const MOST_INTERVAL_SERIES: usize = 24;
+/// Covariate of noise.
+pub(super) const NOISE: &str = "noise";
+/// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
+const WANDERING_PROBABILITY: f64 = 0.05;
+/// Correlations of consecutive series, and the rank of their process: what is finer has little variance
+/// next to independent offsets.
+const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
+/// Fewest series for a memory of six series, which is then shorter than the table.
+const LEAST_WANDERING_SERIES: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
@@ -83,6 +92,7 @@ impl Structure {
             scale: self.scale,
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
+            noise_probability: (self.covariate == NOISE).then_some(WANDERING_PROBABILITY),
         }
     }
 
@@ -114,6 +124,7 @@ struct Collector<'a> {
 pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
     let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
     collector.time();
+    collector.wandering();
     collector.along_a_series();
     collector.load();
     collector.protocol();
@@ -155,7 +166,7 @@ impl Collector<'_> {
         channels: &[Channel],
         variants: Vec<Variant>,
     ) {
-        let is_session_bound = record == Record::Time;
+        let is_session_bound = record == Record::Time || covariate == NOISE;
         if variants.is_empty() {
             return;
         }
@@ -207,6 +218,27 @@ impl Collector<'_> {
         let mut variants = self.variants(vec![basis], 1.0 - share);
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
+    }
+
+    /// Adds offsets that wander from series to series in the order of time, in both directions alike or
+    /// oppositely.
+    fn wandering(&mut self) {
+        let count = self.rows.series_count();
+        if count < LEAST_WANDERING_SERIES {
+            return;
+        }
+        let bases = WANDERING.map(|(correlation, rank)| -> Basis {
+            Box::new(move |rows| {
+                let mut starts = rows.series_start_s.clone();
+                starts.sort_by(f64::total_cmp);
+                starts.dedup();
+                let step = |start: &f64| starts.partition_point(|known| known < start);
+                let steps: Vec<usize> = rows.series_start_s.iter().map(step).collect();
+                kernel::autoregressive(&steps, starts.len(), correlation, rank.min(count))
+            })
+        });
+        let channels = [Channel::Reading, Channel::Drag];
+        self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
     }
 
     fn along_a_series(&mut self) {

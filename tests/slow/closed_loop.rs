@@ -34,10 +34,14 @@ fn verdict(folder: &Path, options: &str) -> (String, Vec<String>, Value) {
     (report["verdict"].as_str().unwrap().to_owned(), ids, report)
 }
 
-/// Returns the verdict; `nothing` without effects, which is `none` only if every identifiable
-/// effect is excluded.
+/// Returns the verdict; `nothing` without effects, which is `none` only if every effect that acts on the
+/// table is excluded.
 fn believed<'a>(verdict: &'a str, report: &serde_json::Value) -> &'a str {
-    let open = report["limits"].as_array().unwrap().iter().any(|limit| limit["excluded"] == false);
+    let any = |list: &str, is_open: fn(&serde_json::Value) -> bool| {
+        report[list].as_array().unwrap().iter().any(is_open)
+    };
+    let open =
+        any("limits", |limit| limit["excluded"] == false) || any("invisible", |i| i["possible"].is_array());
     match verdict {
         "none" if !open => "nothing",
         "inconclusive" if open => "nothing",

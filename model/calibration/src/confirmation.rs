@@ -9,7 +9,7 @@ use pinswitch_diagnostic::excerpt;
 use pinswitch_inference::Member;
 use serde::{Deserialize, Serialize};
 
-use crate::effects::{EffectDefinition, Vocabulary};
+use crate::effects::{Covariate, EffectDefinition, Vocabulary};
 use crate::evidence::Evidence;
 use crate::report::Estimate;
 use crate::table::{PlateauRow, matching_sessions};
@@ -184,7 +184,17 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
     } else {
         TrialOutcome::Open
     };
+    // A location is less certain than the interval of a size at it: structure along the covariate of the
+    // effect may be the effect at another place.
+    let nearby = structure_along(evidence, definition.covariate);
+    let outcome = match outcome {
+        TrialOutcome::Refuted if nearby.is_some() => TrialOutcome::Open,
+        outcome => outcome,
+    };
     let note = match outcome {
+        TrialOutcome::Open if nearby.is_some() => {
+            nearby.map(|name| format!("{name} acts, which may be the effect at a nearby place"))
+        }
         TrialOutcome::Suggested => Some(
             "its file does not state the readings it was derived from, which may be these; `drawn_from = []` \
              declares that it was derived from none"
@@ -201,6 +211,15 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
         note,
         ..report
     }
+}
+
+/// Returns the name of reported structure along a covariate.
+fn structure_along(evidence: &Evidence, covariate: Covariate) -> Option<String> {
+    let is_along = |member: Member| {
+        evidence.effect(member).is_none() && evidence.covariate(member) == covariate.as_str()
+    };
+    let reported = evidence.posterior().reported.iter().map(|r| r.member);
+    reported.filter(|member| is_along(*member)).map(|member| evidence.name(member).to_owned()).next()
 }
 
 /// Names the members of the best hypothesis that the effect may take the place of.

@@ -34,7 +34,7 @@ fn heldout_n(report: &Value) -> f64 {
 
 /// A worn spot that grows with time: its form, a constant spot, is confirmed, which once discarded
 /// everything else. A step of 10 % of friction, which mounts that differ hide: with two waves of another
-/// session, which are refuted here, the verdict once was `none`.
+/// session, which are not confirmed here, the verdict once was `none`.
 #[test]
 fn an_effect_hides_no_other() {
     for (table, effects, outcome, verdict) in [

@@ -68,6 +68,11 @@ impl Rows {
         let table = PlateauTable::read_conditions(bytes.as_slice(), &rows.display().to_string())
             .map_err(Failure::bad_input)?;
         let session = if self.fitted_session { Session::Fitted } else { Session::New };
+        if session == Session::New && model.drifts() {
+            log::info!(
+                "the model drifts with time: rows are predicted as a new session, with its mean; use --fitted-session for rows of the calibrated one"
+            );
+        }
         let (predicted, sd) = model.predict(&table.rows, session, &model_name).map_err(Failure::bad_input)?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {

@@ -5,7 +5,9 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::effects::{Abscissa, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
+use crate::effects::{
+    Abscissa, Covariate, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks,
+};
 use crate::evidence::{Fitted, Session};
 use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
@@ -309,6 +311,19 @@ impl ModelFile {
             return Err(Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP));
         }
         Ok((predicted, sd))
+    }
+
+    /// Returns whether a term drifts with the time of the session, so that a new session is predicted with
+    /// its mean.
+    pub fn drifts(&self) -> bool {
+        self.frame.mean_time.is_some()
+            && self.terms.iter().any(|term| match &term.structure {
+                Some(Structure { form, .. }) => matches!(form, Shape::Table { over: Abscissa::Time, .. }),
+                None => self
+                    .vocabulary
+                    .named(&term.id)
+                    .is_some_and(|effect| effect.description().covariate == Covariate::Time),
+            })
     }
 
     /// Returns the wrap angle in degrees of the first fitted condition that has one.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use divan::{Bencher, black_box};
 use pinswitch_calibration::calibrate;
-use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::segmentation::{Log, Rig, segment};
 use pinswitch_calibration::table::PlateauTable;
 
@@ -29,7 +29,8 @@ fn unpack(name: &str) -> Vec<u8> {
 #[divan::bench(args = ["set-01", "set-04", "set-14", "set-16"], sample_count = 5)]
 fn calibration(bencher: Bencher, name: &str) {
     let table = PlateauTable::read(unpack(&format!("{name}.csv.gz")).as_slice(), name).expect("a table");
-    bencher.bench_local(|| calibrate(black_box(&table.rows), Levels::default()));
+    let vocabulary = Vocabulary::built_in();
+    bencher.bench_local(|| calibrate(black_box(&table.rows), &vocabulary, 1));
 }
 
 /// One of 77 logs; at most 3 s for all of them.

@@ -6,7 +6,7 @@
 //! `cargo run --release --example calibrate`
 
 use pinswitch::calibration::calibrate;
-use pinswitch::calibration::inference::Levels;
+use pinswitch::calibration::effects::Vocabulary;
 use pinswitch::calibration::table::PlateauTable;
 use pinswitch::simulation::{EffectPlan, Plan, simulate};
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let csv = PlateauTable::write(&simulate(&plan).rows);
 
     let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
-    let calibration = calibrate(&table.rows, Levels::default())?;
+    let calibration = calibrate(&table.rows, &Vocabulary::built_in(), 1)?;
     let report = &calibration.report;
     println!("{} rows in {} series", report.data.rows, report.data.series);
     println!("verdict: {:?}", report.verdict);
@@ -25,13 +25,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "held-out error: {:.3} N before, {:.3} N after (noise {:.3} N)",
         report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n, report.noise_floor_n
     );
+    if let Some(error) = report.expected_error_n {
+        println!(
+            "expected error of a new session: {:.3} N [{:.3}, {:.3}]",
+            error.value, error.ci90[0], error.ci90[1]
+        );
+    }
     for effect in &report.effects {
-        println!("{} ({}), p = {:.1e}: {}", effect.id, effect.covariate, effect.p_value, effect.formula);
+        println!("{} with probability {:.4}: {}", effect.id, effect.probability, effect.formula);
         for (name, estimate) in &effect.parameters {
             let [low, high] = estimate.ci95;
             println!("  {name} = {:.4} [{low:.4}, {high:.4}] {}", estimate.value, estimate.unit);
         }
-        effect.rivals.iter().for_each(|rival| println!("  or {}: {}", rival.id, rival.experiment));
+        for rival in &effect.rivals {
+            println!("  or {} with probability {:.4}: {}", rival.id, rival.probability, rival.experiment);
+        }
     }
     for blind in &report.invisible {
         println!("invisible in this session: {} ({})", blind.id, blind.why);

@@ -1,18 +1,17 @@
 //! A user-defined effect in Rust: creep of the load cell, whose reading grows with the dwell.
 //!
-//! The example adds the effect to simulated readings and estimates its size with a fit. For
-//! `calibrate` to use such an effect, add a file to the effects of `pinswitch-calibration`
-//! (CONTRIBUTING.md).
+//! The example adds the effect to simulated readings and estimates its size: it fits the paper's model
+//! for several sizes, and takes the one with the smallest residuals. For `calibrate` to use such an
+//! effect, add a file to the effects of `pinswitch-calibration` (CONTRIBUTING.md).
 //!
 //! `cargo run --release --example custom_effect`
 
 use pinswitch::calibration::effects::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use pinswitch::calibration::inference::{
-    Model, Noise, Observations, Term, Weighed, fit, interval_half_widths,
-};
-use pinswitch::calibration::table::{Condition, Frame, Point};
+use pinswitch::calibration::evidence::Evidence;
+use pinswitch::calibration::model::Term;
+use pinswitch::calibration::table::{Condition, Frame, PlateauRow, Point};
 use pinswitch::simulation::{Plan, simulate};
 
 #[derive(Debug)]
@@ -49,26 +48,37 @@ impl Effect for Creep {
     }
 }
 
+/// Returns the root mean square of the differences of readings from predictions, in newtons.
+fn rms(rows: &[PlateauRow], predicted_n: &[f64]) -> f64 {
+    let squares = rows.iter().zip(predicted_n).map(|(row, predicted)| (row.force_n - predicted).powi(2));
+    (squares.sum::<f64>() / rows.len() as f64).sqrt()
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     const TRUE_SIZE: f64 = 0.03;
-    let rows = simulate(&Plan { seed: 5, ..Plan::randomised() }).rows;
+    let mut rows = simulate(&Plan { seed: 5, ..Plan::randomised() }).rows;
     let frame = Frame::new(&rows);
-    let mut data = Observations::new(&frame, &rows).ok_or("unknown condition")?;
-    for (force_n, point) in data.force_n.iter_mut().zip(&data.points) {
-        *force_n = Creep.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], *force_n);
+    let points = frame.points(&rows).ok_or("unknown condition")?;
+    for (row, point) in rows.iter_mut().zip(&points) {
+        row.force_n = Creep.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], row.force_n);
     }
 
-    let weighed = Weighed::new(&data, Noise::constant(0.05, 0.1));
-    let without = fit(&Model::baseline(frame), &weighed);
-    let with =
-        fit(&without.model.with_term(Term::Named(&Creep), &Creep.starts(&without.model.frame)[0]), &weighed);
-    let rms = |r: &[f64]| (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt();
-    println!("residual RMS without {}: {:.3} N", Creep.id(), rms(&without.residual_n));
-    println!("residual RMS with it: {:.3} N", rms(&with.residual_n));
-    let widths = interval_half_widths(&with, &weighed);
-    for (((name, unit), value), width) in with.model.names().iter().zip(with.model.values()).zip(widths) {
-        println!("  {name} = {value:.4} +- {width:.4} {unit}");
+    let mut best = (f64::INFINITY, 0.0);
+    for size in [0.0, 0.01, 0.02, 0.03, 0.04, 0.05] {
+        // Readings without an effect of this size, to which the paper's model is fitted.
+        let mut without = rows.clone();
+        for (row, point) in without.iter_mut().zip(&points) {
+            row.force_n /= Creep.on_reading(&[size], point, &frame.conditions[point.condition], 1.0);
+        }
+        let evidence = Evidence::baseline(&without, 1)?;
+        let fitted = evidence.fitted(&evidence.posterior().baseline).ok_or("not finite")?;
+        let model = fitted.model.with_term(Term::Named(&Creep), &[size]);
+        let residual_n = rms(&rows, &model.predict(&points));
+        println!("{} = {size:.2}: residual RMS {residual_n:.3} N", Creep.id());
+        if residual_n < best.0 {
+            best = (residual_n, size);
+        }
     }
-    println!("true k = {TRUE_SIZE}");
+    println!("best k = {}, true k = {TRUE_SIZE}", best.1);
     Ok(())
 }

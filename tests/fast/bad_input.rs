@@ -188,6 +188,33 @@ fn unwritable_errors_keep_their_exit_code() {
     assert_eq!(command.status().unwrap().code(), Some(0));
 }
 
+/// Every value out of range, in the file or an option, becomes the nearest one in range.
+#[test]
+fn fix_moves_values_into_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[shell]\nwidth_mm = 500 # wide\n[segment]\ngrooves = 1000\n";
+    std::fs::write(folder.path().join("mine.toml"), text).unwrap();
+    let generate = ["generate", "mine.toml", "--format", "stl", "--out", "set"];
+    let (code, output) = ended(folder.path(), &generate);
+    assert!(code == Some(2) && output.contains("mine.toml:2:12: shell.width_mm = 500: outside"), "{output}");
+    let fix = [&generate[..], &["--fix", "--set", "print.line_mm=99"]].concat();
+    let (code, output) = ended(folder.path(), &fix);
+    assert!(code == Some(0), "{output}");
+    for (change, reason) in [
+        ("shell.width_mm: 500 -> ", "outside 2 to 100"),
+        ("segment.grooves: 1000 -> ", "outside 1 to 60"),
+        ("print.line_mm: 99 -> 1.5", "outside 0.1 to 1.5"),
+    ] {
+        let is_reported = |line: &str| line.contains(&format!("changed {change}")) && line.ends_with(reason);
+        assert!(output.lines().any(is_reported), "{output}");
+    }
+    let fixed = std::fs::read_to_string(folder.path().join("set").join("fixed.toml")).unwrap();
+    assert!(fixed.contains(" # wide") && !fixed.contains("500"), "{fixed}");
+    let (code, output) =
+        ended(folder.path(), &["generate", "set/fixed.toml", "--format", "stl", "--out", "again"]);
+    assert!(code == Some(0), "{output}");
+}
+
 /// `--fix` builds the nearest feasible configuration, reports what it changed, and keeps the rest
 /// of the file.
 #[test]

@@ -22,7 +22,7 @@ fn invalid_sweeps_are_refused() {
     for (sweep, expected) in [
         (
             axes("\"shell.with_mm\" = [1]"),
-            "sweep.toml:2:19: shell.with_mm: unknown field; help: did you mean \"shell.width_mm\"?",
+            "sweep.toml:2:1: shell.with_mm: unknown field; help: did you mean \"shell.width_mm\"?",
         ),
         (
             axes("\"support.slots\" = { from = 1, to = 3, step = 1 }"),
@@ -51,10 +51,10 @@ fn invalid_sweeps_are_refused() {
             "sweep.toml:2:20: shell.width_mm = 16 to 12: from is above to; help: write from = 12, to = 16",
         ),
         (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2:20: shell.width_mm = 500: outside 2 to 100"),
-        ("[axis]\n".to_owned(), "sweep.toml:1:1: axis: unknown table; help: known are sweep, set, axes"),
+        ("[axis]\n".to_owned(), "sweep.toml:1:2: axis: unknown table; help: known are sweep, set, axes"),
         (
             "[sweep]\nbasis = 1\n".to_owned(),
-            "sweep.toml:2:9: sweep.basis: unknown key; help: known are name, base",
+            "sweep.toml:2:1: sweep.basis: unknown key; help: known are name, base",
         ),
         (
             "[sweep]\nbase = \"four-double\"\n".to_owned(),
@@ -112,7 +112,9 @@ fn invalid_shards_are_refused() {
     let (code, output) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
     assert!(
         code == Some(2)
-            && output.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
+            && output.contains(
+                "error: --shard = 4/3: invalid shard: expected K/N with 1 <= K <= N\n  help: write"
+            ),
         "{output}"
     );
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
@@ -226,7 +228,7 @@ fn rows_are_counted_before_reading() {
     std::fs::write(folder.path().join("rows.csv"), "shell.width_mm\n12\nwide\n").unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(
-        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\": not a number"),
+        code == Some(2) && error.contains("rows.csv:3:1: shell.width_mm = \"wide\": not a number"),
         "{error}"
     );
     let many = format!("[axes]\n\"shell.width_mm\" = [{}]\n", "12.5, ".repeat(200_000));

@@ -283,7 +283,8 @@ fn empty_studies_are_refused() {
         ),
         (
             &["--study", "1", "--only", "no-such-rig"],
-            "one of the groups confounded, masks, nulls, outside, pairs, scattered, singles,",
+            "one of the groups bench-nulls, bench-outside, bench-pairs, bench-singles, confounded, masks, nulls, outside, pairs, \
+             scattered, singles,",
         ),
         (&["--study", "0"], "0 is not in 1..=400"),
         (&["--study", "1", "--first-seed", "18446744073709551615"], "18446744073709551615 is not in"),
@@ -302,7 +303,6 @@ fn ignored_options_are_refused() {
         ("--only nulls --out x", "--only"),
         ("--first-seed 3 --out x", "--first-seed"),
         ("--every-noise --out x", "--every-noise"),
-        ("--promises --out x", "--promises"),
         ("--forms --out x", "--forms"),
         ("--experiments --out x", "--experiments"),
         ("--randomised --runs next-runs.csv --out x", "--randomised"),

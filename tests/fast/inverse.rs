@@ -205,7 +205,10 @@ fn malformed_targets_are_refused() {
             &["predict", "three-double", "--set", "layout.pins=[2,3,9]", "--law", "paper"],
             "six-single, three-double",
         ),
-        (&["predict", "proxy-six-single", "--law", "layout"], "pins on silicone only"),
+        (
+            &["predict", "proxy-six-single", "--law", "layout"],
+            "pins on silicone only\n  help: use the law paper or physics",
+        ),
         (&["physics", "silicone-only", "--out", "x"], "pins on silicone"),
     ] {
         let output = pinswitch(folder.path(), arguments);

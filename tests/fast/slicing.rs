@@ -132,6 +132,7 @@ fn failing_slicers_are_errors() {
     let (code, output) = run(folder.path(), Some(&absent), &generate);
     let expected = format!("PINSWITCH_SLICER = {}: no such program", absent.display());
     assert!(code == Some(2) && output.contains(&expected), "{output}");
+    assert!(output.contains("\n  help: give the path of PrusaSlicer's program"), "{output}");
     assert!(!folder.path().join("set").exists());
     std::fs::write(folder.path().join("broken"), "").unwrap();
     let (code, output) = run(folder.path(), Some(&slicer), &generate);

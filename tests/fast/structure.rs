@@ -173,6 +173,22 @@ fn circles_of_files_are_small() {
     assert!(files > 300, "only {files} files were read");
 }
 
+/// The search for feasible values builds parts; what needs both is in the folder `warnings`.
+#[test]
+fn parts_do_not_import_their_users() {
+    let mut all = BTreeMap::new();
+    modules(&repository("cad/switch/src"), &[], &mut all);
+    let edges = edges(&all);
+    let in_folder = |module: &Module, folder: &str| module.first().is_some_and(|name| name == folder);
+    let parts: Vec<_> = edges.iter().filter(|(module, _)| in_folder(module, "parts")).collect();
+    assert!(parts.len() > 15, "only {} files of parts were read", parts.len());
+    for (module, targets) in parts {
+        let users =
+            targets.iter().filter(|target| ["feasibility", "warnings"].iter().any(|f| in_folder(target, f)));
+        assert_eq!(users.collect::<Vec<_>>(), Vec::<&Module>::new(), "{}", module.join("/"));
+    }
+}
+
 #[test]
 fn a_circle_of_four_files_is_found() {
     let file = |code: &str| code.to_owned();

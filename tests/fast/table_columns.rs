@@ -31,7 +31,7 @@ fn calibrated(text: &str) -> (String, Value) {
     let message = String::from_utf8(output.stdout).unwrap();
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(!page.contains("NaN") && !page.contains("inf "), "the page contains a number that is not finite");
-    assert!(page.contains("Noise components") && page.contains("Limits on undetected effects"));
+    assert!(page.contains("Noise components") && page.contains("Limits on effects that were not detected"));
     let report = std::fs::read(folder.path().join("out/report.json")).unwrap();
     (message, serde_json::from_slice(&report).unwrap())
 }
@@ -66,7 +66,7 @@ fn readings_are_unique_in_a_session() {
     assert_eq!(of("tuesday").unwrap().rows.len(), 2 * rows.len());
     let error = of("monday").unwrap_err().to_string();
     let line = rows.len() + 2;
-    assert!(error.starts_with(&format!("t.csv:{line}: repetition = 1: ")), "{error}");
+    assert!(error.starts_with(&format!("t.csv:{line}:45: repetition = 1: ")), "{error}");
     assert!(error.contains("repeats the series, direction and time of line 2"), "{error}");
 }
 
@@ -86,9 +86,10 @@ fn labels_are_read() {
     assert!(table.ignored_columns().is_empty());
 }
 
-/// Two operators who zero the load cell differently are scatter, not an offset of the load cell.
+/// Two operators who zero the load cell differently are reported by operator, not as an offset of the load
+/// cell.
 #[test]
-fn differences_between_operators_are_noise() {
+fn differences_between_operators_are_structure() {
     let mut rows = simulate(&Plan { seed: 32, ..Plan::randomised() }).rows;
     let ann = |row: &PlateauRow| row.series.parse::<usize>().unwrap() % 2 == 0;
     for row in &mut rows {
@@ -97,8 +98,11 @@ fn differences_between_operators_are_noise() {
     let text =
         with_columns(&rows, &["operator"], |_, row| vec![if ann(row) { "ann" } else { "ben" }.to_owned()]);
     let (output, report) = calibrated(&text);
-    let parts: Vec<&str> =
-        report["noise_parts"].as_array().unwrap().iter().filter_map(|p| p["part"].as_str()).collect();
-    assert!(parts.contains(&"group"), "{parts:?}: {output}");
-    assert!(!report["effects"].to_string().contains("load_cell_offset"), "{output}");
+    let [effect] = report["effects"].as_array().unwrap().as_slice() else { panic!("{output}") };
+    assert_eq!(
+        (&effect["id"], &effect["covariate"]),
+        (&"unattributed".into(), &"operator".into()),
+        "{output}"
+    );
+    assert!(output.contains("an effect without a name acts over operator"), "{output}");
 }

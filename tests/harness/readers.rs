@@ -15,6 +15,7 @@ use pinswitch_batch::{
 };
 use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::effects::{OwnEffect, Vocabulary, own_effects_text, read_own_effects};
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::experiment::RigLimits;
 use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
 use pinswitch_calibration::table::PlateauTable;
@@ -233,7 +234,7 @@ fn model(bytes: &[u8]) -> Result<Reading, String> {
     // One row at a time, so that a refused row does not hide others.
     let mut reading = Reading::Accepted;
     for row in &rows {
-        match model.predict(std::slice::from_ref(row), FILE) {
+        match model.predict(std::slice::from_ref(row), Session::New, FILE) {
             Ok((n, sd)) => require(n.iter().chain(&sd).all(|x| x.is_finite()), || format!("{n:?} {sd:?}"))?,
             Err(e) => reading = refused(&e)?,
         }

@@ -8,7 +8,7 @@
 //! indistinguishable from scatter or from `wear_drift` (`model/doc/calibration.md` gives the
 //! frequencies).
 
-use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{Report, Verdict, calibrate};
 use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
@@ -20,7 +20,7 @@ const SEED: u64 = 810_000;
 fn calibrated(plan: &Plan) -> Report {
     let text = PlateauTable::write(&simulate(plan).rows);
     let table = PlateauTable::read(text.as_bytes(), "rig.csv").unwrap();
-    calibrate(&table.rows, Levels::default()).unwrap().report
+    calibrate(&table.rows, &Vocabulary::built_in(), 1).unwrap().report
 }
 
 /// Returns the plans of the study's cases with these names.

@@ -17,7 +17,8 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::effects::Vocabulary;
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{ModelFile, calibrate};
 use pinswitch_switch::config::{Configuration, read, to_toml};
@@ -362,7 +363,7 @@ fn damaged_tables_are_calibrated_or_refused() {
             judge("plateaus", &bytes)?;
             judge("conditions", &bytes)?;
             if let Ok(table) = PlateauTable::read_conditions(bytes.as_slice(), "t.csv") {
-                match model.predict(&table.rows, "m.toml") {
+                match model.predict(&table.rows, Session::New, "m.toml") {
                     Ok((n, sd)) if n.iter().chain(&sd).any(|x| !x.is_finite()) => {
                         return Err("a prediction that is not finite".to_owned());
                     }
@@ -376,17 +377,15 @@ fn damaged_tables_are_calibrated_or_refused() {
                 table.and_then(|t| t.require_baseline("t.csv").map(|()| t).map_err(|e| e.to_string()));
             let word = match table {
                 Err(_) => "refused with one clear error",
-                Ok(table) => match calibrate(&table.rows, Levels::default()) {
+                Ok(table) => match calibrate(&table.rows, &Vocabulary::built_in(), 1) {
                     Err(e) if e.to_string().chars().count() < LONGEST => "refused with one clear error",
                     Err(e) => return Err(e.to_string()),
                     Ok(found) => {
-                        let selection = &found.selection;
-                        let file = ModelFile::new(&selection.augmented, &found.data, selection.noise);
-                        let text = file.to_text().map_err(|e| e.to_string())?;
+                        let text = ModelFile::new(&found.augmented).to_text().map_err(|e| e.to_string())?;
                         let read = ModelFile::parse(&text, "model.toml")
                             .map_err(|e| format!("its own model is refused: {e}"))?;
                         let (n, sd) = read
-                            .predict(&table.rows, "model.toml")
+                            .predict(&table.rows, Session::Fitted, "model.toml")
                             .map_err(|e| format!("its own table: {e}"))?;
                         if n.iter().chain(&sd).any(|x| !x.is_finite()) {
                             return Err("a prediction that is not finite".to_owned());

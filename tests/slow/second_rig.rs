@@ -81,17 +81,12 @@ fn verdicts_and_expected_errors_are_correct() {
         let (report, ratio) = assess(name);
         assert_eq!(named(&report), truth, "{name}");
         // In set 03 the friction of every mount differs in the later session, so a single session
-        // cannot predict its error. In set 08 each fold estimates the step again, from three
-        // quarters of the series, with a larger error: 0.206 N are expected, and 0.145 N are
-        // observed (0.219 N while the model kept the shapes that follow it).
-        let most = match name {
-            "set-03" => 1.4,
-            "set-08" => 1.5,
-            _ => 1.15,
-        };
+        // cannot predict its error.
+        let most = if name == "set-03" { 1.4 } else { 1.15 };
         assert!((0.8..most).contains(&ratio), "{name}: {ratio}");
         let verdict = report["verdict"].as_str().unwrap();
-        let open = report["limits"].as_array().unwrap().iter().any(|l| l["excluded"] == false);
+        let open = report["limits"].as_array().unwrap().iter().any(|l| l["excluded"] == false)
+            || report["invisible"].as_array().unwrap().iter().any(|i| i["possible"].is_array());
         match (truth.is_empty(), open) {
             (true, true) => assert_eq!(verdict, "inconclusive", "{name}"),
             (true, false) => assert_eq!(verdict, "none", "{name}"),

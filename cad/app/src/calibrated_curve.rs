@@ -30,9 +30,9 @@ pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Resul
     })?;
     let loads_n = loads_n(design);
     let substrate = design.contact().substrate();
-    let curve = model.part_curve(substrate, &pins, &loads_n, name).map_err(Diagnostic::from_error)?;
-    let rig = rig_contact(design.contact(), &pins).map_err(|e| Diagnostic::from_error(e).or_in_file(name))?;
-    let transfer = Transfer::between(&rig, design.contact(), &loads_n).map_err(Diagnostic::from_error)?;
+    let curve = model.part_curve(substrate, &pins, &loads_n, name)?;
+    let rig = rig_contact(design.contact(), &pins).map_err(|e| Diagnostic::from(e).or_in_file(name))?;
+    let transfer = Transfer::between(&rig, design.contact(), &loads_n).map_err(Diagnostic::from)?;
     Ok(transfer.apply(curve))
 }
 

@@ -1,9 +1,8 @@
 //! Calibration with a table of measured plateaus that was dropped on the page.
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{ModelFile, SessionReport, calibrate_among};
+use pinswitch_calibration::{ModelFile, SessionReport, calibrate};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
@@ -14,6 +13,8 @@ use crate::refusal::Refusal;
 /// a browser.
 pub(crate) const MAX_TABLE_MB: usize = 20;
 const MAX_TABLE_BYTES: usize = MAX_TABLE_MB * 1_000_000;
+/// Seed of the interval of the expected error; it is fixed, so that a table has one result.
+const SEED: u64 = 1;
 
 /// What the page shows of a calibration.
 #[derive(Serialize)]
@@ -43,7 +44,7 @@ pub(crate) struct CheckedModel {
 
 /// Checks the text of a model before a design uses it; `file` is its name in errors.
 pub(crate) fn check_model(text: &str, file: &str) -> CheckedModel {
-    let trouble = ModelFile::parse(text, file).err().map(|e| Diagnostic::from_error(e).into());
+    let trouble = ModelFile::parse(text, file).err().map(Into::into);
     CheckedModel { is_model: trouble.is_none(), trouble }
 }
 
@@ -60,12 +61,12 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
             .with_location(Location::file(file))
             .with_help(format!("run `pinswitch calibrate {file}`")));
     }
-    let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from_error)?;
-    table.require_baseline(file).map_err(Diagnostic::from_error)?;
-    let calibration = calibrate_among(&table.rows, &Vocabulary::built_in(), Levels::default())
-        .map_err(|e| Diagnostic::from_error(e).or_in_file(file))?;
-    let (report, selection) = (&calibration.report, &calibration.selection);
-    let model = ModelFile::new(&selection.augmented, &calibration.data, selection.noise);
+    let table = PlateauTable::read(csv.as_bytes(), file).map_err(Diagnostic::from)?;
+    table.require_baseline(file).map_err(Diagnostic::from)?;
+    let calibration = calibrate(&table.rows, &Vocabulary::built_in(), SEED)
+        .map_err(|e| Diagnostic::from(e).or_in_file(file))?;
+    let report = &calibration.report;
+    let model = ModelFile::new(&calibration.augmented);
     let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
     Ok(Summary {
         verdict: report.verdict.as_str(),
@@ -76,7 +77,7 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
         adequate: report.adequate,
         effects,
         not_excluded,
-        model: model.to_text().map_err(Diagnostic::from_error)?,
+        model: model.to_text()?,
     })
 }
 

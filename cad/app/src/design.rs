@@ -79,7 +79,7 @@ pub(crate) fn build(
 pub(crate) fn set_refusal(error: SetError) -> Refusal {
     match error {
         SetError::Build(BuildError::Configuration(error)) => error.into(),
-        other => Diagnostic::from_error(other).into(),
+        other => Diagnostic::from(other).into(),
     }
 }
 

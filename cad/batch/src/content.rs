@@ -69,7 +69,7 @@ pub(super) enum ContentError {
 impl From<ContentError> for Diagnostic {
     fn from(error: ContentError) -> Self {
         match error {
-            ContentError::Set(error) => Self::from_error(error),
+            ContentError::Set(error) => error.into(),
             ContentError::Verification(error) => error,
             ContentError::Destination(error) => error.into(),
             ContentError::Slicer(error) => error.into(),

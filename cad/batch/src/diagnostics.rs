@@ -27,18 +27,6 @@ pub(crate) fn at_span(diagnostic: Diagnostic, file: &str, text: &str, span: Rang
     diagnostic.with_location(Location { field: known.field, value: known.value, ..location })
 }
 
-/// The same diagnostic at the line of `text` that contains byte `offset`, unless it has a file
-/// already.
-pub(crate) fn at_line(diagnostic: Diagnostic, file: &str, text: &str, offset: usize) -> Diagnostic {
-    let end =
-        text.get(offset..).and_then(|rest| rest.find('\n')).map_or(text.len(), |length| offset + length);
-    let located = at_span(diagnostic, file, text, offset..end);
-    match located.location().cloned() {
-        Some(location) => located.with_location(Location { column: None, ..location }),
-        None => located,
-    }
-}
-
 /// Implements `Display`, `Error` and the conversion to a [`Diagnostic`] for an error with the
 /// methods `diagnostic` and `cause`.
 macro_rules! diagnostic_error {

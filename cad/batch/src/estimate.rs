@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::make::{Refusal, VariantMaker, VariantOutcome, accept};
+use super::parallel;
 use super::prediction_cache::PredictionCache;
 use super::shard::Shard;
 use super::variant::Variants;
@@ -81,13 +81,10 @@ pub fn estimate(
     let count = range.end - range.start;
     let every = count.div_ceil(MAX_CHECKED).max(1);
     let predictions = PredictionCache::default();
-    let checked: Vec<(u64, Option<Refusal>)> = (0..count.div_ceil(every))
-        .into_par_iter()
-        .map(|i| {
-            let index = range.start + i * every;
-            (index, accept(variants, &variants.get(index), &predictions).err())
-        })
-        .collect();
+    let checked: Vec<(u64, Option<Refusal>)> = parallel::map_range(0..count.div_ceil(every), |i| {
+        let index = range.start + i * every;
+        (index, accept(variants, &variants.get(index), &predictions).err())
+    });
     let accepted: Vec<u64> =
         checked.iter().filter(|(_, refusal)| refusal.is_none()).map(|(i, _)| *i).collect();
     let measured = measure(variants, &accepted, mesh_maker)?;
@@ -145,18 +142,15 @@ fn measure(
     // Few variants are measured without a warm-up, and shared parts count in full.
     let (first, rest) = chosen.split_at(if chosen.len() > WARM_UP_VARIANTS { WARM_UP_VARIANTS } else { 0 });
     let make = |indices: &[u64]| -> Result<f64, DestinationError> {
-        let sizes: Result<Vec<f64>, _> = indices
-            .par_iter()
-            .map(|index| match maker.make(&variants.get(*index))? {
-                VariantOutcome::Made { manifest, .. } => {
-                    let facts: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-                    let files = facts["files"].as_array().map(Vec::as_slice).unwrap_or_default();
-                    let bytes: u64 = files.iter().filter_map(|f| f["bytes"].as_u64()).sum();
-                    Ok(bytes as f64 + manifest.len() as f64)
-                }
-                _ => Ok(0.0),
-            })
-            .collect();
+        let sizes = parallel::try_map(indices, |index| match maker.make(&variants.get(*index))? {
+            VariantOutcome::Made { manifest, .. } => {
+                let facts: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+                let files = facts["files"].as_array().map(Vec::as_slice).unwrap_or_default();
+                let bytes: u64 = files.iter().filter_map(|f| f["bytes"].as_u64()).sum();
+                Ok(bytes as f64 + manifest.len() as f64)
+            }
+            _ => Ok(0.0),
+        });
         Ok(sizes?.iter().sum())
     };
     make(first)?;

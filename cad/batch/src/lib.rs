@@ -64,6 +64,7 @@ mod make;
 mod merge;
 mod obstructions;
 mod page;
+mod parallel;
 mod plots;
 mod prediction_cache;
 mod products;

@@ -3,7 +3,6 @@
 use std::error::Error;
 
 use pinswitch_diagnostic::{Diagnostic, excerpt};
-use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::checksum::has_valid_checksum;
@@ -13,6 +12,7 @@ use super::hexadecimal;
 use super::inspect::Inspector;
 use super::make::variant_folder;
 use super::obstructions::check_paths;
+use super::parallel;
 use super::products::{ProductError, Products};
 use super::run::ShardStamp;
 use super::shard::Shard;
@@ -229,8 +229,7 @@ fn add_rows(
         if chunk.is_empty() {
             break;
         }
-        let files = chunk.par_iter().map(|row| damaged_file(&inspector, &schema, row));
-        let files = files.collect::<Result<Vec<_>, _>>()?;
+        let files = parallel::try_map(&chunk, |row| damaged_file(&inspector, &schema, row))?;
         damaged.extend(files.into_iter().flatten().map(|file| (shard.name(), file)));
         for row in chunk {
             let index = expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;

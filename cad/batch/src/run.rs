@@ -8,7 +8,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use pinswitch_diagnostic::Diagnostic;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::checksum::with_checksum;
@@ -17,6 +16,7 @@ use super::destination::{Destination, DestinationError};
 use super::diagnostics::diagnostic_error;
 use super::make::{VariantMaker, VariantOutcome};
 use super::obstructions::check_paths;
+use super::parallel::{self, Pool};
 use super::products::{ProductError, Products};
 use super::shard::Shard;
 use super::source::SweepSource;
@@ -91,7 +91,7 @@ pub enum RunError {
         reason: Diagnostic,
     },
     /// The threads cannot be started.
-    Threads(rayon::ThreadPoolBuildError),
+    Threads(Box<dyn Error + Send + Sync>),
 }
 
 impl RunError {
@@ -128,7 +128,7 @@ impl RunError {
             Self::Products(error) => error.source(),
             Self::Stopped { .. } => None,
             Self::Failed { reason, .. } => reason.source(),
-            Self::Threads(error) => Some(error),
+            Self::Threads(error) => Some(&**error),
         }
     }
 }
@@ -150,12 +150,6 @@ impl From<DestinationError> for RunError {
 impl From<ProductError> for RunError {
     fn from(error: ProductError) -> Self {
         Self::Products(error)
-    }
-}
-
-impl From<rayon::ThreadPoolBuildError> for RunError {
-    fn from(error: rayon::ThreadPoolBuildError) -> Self {
-        Self::Threads(error)
     }
 }
 
@@ -206,7 +200,7 @@ pub fn run(
     )
     .with_kernel(options.kernel);
     let mut products = Products::new(variants, destination)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options, destination)).build()?;
+    let pool = Pool::new(threads(options, destination)).map_err(RunError::Threads)?;
     let (mut done, of) = (0, range.end - range.start);
     let schema = products.schema().clone();
     for start in range.clone().step_by(usize::try_from(CHUNK_VARIANTS).unwrap_or(1)) {
@@ -283,32 +277,29 @@ fn make_chunk(
     observer: &dyn Observer,
 ) -> Vec<VariantResult> {
     let halt = AtomicBool::new(false);
-    chunk
-        .into_par_iter()
-        .map(|index| {
-            if observer.stop_requested() || halt.load(Ordering::Relaxed) {
-                return VariantResult::NotStarted;
+    parallel::map_range(chunk, |index| {
+        if observer.stop_requested() || halt.load(Ordering::Relaxed) {
+            return VariantResult::NotStarted;
+        }
+        let variant = variants.get(index);
+        // A panic in one variant must not fail the others.
+        let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
+            let bug = Diagnostic::new("internal error (panic)");
+            Ok(VariantOutcome::Failed(bug.with_help("please report the configuration")))
+        });
+        match outcome {
+            Err(error) => {
+                halt.store(true, Ordering::Relaxed);
+                VariantResult::Fatal(error)
             }
-            let variant = variants.get(index);
-            // A panic in one variant must not fail the others.
-            let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
-                let bug = Diagnostic::new("internal error (panic)");
-                Ok(VariantOutcome::Failed(bug.with_help("please report the configuration")))
-            });
-            match outcome {
-                Err(error) => {
-                    halt.store(true, Ordering::Relaxed);
-                    VariantResult::Fatal(error)
-                }
-                Ok(VariantOutcome::Failed(reason)) if options.fail_fast => {
-                    halt.store(true, Ordering::Relaxed);
-                    VariantResult::Failed { id: variant.id, reason }
-                }
-                Ok(outcome) => {
-                    observer.variant_done(&outcome);
-                    VariantResult::Row(schema.row(&variant, &outcome))
-                }
+            Ok(VariantOutcome::Failed(reason)) if options.fail_fast => {
+                halt.store(true, Ordering::Relaxed);
+                VariantResult::Failed { id: variant.id, reason }
             }
-        })
-        .collect()
+            Ok(outcome) => {
+                observer.variant_done(&outcome);
+                VariantResult::Row(schema.row(&variant, &outcome))
+            }
+        }
+    })
 }

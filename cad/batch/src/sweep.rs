@@ -4,7 +4,7 @@
 use pinswitch_diagnostic::{Diagnostic, Location};
 use toml_edit::{Document, Item, TableLike};
 
-use super::axis::{self, AXIS_TABLES, SweepAxis, fields};
+use super::axis::{self, AXIS_TABLES, ParameterRef, SweepAxis, fields, key_span};
 use super::constraint::Constraint;
 use super::diagnostics::field_error;
 use super::source::SweepSource;
@@ -81,8 +81,9 @@ impl Sweep {
         check_keys(source, document.as_table())?;
         let table = |name: &str| document.get(name).and_then(Item::as_table_like);
         let (mut base, _) = read(&source.base, "base")?;
-        for (path, item) in fields(table("set")) {
-            set_field(&mut base, &path, item).map_err(|e| source.locate(e, item.span()))?;
+        for entry in fields(table("set")) {
+            let field = entry.field(source)?;
+            set_field(&mut base, field, entry.item).map_err(|e| source.locate(e, entry.item.span()))?;
         }
         let axes = axis::axes(source, document.as_table())?;
         let sweep = table("sweep");
@@ -109,13 +110,13 @@ impl Sweep {
 }
 
 /// Sets one field of the base configuration.
-fn set_field(base: &mut Configuration, path: &str, item: &Item) -> Result<(), Diagnostic> {
-    let field = axis::field(path)?;
+fn set_field(base: &mut Configuration, field: ParameterRef, item: &Item) -> Result<(), Diagnostic> {
+    let path = field.path();
     let value = item
         .as_value()
-        .ok_or_else(|| field_error(path, None, "not a single value", "write \"table.key\" = value"))?;
+        .ok_or_else(|| field_error(&path, None, "not a single value", "write \"table.key\" = value"))?;
     let value = axis::accepted(field, value)?;
-    (field.set)(base, &value).map_err(|error| error.in_field(path, ""))
+    (field.set)(base, &value).map_err(|error| error.in_field(&path, ""))
 }
 
 /// Returns the names of all parts that a configuration can have, in the order in which they are
@@ -131,7 +132,8 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
         };
         let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
             let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
-            return refused("unknown table", format!("known are {known}"));
+            let error = field_error(name, None, "unknown table", format!("known are {known}"));
+            return Err(source.locate(error, key_span(document, name).or(item.span())));
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
             Some(tables) => tables.iter().map(|t| t as &dyn TableLike).collect(),
@@ -140,11 +142,11 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
         if tables.is_empty() {
             return refused("not a table", format!("write [{name}]"));
         }
-        for (key, item) in tables.iter().flat_map(|t| t.iter()).filter(|_| !keys.is_empty()) {
-            if !keys.contains(&key) {
+        for table in tables.iter().filter(|_| !keys.is_empty()) {
+            if let Some((key, item)) = table.iter().find(|(key, _)| !keys.contains(key)) {
                 let help = format!("known are {}", keys.join(", "));
                 let error = field_error(&format!("{name}.{key}"), None, "unknown key", help);
-                return Err(source.locate(error, item.span()));
+                return Err(source.locate(error, key_span(*table, key).or(item.span())));
             }
         }
     }

@@ -61,11 +61,10 @@ const FRICTION: [(&str, ColumnType); 5] = [
     ("threshold_n", ColumnType::Real),
 ];
 /// Columns of every part.
-const PART: [(&str, ColumnType); 6] = [
+const PART: [(&str, ColumnType); 5] = [
     ("volume_mm3", ColumnType::Real),
     ("mass_g", ColumnType::Real),
     ("mesh_volume_mm3", ColumnType::Real),
-    ("triangles", ColumnType::Integer),
     ("bytes", ColumnType::Integer),
     ("sha256", ColumnType::Text),
 ];
@@ -185,7 +184,6 @@ impl Schema {
             for (key, kind) in PART {
                 let fact = match key {
                     "mesh_volume_mm3" => &part["mesh"]["volume_mm3"],
-                    "triangles" => &part["mesh"]["triangles"],
                     "bytes" | "sha256" => &file[key],
                     _ => &part[key],
                 };

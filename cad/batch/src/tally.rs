@@ -22,6 +22,12 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Returns the numbers of variants: `12 variants made, 1 refused, 0 failed`.
+    pub fn summary(&self) -> String {
+        let noun = if self.made == 1 { "variant" } else { "variants" };
+        format!("{} {noun} made, {} refused, {} failed", self.made, self.refused, self.failed)
+    }
+
     /// Counts a part file; `is_new` if it is the first one with its content.
     pub(super) fn count_part(&mut self, bytes: u64, is_new: bool) {
         self.parts += 1;
@@ -30,5 +36,17 @@ impl Tally {
             self.distinct_parts += 1;
             self.distinct_bytes += bytes;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_variant_is_singular() {
+        let tally = |made| Tally { made, refused: 2, ..Tally::default() }.summary();
+        assert_eq!(tally(1), "1 variant made, 2 refused, 0 failed");
+        assert_eq!(tally(0), "0 variants made, 2 refused, 0 failed");
     }
 }

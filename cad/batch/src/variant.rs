@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use toml_edit::Value;
 
 use super::axis::ParameterRef;
+use super::parallel;
 use super::source::SweepSource;
 use super::sweep::Sweep;
 use pinswitch_switch::config::{Configuration, Name, to_toml};
@@ -74,9 +74,8 @@ impl Variants {
         }
         let letters = CODE_LETTERS;
         let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, rehashed: HashMap::new() };
-        let mut hashes: Vec<(u64, u64)> =
-            (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
-        hashes.par_sort_unstable();
+        let mut hashes = parallel::map_range(0..count, |index| (all.hash(index), index));
+        parallel::sort(&mut hashes);
         // One bit per code.
         let mut used = vec![0u64; codes(letters).div_ceil(64) as usize];
         let mut take = |code: u64| {

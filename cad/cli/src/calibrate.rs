@@ -9,10 +9,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
-use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ModelFile, SessionPlan, SessionReport, calibrate_among, calibrate_below, explain_published,
+    Calibration, ModelFile, SessionPlan, SessionReport, calibrate, calibrate_below, explain_published,
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};
@@ -20,17 +19,18 @@ use pinswitch_switch::output::OutputFile;
 
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
-use super::{Failure, print_text};
+use super::{Failure, SEED, print_text};
 use crate::input::was_read;
 use crate::write::write_set;
 use plans::{plans, with_forms};
 use spinner::Spinner;
 use summary::summary;
 
-/// Refit the paper's model to a plateau table and attribute its residuals to effects.
+/// Refit the paper's model to a plateau table and infer the effects that it lacks.
 ///
-/// Reports the error of the refitted model, with and without the effects. The verdict is none, inconclusive, attributed, ambiguous or unattributed. Writes the best model for `predict` and
-/// `generate`.
+/// Reports the probability of each effect, the held-out error with and without them, and the expected error of a new
+/// session. The verdict is none, inconclusive, attributed, ambiguous or unattributed. Writes the best model for
+/// `predict` and `generate`.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch calibrate plateaus.csv --out calibration
@@ -101,10 +101,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let spinner = Spinner::new(table.rows.len());
     let calibration = match arguments.fit_below {
-        None => calibrate_among(&table.rows, &vocabulary, Levels::default()),
+        None => calibrate(&table.rows, &vocabulary, SEED),
         Some(percent) => {
             let share = f64::from(percent) / 100.0;
-            let calibration = calibrate_below(&table.rows, share, &vocabulary, Levels::default());
+            let calibration = calibrate_below(&table.rows, share, &vocabulary, SEED);
             let highest = table.rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
             table.retain(|row| row.load_n <= share * highest);
             calibration
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     spinner.end();
     let mut calibration =
-        calibration.map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(&name)))?;
+        calibration.map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(&name)))?;
     calibration.report.ignored_columns = table.ignored_columns();
     if !sessions.is_empty() {
         let last = session_report(&arguments.tables, &plans, &table, &calibration);
@@ -164,8 +164,8 @@ fn earlier_sessions(
     let until = |count: usize| {
         let paths = &paths[..count];
         let (table, name) = joined(paths)?;
-        let calibration = calibrate_among(&table.rows, vocabulary, Levels::default())
-            .map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(&name)))?;
+        let calibration = calibrate(&table.rows, vocabulary, SEED)
+            .map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(&name)))?;
         Ok(session_report(paths, plans, &table, &calibration))
     };
     (1..=paths.len()).map(until).collect()
@@ -220,25 +220,31 @@ fn published(out: &Path) -> Result<(), Failure> {
 
 /// Makes every file in memory, before the first one is written.
 fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<Vec<OutputFile>, Failure> {
-    let (selection, data) = (&calibration.selection, &calibration.data);
-    let toml = |fitted| ModelFile::new(fitted, data, selection.noise).to_text().map_err(Failure::failed);
+    let Calibration { evidence, baseline, augmented, .. } = calibration;
+    let toml = |fitted| ModelFile::new(fitted).to_text().map_err(Failure::failed);
     let plots = plots(calibration).map_err(Failure::failed)?;
     let title =
         std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let html = page(&title, calibration, &plots);
-    let baseline: Vec<f64> = selection.baseline.residual_n.clone();
-    let model: Vec<f64> = selection.augmented.residual_n.clone();
-    let predicted = |r: &[f64]| data.force_n.iter().zip(r).map(|(y, r)| y - r).collect::<Vec<f64>>();
+    let residual = |predicted: &[f64]| -> Vec<f64> {
+        table.rows.iter().zip(predicted).map(|(row, predicted)| row.force_n - predicted).collect()
+    };
     let residuals = table.with_columns(
         &["baseline_N", "residual_baseline_N", "model_N", "residual_model_N", "weight"],
-        &[predicted(&baseline), baseline, predicted(&model), model, data.weights.clone()],
+        &[
+            baseline.predicted_n.clone(),
+            residual(&baseline.predicted_n),
+            augmented.predicted_n.clone(),
+            residual(&augmented.predicted_n),
+            evidence.weights(),
+        ],
         5,
     );
     let mut files = vec![
         OutputFile { name: "report.html".to_owned(), bytes: html.into_bytes() },
         OutputFile { name: "residuals.csv".to_owned(), bytes: residuals.into_bytes() },
-        OutputFile { name: "baseline.toml".to_owned(), bytes: toml(&selection.baseline)?.into_bytes() },
-        OutputFile { name: "model.toml".to_owned(), bytes: toml(&selection.augmented)?.into_bytes() },
+        OutputFile { name: "baseline.toml".to_owned(), bytes: toml(baseline)?.into_bytes() },
+        OutputFile { name: "model.toml".to_owned(), bytes: toml(augmented)?.into_bytes() },
     ];
     files.extend(plots.into_iter().map(|p| OutputFile { name: p.file, bytes: p.svg.into_bytes() }));
     files.push(OutputFile { name: "report.json".to_owned(), bytes: to_json(&calibration.report)? });

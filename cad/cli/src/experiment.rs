@@ -9,7 +9,6 @@ use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::experiment::{
     ExperimentError, Known, MOST_RUNS, Proposal, RigLimits, propose, write_runs,
 };
-use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::run_sheet;
@@ -87,8 +86,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let known =
         Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
-    let proposal = propose(known, &rig, arguments.minutes, Levels::default())
-        .map_err(|e| Failure::bad_input(located(e, arguments)))?;
+    let proposal =
+        propose(known, &rig, arguments.minutes).map_err(|e| Failure::bad_input(located(e, arguments)))?;
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
     let mut files = vec![
         file("next-runs.csv", write_runs(&proposal.runs).into_bytes()),
@@ -117,7 +116,7 @@ fn located(error: ExperimentError, arguments: &Arguments) -> Diagnostic {
         ExperimentError::CellTooSmall { .. } => arguments.rig.as_ref().map(|rig| rig.display().to_string()),
         _ => None,
     };
-    let diagnostic = Diagnostic::from_error(error);
+    let diagnostic = Diagnostic::from(error);
     match file {
         Some(file) => diagnostic.or_in_file(&file),
         None => diagnostic,

@@ -157,8 +157,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Returns the flexions of the range in degrees, one degree apart, and its upper end.
 fn flexions(range: Range<f64>, path: &JointPath) -> Result<Vec<f64>, Failure> {
     for end in [range.from, range.to] {
-        path.wrap_deg(end)
-            .map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file("--joint")))?;
+        path.wrap_deg(end).map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file("--joint")))?;
     }
     let whole = (0..MAX_FLEXIONS).map(|i| range.from + f64::from(i)).take_while(|deg| *deg < range.to);
     Ok(whole.chain([range.to]).collect())

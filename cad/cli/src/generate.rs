@@ -118,7 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
-        other => Failure::failed(Diagnostic::from_error(other)),
+        other => Failure::failed(other),
     })?;
     let verifications = kernel.map(|kernel| built.verified(kernel)).transpose().map_err(Failure::failed)?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();

@@ -54,7 +54,7 @@ impl LawChoice {
             None => Ok(Prediction::of(design)),
             Some(law) => Prediction::by(law, design).map_err(|e| {
                 let location = Location::field("--law", law.as_str());
-                Failure::bad_input(Diagnostic::from_error(e).with_location(location))
+                Failure::bad_input(Diagnostic::from(e).with_location(location))
             }),
         }
     }

@@ -29,6 +29,10 @@ pub mod write;
 pub use failure::Failure;
 use terminal::{print_data, print_json, print_text};
 
+/// Seed of the simulated sessions behind the interval of an expected error. It is fixed, so that a
+/// command prints the same result each time.
+const SEED: u64 = 1;
+
 /// Parametric CAD generator for a printable friction switch, with the predicted friction curve of its layout.
 #[derive(Debug, Parser)]
 #[command(name = "pinswitch", version, max_term_width = 100, propagate_version = true)]

@@ -45,6 +45,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         print_json(&tally)?;
     }
-    log::info!("{out}: {} variants made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
+    log::info!("{out}: {}", tally.summary());
     Ok(())
 }

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_calibration::inference::Levels;
 use pinswitch_simulation::{NoisePlan, Plan, power};
 
 use super::calibrated_curve::read_model;
@@ -42,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         plan.noise = noise_of(model)?;
         plan.check(&name).map_err(bad_input)?;
     }
-    let all = power(&plan, arguments.runs, Levels::default());
+    let all = power(&plan, arguments.runs);
     if arguments.json {
         return print_json(&all);
     }

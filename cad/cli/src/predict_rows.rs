@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::PlateauTable;
 
 use super::calibrated_curve::read_model;
@@ -19,6 +20,9 @@ pub(super) struct Rows {
     /// Plateau table whose rows are predicted; its force_N is not used.
     #[arg(long, value_name = "CSV", requires = "model")]
     rows: Option<PathBuf>,
+    /// The rows are of the session that was fitted: a drift has its value at their times, not its mean.
+    #[arg(long, requires = "rows")]
+    fitted_session: bool,
     /// File for the table with predicted_N and sd_N [default: standard output].
     #[arg(long, value_name = "CSV", requires = "rows")]
     out: Option<PathBuf>,
@@ -63,7 +67,13 @@ impl Rows {
         let bytes = crate::input::read_file(rows)?;
         let table = PlateauTable::read_conditions(bytes.as_slice(), &rows.display().to_string())
             .map_err(Failure::bad_input)?;
-        let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
+        let session = if self.fitted_session { Session::Fitted } else { Session::New };
+        if session == Session::New && model.drifts() {
+            log::info!(
+                "the model drifts with time: rows are predicted as a new session, with its mean; use --fitted-session for rows of the calibrated one"
+            );
+        }
+        let (predicted, sd) = model.predict(&table.rows, session, &model_name).map_err(Failure::bad_input)?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {
             Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::from),

@@ -32,8 +32,7 @@ impl<T: FromStr + PartialOrd + Display + Copy> FromStr for Range<T> {
         if low <= high {
             Ok(Self { from: low, to: high })
         } else {
-            Err(Diagnostic::new(format!("{} runs backwards", excerpt(text, 80)))
-                .with_help("give the smaller number first"))
+            Err(Diagnostic::new("the range runs backwards").with_help("give the smaller number first"))
         }
     }
 }
@@ -52,8 +51,8 @@ mod tests {
     #[test]
     fn invalid_ranges_are_refused() {
         for (text, problem) in [
-            ("6..3", "6..3 runs backwards"),
-            ("1e300..3", "1e300..3 runs backwards"),
+            ("6..3", "the range runs backwards"),
+            ("1e300..3", "the range runs backwards"),
             ("a..b", "\"a\" is not a number"),
             ("..", "\"\" is not a number"),
             ("1..NaN", "\"NaN\" is not a number"),

@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
     let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
-        other => Failure::failed(Diagnostic::from_error(other)),
+        other => Failure::failed(Diagnostic::from(other)),
     })?;
     let bodies = match arguments.scene {
         Scene::Assembled => assembled(&built, 0.0),

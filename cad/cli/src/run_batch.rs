@@ -178,7 +178,7 @@ fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) 
     if arguments.json {
         print_json(tally)?;
     }
-    log::info!("{out}: {} variants made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
+    log::info!("{out}: {}", tally.summary());
     log::info!(
         "{} part files, {} of them distinct: {} stored in {}",
         tally.parts,

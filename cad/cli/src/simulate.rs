@@ -7,7 +7,6 @@ use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
-use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_simulation::{
@@ -80,7 +79,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SEEDS", value_parser = clap::value_parser!(u64).range(1..=MAX_SEEDS))]
     #[arg(conflicts_with_all = ["plan", "out", "user_effects"])]
     study: Option<u64>,
-    /// With --study: first seed. Seeds that were not used to tune the levels give an unbiased result.
+    /// With --study: first seed. Seeds that were not used in the development of the calibrator give an unbiased result.
     #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
     #[arg(requires = "study", conflicts_with = "out")]
     first_seed: u64,
@@ -88,16 +87,13 @@ pub(super) struct Arguments {
     /// correlated readings, heavy tails, a load cell with steps, missing rows.
     #[arg(long, requires = "study", conflicts_with_all = ["out", "experiments"])]
     every_noise: bool,
-    /// With --study: also check the expected error of a new session; takes five times as long.
-    #[arg(long, requires = "study", conflicts_with = "out")]
-    promises: bool,
     /// With --study: fit forms to unnamed structure, and confirm or refute them on other sessions.
-    #[arg(long, requires = "study", conflicts_with_all = ["out", "promises"])]
+    #[arg(long, requires = "study", conflicts_with = "out")]
     forms: bool,
     /// With --study: where the paper's protocol leaves a question open, plan a session, simulate it, and calibrate both
     /// together. A number scales the effects.
     #[arg(long, value_name = "TIMES", num_args = 0..=1, default_missing_value = "1", value_parser = scale)]
-    #[arg(requires = "study", conflicts_with_all = ["out", "promises", "forms"])]
+    #[arg(requires = "study", conflicts_with_all = ["out", "forms"])]
     experiments: Option<f64>,
     /// With --study: only these kinds of rig, by group (nulls, singles, scattered, pairs, masks, confounded, outside) or
     /// by a part of the name.
@@ -249,7 +245,7 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     if let Some(factor) = arguments.experiments {
         let mut study = ExperimentStudy::default();
-        let run = |case: &Case, seed| run_experiment_case(case, seed, factor, Levels::default());
+        let run = |case: &Case, seed| run_experiment_case(case, seed, factor);
         let cases = (0..).zip(experiment_cases()).collect();
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
         return print_text(&study.table());
@@ -259,13 +255,11 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     if arguments.forms {
         let mut study = FormStudy::default();
         let cases = numbered.filter(|(_, case)| case.group == Group::Outside).collect();
-        let run = |case: &Case, seed| run_form_case(case, seed, Levels::default());
-        each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
+        each_case(arguments, seeds, cases, run_form_case, |case, outcomes| study.add(case, outcomes))?;
         return print_text(&study.table());
     }
     let mut study = Study::default();
-    let run = |case: &Case, seed| run_case(case, seed, Levels::default(), arguments.promises);
-    each_case(arguments, seeds, numbered.collect(), run, |case, outcomes| study.add(case, outcomes))?;
+    each_case(arguments, seeds, numbered.collect(), run_case, |case, outcomes| study.add(case, outcomes))?;
     print_text(&format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()))
 }
 

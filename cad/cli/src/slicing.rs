@@ -37,7 +37,7 @@ pub(super) fn installed() -> Result<Option<Slicer>, Failure> {
 /// Returns the failure of a slicer's error, with its exit code.
 pub(super) fn failure(error: SlicerError) -> Failure {
     let is_bad_input = error.is_bad_input();
-    let diagnostic = Diagnostic::from_error(error);
+    let diagnostic = Diagnostic::from(error);
     if is_bad_input { Failure::bad_input(diagnostic) } else { Failure::failed(diagnostic) }
 }
 

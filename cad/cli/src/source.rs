@@ -6,7 +6,8 @@ use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
-    Configuration, FieldLocations, Name, assign, read, read_over, rewritten, text,
+    ClampedReading, Configuration, FieldLocations, Name, assign, read, read_clamped, rewritten,
+    rewritten_fields, text,
 };
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
@@ -134,14 +135,13 @@ impl Source {
     /// [`Failure::bad_input`] if the configuration cannot be read, [`Failure::failed`] if no configuration can be built.
     pub(super) fn load_fixed(&self) -> Result<(LoadedDesign, Fix), Failure> {
         let (text, file, kind) = read_configuration_text(self.config())?;
-        let (configuration, _) = self.configuration_of_text(&text, &file)?;
+        let ClampedReading { configuration, out_of_range, .. } = self.clamped_reading(&text, &file)?;
         let proposal = feasibility::repair(&configuration).map_err(Failure::failed)?;
         let proposal = proposal.unwrap_or(Proposal { configuration, changes: Vec::new() });
-        let (written, _) = read(&text, &file).map_err(Failure::bad_input)?;
-        let text_of_fix =
-            rewritten(&text, &file, &written, &proposal.configuration).map_err(Failure::bad_input)?;
+        let text_of_fix = fixed_text(&text, &file, &proposal.configuration).map_err(Failure::bad_input)?;
+        let changes = with_clamped(&out_of_range, &proposal);
         let design = Design::new(proposal.configuration).map_err(Failure::bad_input)?;
-        let fix = Fix { changes: proposal.changes, text: text_of_fix };
+        let fix = Fix { changes, text: text_of_fix };
         Ok((loaded(design, &text, &file, kind), fix))
     }
 
@@ -156,23 +156,69 @@ impl Source {
         text: &str,
         file: &str,
     ) -> Result<(Configuration, FieldLocations), Failure> {
+        let reading = self.clamped_reading(text, file)?;
+        match reading.out_of_range.into_iter().next() {
+            Some(error) => Err(Failure::bad_input(error)),
+            None => Ok((reading.configuration, reading.locations)),
+        }
+    }
+
+    /// Reads the configuration; replaces each number out of its range, in the file and in the options, by the nearest
+    /// one in range.
+    fn clamped_reading(&self, text: &str, file: &str) -> Result<ClampedReading, Failure> {
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
         })?;
-        let (mut configuration, locations) = read_over(base, text, file).map_err(Failure::bad_input)?;
-        if !locations.contains("switch.name") {
-            configuration.switch.name = Name::from_file_stem(file);
+        let mut reading = read_clamped(base, text, file).map_err(Failure::bad_input)?;
+        if !reading.locations.contains("switch.name") {
+            reading.configuration.switch.name = Name::from_file_stem(file);
         }
-        for assignment in &self.assignments {
-            assign(&mut configuration, assignment).map_err(|e| Failure::bad_input(e.or_in_file("--set")))?;
+        let sets = self.assignments.iter().map(|assignment| ("--set", assignment.clone()));
+        let tolerance = self.tolerance.map(|mm| ("--tolerance", format!("{TOLERANCE}={mm:?}")));
+        for (option, assignment) in sets.chain(tolerance) {
+            let Err(error) = assign(&mut reading.configuration, &assignment) else { continue };
+            let nearest = error.changes().first().map(|change| format!("{}={}", change.field, change.value));
+            let error = error.or_in_file(option);
+            match nearest.map(|nearest| assign(&mut reading.configuration, &nearest)) {
+                Some(Ok(())) => reading.out_of_range.push(error),
+                // The first error comes first, whatever its kind.
+                _ => {
+                    return Err(Failure::bad_input(reading.out_of_range.into_iter().next().unwrap_or(error)));
+                }
+            }
         }
-        if let Some(mm) = self.tolerance {
-            assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
-                .map_err(|e| Failure::bad_input(e.or_in_file("--tolerance")))?;
-        }
-        Ok((configuration, locations))
+        Ok(reading)
     }
+}
+
+/// Returns `text` with the values of `fixed`, in place of those out of range and those that differ.
+fn fixed_text(text: &str, file: &str, fixed: &Configuration) -> Result<String, Diagnostic> {
+    let written = read_clamped(Configuration::default(), text, file)?;
+    let fields: Vec<String> = written.out_of_range.iter().filter_map(field).collect();
+    let text = rewritten_fields(text, file, &fields, &written.configuration)?;
+    rewritten(&text, file, &written.configuration, fixed)
+}
+
+/// Returns the changes of a proposal after those of values out of range, each field once.
+fn with_clamped(out_of_range: &[Diagnostic], proposal: &Proposal) -> Vec<ParameterChange> {
+    let mut changes: Vec<ParameterChange> = Vec::new();
+    for error in out_of_range {
+        let Some(field) = field(error) else { continue };
+        let from = error.location().and_then(|location| location.value.clone()).unwrap_or_default();
+        let to = proposal.configuration.shown(&field).unwrap_or_default();
+        changes.retain(|change| change.field != field);
+        changes.push(ParameterChange { field, from, to, reason: error.problem().to_owned() });
+    }
+    let others = proposal.changes.iter().filter(|change| changes.iter().all(|c| c.field != change.field));
+    let others: Vec<ParameterChange> = others.cloned().collect();
+    changes.extend(others);
+    changes
+}
+
+/// Returns the field of an error.
+fn field(error: &Diagnostic) -> Option<String> {
+    error.location()?.field.clone()
 }
 
 /// Reads the text of a file or template; also returns its name for errors.
@@ -221,7 +267,7 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
         return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
     }
     let package =
-        read_three_mf(&bytes).map_err(|e| Failure::bad_input(Diagnostic::from_error(e).or_in_file(file)))?;
+        read_three_mf(&bytes).map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(file)))?;
     let source = source_of_set_with(Path::new(file), &bytes);
     let law = package.law;
     package.configuration.map(|text| (text, Kind::Package(source, law))).ok_or_else(|| {

@@ -1,12 +1,14 @@
 //! Errors of the arguments, which clap finds before a command runs.
 
+use std::error::Error;
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use pinswitch_diagnostic::{Diagnostic, excerpt, neutral};
+use pinswitch_batch::ShardError;
+use pinswitch_diagnostic::{Diagnostic, Location, excerpt, neutral};
 
 use super::Failure;
-use super::terminal::{print_failure_json, print_line};
+use super::terminal::{print_failure_json, print_line, report_failure};
 
 /// Most characters of an error of the arguments, which quotes arguments of any length.
 const MAX_CHARACTERS: usize = 590;
@@ -15,6 +17,11 @@ const STARTERS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SW
 
 /// Prints what is wrong with the arguments, or the requested help, and returns the exit code.
 pub(super) fn report(error: clap::Error) -> ExitCode {
+    if let Some(diagnostic) = of_value(&error) {
+        let as_json = std::env::args_os().any(|argument| argument == "--json");
+        report_failure(&Failure::bad_input(diagnostic), as_json);
+        return ExitCode::from(2);
+    }
     let error = with_starter(error);
     let text = error.render().to_string();
     if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
@@ -27,6 +34,18 @@ pub(super) fn report(error: clap::Error) -> ExitCode {
         let _ = error.print();
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// Returns the error of a value that our own parser refused, at its option; `None` for other errors.
+fn of_value(error: &clap::Error) -> Option<Diagnostic> {
+    let source = error.source()?;
+    let refused = source.downcast_ref::<Diagnostic>().cloned();
+    let refused = refused.or_else(|| source.downcast_ref::<ShardError>().map(|e| Diagnostic::from(*e)))?;
+    let word = |kind| error.get(kind).map(ToString::to_string).unwrap_or_default();
+    let option = word(ContextKind::InvalidArg);
+    // `--shard <K/N>` without the name of its value.
+    let option = option.split(' ').next().unwrap_or_default();
+    Some(refused.with_location(Location::field(option, word(ContextKind::InvalidValue))))
 }
 
 /// Returns an error that clap has rendered: the first paragraph is the problem, the others are the help.
@@ -73,6 +92,22 @@ mod tests {
         };
         assert!(quotes_controls(&error("\u{1b}[2J")) && quotes_controls(&error("--\u{9b}2J")));
         assert!(!quotes_controls(&error("c")) && !quotes_controls(&error("--c")));
+    }
+
+    #[test]
+    fn help_of_a_refused_value_is_separate() {
+        let arg = clap::arg!(--shard <NUMBERS>).value_parser(clap::value_parser!(pinswitch_batch::Shard));
+        let error =
+            clap::Command::new("p").arg(arg).try_get_matches_from(["p", "--shard", "9/2"]).unwrap_err();
+        let diagnostic = of_value(&error).unwrap();
+        assert_eq!(
+            diagnostic.render("error"),
+            "error: --shard = 9/2: invalid shard: expected K/N with 1 <= K <= N\n  help: write a shard such as 2/8"
+        );
+        let number = clap::arg!(--points <NUMBER>).value_parser(clap::value_parser!(u8));
+        let error =
+            clap::Command::new("p").arg(number).try_get_matches_from(["p", "--points", "x"]).unwrap_err();
+        assert_eq!(of_value(&error), None);
     }
 
     #[test]

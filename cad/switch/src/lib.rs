@@ -34,3 +34,4 @@ pub mod request;
 pub mod scene;
 pub mod set;
 pub mod templates;
+mod warnings;

@@ -91,7 +91,7 @@ impl SetError {
 impl From<SetError> for Diagnostic {
     fn from(error: SetError) -> Self {
         match error {
-            SetError::Build(error) => Self::from_error(error),
+            SetError::Build(error) => error.into(),
             SetError::Plot(error) => Self::new("cannot draw the plot of the curve").with_source(error),
             SetError::Encoding(reason) => Self::new(format!("cannot encode a file: {reason}")),
         }

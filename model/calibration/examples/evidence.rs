@@ -1,4 +1,4 @@
-//! Infers the effects of a measured plateau table by one evidence, and predicts a second table.
+//! Calibrates a measured plateau table, and predicts a second table of the same rig.
 //!
 //! `cargo run --release -p pinswitch-calibration --example evidence -- TABLE.csv [NEXT.csv]`
 
@@ -6,9 +6,9 @@ use std::fs::File;
 use std::time::Instant;
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::evidence::{Evidence, Session};
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_inference::Member;
+use pinswitch_calibration::{ModelFile, calibrate};
 
 /// Seed of the interval of the expected error.
 const SEED: u64 = 1;
@@ -18,51 +18,67 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Some(path) = paths.first() else { return Err("usage: evidence TABLE.csv [NEXT.csv]".into()) };
     let table = PlateauTable::read(File::open(path)?, path)?;
     let start = Instant::now();
-    let evidence = Evidence::new(&table, &Vocabulary::built_in(), SEED)?;
+    let found = calibrate(&table.rows, &Vocabulary::built_in(), SEED)?;
     let seconds = start.elapsed().as_secs_f64();
-    print_posterior(&evidence);
-    println!("seconds: {seconds:.2} ({} fits)", evidence.posterior().fit_count);
+    let report = &found.report;
+    println!("{path}: {}{}", report.verdict.as_str(), if report.adequate { "" } else { ", inadequate" });
+    for effect in &report.effects {
+        let rivals: Vec<String> =
+            effect.rivals.iter().map(|r| format!("{} {:.2}", r.id, r.probability)).collect();
+        println!(
+            "  {} ({}) P = {:.3}, odds {:.3e}, rivals [{}]",
+            effect.id,
+            effect.covariate,
+            effect.probability,
+            effect.odds,
+            rivals.join(", ")
+        );
+        for (name, estimate) in &effect.parameters {
+            println!("    {name} = {:.4} {:?}", estimate.value, estimate.ci95);
+        }
+        if let Some(form) = &effect.form {
+            println!(
+                "    form: {} on {} explains {:.2} in model {} {:?} heldout {:.4}",
+                form.shape,
+                form.channel,
+                form.explains,
+                form.in_model,
+                form.parameters.iter().map(|(k, v)| (k, v.value)).collect::<Vec<_>>(),
+                form.heldout_rmse_n
+            );
+        }
+    }
+    for (name, estimate) in &report.augmented.parameters {
+        println!("  {name} = {:.4} {:?}", estimate.value, estimate.ci95);
+    }
+    report.changes.iter().for_each(|change| println!("  {}", change.words()));
+    report.bad_series.iter().for_each(|bad| println!("  bad: {} {:.3} N", bad.place(), bad.offset_n));
+    let open: Vec<&str> = report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
+    println!("  not excluded: {}", open.join(", "));
+    println!(
+        "  held out: baseline {:.3}, least squares {:?}, model {:.3} (series {:.3}); expected {:?}; noise {:.3}",
+        report.baseline.heldout_rmse_n,
+        report.least_squares_n,
+        report.augmented.heldout_rmse_n,
+        report.augmented.heldout_series_rmse_n,
+        report.expected_error_n,
+        report.noise_floor_n
+    );
     if let Some(path) = paths.get(1) {
         let next = PlateauTable::read(File::open(path)?, path)?;
-        let baseline = Evidence::baseline(&table, SEED)?;
-        println!("error on {path}: {:.3} N", rmse_n(&evidence, &next)?);
-        println!("  of the baseline: {:.3} N", rmse_n(&baseline, &next)?);
+        for (name, fitted) in [("baseline", &found.baseline), ("model", &found.augmented)] {
+            let file = ModelFile::parse(&ModelFile::new(fitted).to_text()?, "model.toml")?;
+            let error = |session| -> Result<f64, Box<dyn std::error::Error>> {
+                let (predicted, _) = file.predict(&next.rows, session, "model.toml")?;
+                let squares = predicted.iter().zip(&next.rows).map(|(p, row)| (p - row.force_n).powi(2));
+                Ok((squares.sum::<f64>() / next.rows.len() as f64).sqrt())
+            };
+            let (new, fitted) = (error(Session::New)?, error(Session::Fitted)?);
+            println!(
+                "  second table by {name}: {new:.3} N as a new session, {fitted:.3} N as the fitted one"
+            );
+        }
     }
+    println!("  {seconds:.2} s");
     Ok(())
-}
-
-fn print_posterior(evidence: &Evidence) {
-    let posterior = evidence.posterior();
-    println!("verdict: {}", posterior.verdict.as_str());
-    for reported in &posterior.reported {
-        let (name, covariate) = (evidence.name(reported.member), evidence.covariate(reported.member));
-        print!("reported: {name} ({covariate}), P = {:.3}", reported.probability);
-        let rivals = reported.rivals.iter();
-        let rivals: Vec<String> =
-            rivals.map(|(member, p)| format!("{} (P = {p:.3})", evidence.name(*member))).collect();
-        println!("{}{}", if rivals.is_empty() { "" } else { "; rivals: " }, rivals.join(", "));
-    }
-    for (member, probability) in posterior.members() {
-        let size = match member {
-            Member::Effect(effect) => posterior.size(effect),
-            Member::Kernel(_) => None,
-        };
-        let size = size.map_or_else(String::new, |s| format!("  size {:.4} +- {:.4}", s.mean, s.sd));
-        println!("  P = {probability:.3}  {}{size}", evidence.name(member));
-    }
-    for (fit, probability) in posterior.window.iter().zip(&posterior.probabilities).take(8) {
-        let names: Vec<&str> = fit.hypothesis.members().map(|member| evidence.name(member)).collect();
-        println!("  {:8.2}  {probability:.3}  {{{}}}", fit.score, names.join(", "));
-    }
-    if let Some(error) = posterior.expected_error {
-        let [low, high] = error.interval;
-        println!("expected error of a new session: {:.3} N [{low:.3}, {high:.3}]", error.value);
-    }
-}
-
-/// Returns the root mean square error in newtons of the predictions of a table.
-fn rmse_n(evidence: &Evidence, table: &PlateauTable) -> Result<f64, Box<dyn std::error::Error>> {
-    let predictions = evidence.predict(&table.rows, Session::New)?;
-    let squares = predictions.iter().zip(&table.rows).map(|(p, row)| (row.force_n - p.mean).powi(2));
-    Ok((squares.sum::<f64>() / table.rows.len() as f64).sqrt())
 }

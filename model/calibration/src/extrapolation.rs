@@ -1,12 +1,15 @@
 //! Extrapolation test: fit at low loads, evaluation at higher ones.
 
-use crate::calibrate::{Calibration, CalibrationError, calibrate_among};
+use crate::calibrate::{Calibration, CalibrationError, calibrate};
 use crate::effects::Vocabulary;
-use crate::inference::{Levels, Model};
 use crate::median::median;
+use crate::model::Model;
 use crate::report::Extrapolation;
 use crate::table::PlateauRow;
-use crate::telling::BAD_READING_SD;
+
+/// Error, in standard deviations of noise, above which a reading is a bad one: an error of the model
+/// hardly reaches it.
+const BAD_READING_SD: f64 = 20.0;
 
 /// Calibrates on loads up to a share of the highest one and evaluates both models on the rest.
 ///
@@ -16,25 +19,24 @@ pub fn calibrate_below(
     rows: &[PlateauRow],
     share: f64,
     vocabulary: &Vocabulary,
-    levels: Levels,
+    seed: u64,
 ) -> Result<Calibration, CalibrationError> {
     let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
     let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
-    let mut calibration = calibrate_among(&seen, vocabulary, levels)?;
-    let selection = &calibration.selection;
+    let mut calibration = calibrate(&seen, vocabulary, seed)?;
     let misses = |model: &Model| -> Vec<f64> {
         let points = model.frame.points(&rest).unwrap_or_default();
         model.predict(&points).iter().zip(&rest).map(|(p, r)| p - r.force_n).collect()
     };
-    let before = misses(&selection.baseline.model);
-    let after = misses(&selection.augmented.model);
-    let model = &selection.augmented.model;
+    let before = misses(&calibration.baseline.model);
+    let after = misses(&calibration.augmented.model);
+    let model = &calibration.augmented.model;
     let friction_n = model.friction_n(&model.frame.points(&rest).unwrap_or_default());
     let sound: Vec<f64> = after
         .iter()
         .zip(&rest)
         .zip(&friction_n)
-        .filter(|((miss, r), u)| miss.abs() <= BAD_READING_SD * selection.noise.at(r.load_n, **u))
+        .filter(|((miss, r), u)| miss.abs() <= BAD_READING_SD * calibration.augmented.noise.at(r.load_n, **u))
         .map(|((miss, _), _)| *miss)
         .collect();
     calibration.report.extrapolation = Some(Extrapolation {

@@ -1,18 +1,22 @@
 //! Calibration of the friction model with measured data.
 //!
-//! The crate converts raw logs to plateau tables, selects the effects that a table shows and the
-//! paper's model lacks, and writes a model that predicts readings. It does not depend on simulated
-//! rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
+//! The crate converts raw logs to plateau tables, computes the probability of each effect that the
+//! paper's model lacks, and writes a model that predicts readings. The statistics are those of
+//! [`pinswitch_inference`]; this crate has the friction model, the priors and the report. It does
+//! not depend on simulated rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
 //!
 //! Each step can be used alone:
 //!
 //! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
 //! 2. [`table`] reads and checks a plateau table.
-//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`inference`]) and
-//!    returns a [`Report`] with the held-out errors of the baseline and of the selected model.
-//! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a
-//!    printed part without the effects of the rig.
-//! 5. [`experiment`] proposes the runs that answer most open questions of a report.
+//! 3. [`evidence`] computes the posterior over hypotheses: sets of [`effects`], and of structure
+//!    without a name, in addition to the refitted model of the paper.
+//! 4. [`calibrate`] returns the posterior as a [`Report`]: probabilities, rivals, limits, the
+//!    verdict, held-out errors, and the expected error of a new session. It tests user-defined
+//!    effects ([`TrialReport`]), and derives a formula of unnamed structure ([`DrawnForm`]).
+//! 5. [`ModelFile`] stores the best hypothesis as a [`model`]. It predicts readings, and the
+//!    friction curve of a printed part without the effects of the rig.
+//! 6. [`experiment`] proposes the runs that answer most open questions of a report.
 //!
 //! # Model
 //!
@@ -29,7 +33,8 @@
 //! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` the weight for `n`
 //! pins, `S` the share of the contact that has switched from pins to silicone, `F_half` the half
 //! load and `s` the steepness (`model/doc/friction-laws.md`). A reading is this tension with the
-//! effects of the model, plus noise with random effects ([`inference::Noise`]).
+//! effects of a hypothesis `H`, plus unnamed structure and noise with random effects. The score
+//! `ln p(y | H) + ln p(H)` of the readings `y` gives the posterior probability of `H`.
 //!
 //! # Examples
 //!
@@ -55,55 +60,52 @@
 //! ```
 //!
 //! Readers take text, bytes or [`std::io::Read`], and writers return text: the crate does not open
-//! files, and does not read clocks or environment variables. `model/doc/file-formats.md` describes the files,
-//! `model/doc/effect-catalogue.md` the effects and `model/doc/naming-an-effect.md` their selection.
+//! files, and does not read clocks or environment variables. `model/doc/file-formats.md` describes
+//! the files, `model/doc/effect-catalogue.md` the effects, and `model/doc/naming-an-effect.md` the
+//! inference with its equations.
 
 #![warn(clippy::disallowed_methods)]
 
+mod adequacy;
 mod aliasing;
-mod beyond_range;
 mod calibrate;
+mod confirmation;
+mod discovery;
 pub mod effects;
 pub mod evidence;
 pub mod experiment;
 mod extrapolation;
-mod forms;
-mod held_out;
-pub mod inference;
-mod layouts_left_out;
+mod least_squares;
 mod median;
+pub mod model;
 mod model_check;
 mod model_file;
 mod own_values;
 mod parallel;
 mod part_curve;
-mod promise;
 mod published_maxima;
 mod report;
+mod reporting;
 pub mod segmentation;
 mod session_plan;
 pub mod table;
-mod telling;
 #[cfg(test)]
 mod test_session;
 mod toml_text;
-mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
 
-pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
+pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use confirmation::{TrialOutcome, TrialReport};
+pub use discovery::{DrawnForm, FormReport, FormRival};
 pub use extrapolation::calibrate_below;
-pub use forms::{DrawnForm, FormReport, FormRival, draw_form};
-pub use held_out::{HeldOut, held_out};
-pub use layouts_left_out::layouts_left_out;
 pub use median::median;
 pub use model_file::ModelFile;
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
-    BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
-    Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, SizeInSession,
-    UnequalReport, Verdict,
+    BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
+    Extrapolation, Fate, Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport,
+    StructureReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};
 pub use toml_text::toml_error;
-pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
 
-use crate::inference::{Model, Noise};
+use crate::model::{Model, Noise};
 use crate::table::Frame;
 
 /// Largest constant in its own unit: far above any real one, and far below overflow.

@@ -1,14 +1,15 @@
 //! Model files (`baseline.toml` and `model.toml`): a fitted model that predicts rows later.
 
+use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::beyond_range::error_beyond_range;
-use crate::effects::{Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
-use crate::inference::{
-    Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
+use crate::effects::{
+    Abscissa, Covariate, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks,
 };
+use crate::evidence::{Fitted, Session};
+use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
@@ -29,6 +30,19 @@ struct TermEntry {
     formula: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     structure: Option<Structure>,
+    /// Factors of the size where the form may be wrong.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    discrepancies: Vec<DiscrepancyEntry>,
+}
+
+/// A discrepancy in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct DiscrepancyEntry {
+    value: f64,
+    #[serde(default)]
+    sd: f64,
+    #[serde(flatten)]
+    factor: DiscrepancyFactor,
 }
 
 /// A constant in the file.
@@ -42,7 +56,8 @@ struct Constant {
 /// A model file.
 ///
 /// ```
-/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::effects::Vocabulary;
+/// use pinswitch_calibration::evidence::Session;
 /// use pinswitch_calibration::table::PlateauTable;
 /// use pinswitch_calibration::{ModelFile, calibrate};
 ///
@@ -60,11 +75,11 @@ struct Constant {
 /// #     }
 /// # }
 /// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
-/// let found = calibrate(&table.rows, Levels::default())?;
-/// let text = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text()?;
+/// let found = calibrate(&table.rows, &Vocabulary::built_in(), 1)?;
+/// let text = ModelFile::new(&found.augmented).to_text()?;
 ///
 /// let model = ModelFile::parse(&text, "model.toml")?;
-/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], "model.toml")?;
+/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], Session::Fitted, "model.toml")?;
 /// assert!((predicted_n[0] - table.rows[0].force_n).abs() < 5.0 * sd_n[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -75,7 +90,8 @@ pub struct ModelFile {
     #[serde(default)]
     terms: Vec<TermEntry>,
     noise: Noise,
-    /// Growth of the error with the distance from the loads fitted, in newtons per newton.
+    /// Growth of the error with the distance from the loads fitted, in newtons per newton, in files of
+    /// earlier versions; the discrepancies of this version grow with the load.
     #[serde(default)]
     beyond_range: f64,
     frame: Frame,
@@ -89,7 +105,9 @@ pub struct ModelFile {
 /// Returns whether a term depends on the operator.
 fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
     match term {
-        Term::Structure(structure) => matches!(structure.form, Shape::OperatorIs { .. }),
+        Term::Structure(structure) => {
+            matches!(structure.form, Shape::OperatorIs { .. } | Shape::Table { over: Abscissa::Operator, .. })
+        }
         Term::Named(effect) => vocabulary
             .own()
             .any(|own| own.definition().id == effect.id() && own.definition().formula.contains("operator")),
@@ -97,21 +115,31 @@ fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
 }
 
 impl ModelFile {
-    /// Returns the file of a fit.
-    pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
-        let model = &fitted.model;
-        let data = &data.compacted();
-        let weighed = Weighed::new(data, noise);
-        let covariance = coordinate_covariance(fitted, &weighed);
-        let beyond_range = error_beyond_range(model, &weighed);
+    /// Returns the file of a fitted hypothesis.
+    pub fn new(fitted: &Fitted) -> Self {
+        let Fitted { model, noise, covariance, .. } = fitted;
         let mut frame = model.frame.clone();
+        let is_over = |over: Abscissa| {
+            model.terms.iter().any(|term| {
+                matches!(term, Term::Structure(Structure { form: Shape::Table { over: of, .. }, .. }) if *of == over)
+            })
+        };
         if frame.changes.is_empty() {
             // The model does not depend on them.
-            (frame.sessions, frame.specimens) = (Vec::new(), Vec::new());
+            if !is_over(Abscissa::Session) {
+                frame.sessions = Vec::new();
+            }
+            if !is_over(Abscissa::Specimen) {
+                frame.specimens = Vec::new();
+            }
         }
         if !model.terms.iter().any(|term| depends_on_operator(term, &model.vocabulary)) {
             frame.operators = Vec::new();
         }
+        let discrepancies = |index: usize| {
+            let of = model.discrepancies.iter().filter(|d| d.term == index);
+            of.map(|d| DiscrepancyEntry { value: d.value, sd: d.sd, factor: d.factor }).collect()
+        };
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
             schema: SCHEMA.to_owned(),
@@ -124,23 +152,26 @@ impl ModelFile {
             terms: model
                 .terms
                 .iter()
-                .map(|term| match term {
+                .enumerate()
+                .map(|(index, term)| match term {
                     Term::Named(effect) => TermEntry {
                         id: effect.id().to_owned(),
                         side: Some(effect.description().side.as_str().to_owned()),
                         formula: Some(effect.cited_formula()),
                         structure: None,
+                        discrepancies: discrepancies(index),
                     },
                     Term::Structure(structure) => TermEntry {
                         id: term.id().to_owned(),
                         side: None,
                         formula: Some(structure.describe(&model.frame)),
                         structure: Some(structure.clone()),
+                        discrepancies: Vec::new(),
                     },
                 })
                 .collect(),
-            noise,
-            beyond_range,
+            noise: *noise,
+            beyond_range: 0.0,
             frame,
             covariance: (0..covariance.nrows())
                 .map(|i| covariance.row(i).iter().copied().collect())
@@ -210,6 +241,9 @@ impl ModelFile {
             };
             let zeros = vec![0.0; term.constants()];
             model = model.with_term(term, &zeros);
+            for DiscrepancyEntry { value, sd, factor } in entry.discrepancies.iter().copied() {
+                model = model.with_discrepancy(Discrepancy { term: i, value, sd, factor });
+            }
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
         let needed = model.values().len();
@@ -229,17 +263,39 @@ impl ModelFile {
     }
 
     /// Predicts readings and their standard deviations in newtons. A condition that was not
-    /// calibrated is predicted by the layout law, with a larger standard deviation.
+    /// calibrated is predicted by the layout law, with a larger standard deviation. Drifts have their
+    /// mean over the fitted session in a new one, which may drift differently.
     ///
     /// # Errors
     /// As [`ModelFile::model`], and if a prediction is not finite.
-    pub fn predict(&self, rows: &[PlateauRow], file: &str) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+    pub fn predict(
+        &self,
+        rows: &[PlateauRow],
+        session: Session,
+        file: &str,
+    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
         let (mut frame, model) = (self.frame.clone(), self.model(file)?);
         rows.iter().for_each(|row| frame.extend(row));
         let model = model.in_frame(frame);
-        let points = model.frame.points(rows).unwrap_or_default();
+        let points = match session {
+            Session::New => model.frame.points_of_new_session(rows),
+            Session::Fitted => model.frame.points(rows),
+        };
+        let points = points.unwrap_or_default();
         let predicted = model.predict(&points);
-        let mut sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        // The mounts of the fitted session are known up to the uncertainty of its constants.
+        let noise = match session {
+            Session::New => self.noise,
+            Session::Fitted => Noise { mount_scale: 0.0, ..self.noise },
+        };
+        let mut sd = prediction_sd_n(&model, &points, &self.covariance(), noise);
+        if session == Session::New {
+            // What the fitted session drew for itself, another one draws again.
+            let drifting = model.predict(&model.frame.points(rows).unwrap_or_default());
+            let squares: f64 = drifting.iter().zip(&predicted).map(|(a, b)| (a - b).powi(2)).sum();
+            let drift_n = (squares / predicted.len().max(1) as f64).sqrt();
+            sd.iter_mut().for_each(|sd| *sd = libm::hypot(*sd, drift_n));
+        }
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
             let beyond = (point.load_n - high).max(low - point.load_n).max(0.0);
@@ -255,6 +311,19 @@ impl ModelFile {
             return Err(Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP));
         }
         Ok((predicted, sd))
+    }
+
+    /// Returns whether a term drifts with the time of the session, so that a new session is predicted with
+    /// its mean.
+    pub fn drifts(&self) -> bool {
+        self.frame.mean_time.is_some()
+            && self.terms.iter().any(|term| match &term.structure {
+                Some(Structure { form, .. }) => matches!(form, Shape::Table { over: Abscissa::Time, .. }),
+                None => self
+                    .vocabulary
+                    .named(&term.id)
+                    .is_some_and(|effect| effect.description().covariate == Covariate::Time),
+            })
     }
 
     /// Returns the wrap angle in degrees of the first fitted condition that has one.
@@ -275,8 +344,9 @@ impl ModelFile {
         self.noise
     }
 
-    pub(super) fn covariance(&self) -> &[Vec<f64>] {
-        &self.covariance
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
+        let n = self.covariance.len();
+        DMatrix::from_fn(n, n, |i, j| self.covariance[i][j])
     }
 
     pub(super) fn reference_speed_pct(&self) -> f64 {
@@ -299,17 +369,19 @@ impl ModelFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference::Levels;
     use crate::test_session::session;
 
     fn text() -> String {
-        let calibration = crate::calibrate(&session(3), Levels::default()).unwrap();
-        let selection = calibration.selection;
-        ModelFile::new(&selection.augmented, &calibration.data, selection.noise).to_text().unwrap()
+        let calibration = crate::calibrate(&session(3), &Vocabulary::built_in(), 1).unwrap();
+        ModelFile::new(&calibration.augmented).to_text().unwrap()
     }
 
     fn sd_n(text: &str) -> f64 {
-        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], "model.toml").unwrap().1[0]
+        ModelFile::parse(text, "model.toml")
+            .unwrap()
+            .predict(&session(3)[..1], Session::New, "model.toml")
+            .unwrap()
+            .1[0]
     }
 
     #[test]

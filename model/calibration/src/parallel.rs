@@ -8,22 +8,10 @@ pub(crate) fn map_each<I: Send, T: Send>(items: Vec<I>, of: impl Fn(I) -> T + Sy
     items.into_par_iter().with_max_len(1).map(of).collect()
 }
 
-/// Runs two closures and returns their results.
-#[cfg(feature = "parallel")]
-pub(crate) fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
-    rayon::join(a, b)
-}
-
 /// Applies `of` to each item.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn map_each<I, T>(items: Vec<I>, of: impl Fn(I) -> T) -> Vec<T> {
     items.into_iter().map(of).collect()
-}
-
-/// Runs two closures and returns their results.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn both<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
-    (a(), b())
 }
 
 #[cfg(test)]
@@ -36,6 +24,5 @@ mod tests {
         let expected = |upto: u32| (0..upto).map(|i| i * i).collect::<Vec<_>>();
         assert_eq!(map_each((0..20).collect(), squares), (0..20).map(expected).collect::<Vec<_>>());
         assert_eq!(map_each(Vec::new(), squares), Vec::<Vec<u32>>::new());
-        assert_eq!(both(|| squares(7), || squares(3)), (expected(7), expected(3)));
     }
 }

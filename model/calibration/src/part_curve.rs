@@ -4,7 +4,7 @@
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substrate, published};
 
-use crate::inference::prediction_sd_n;
+use crate::model::{Noise, prediction_sd_n};
 use crate::model_check::check_friction;
 use crate::model_file::ModelFile;
 use crate::table::{Frame, Labels, PlateauRow, Point, Sweep};
@@ -54,8 +54,8 @@ impl ModelFile {
         let tension = model.predict_part(&points);
         // The band is the uncertainty of the model only: half the gap of two independent readings,
         // without their noise.
-        let no_noise = crate::inference::Noise::constant(0.0, 0.0);
-        let sd = prediction_sd_n(&model, &points, self.covariance(), no_noise);
+        let no_noise = Noise::constant(0.0, 0.0);
+        let sd = prediction_sd_n(&model, &points, &self.covariance(), no_noise);
         let n = loads_n.len();
         let friction: Vec<f64> = (0..n).map(|i| 0.5 * (tension[n + i] - tension[i])).collect();
         let half: Vec<f64> = (0..n).map(|i| 1.96 * 0.5 * (sd[i] + sd[n + i])).collect();
@@ -75,10 +75,10 @@ impl ModelFile {
         }
         if !inside.is_empty() {
             let drawn = |id: &str| {
-                model
-                    .vocabulary
-                    .own()
-                    .any(|own| own.definition().id == id && !own.definition().drawn_from.is_empty())
+                model.vocabulary.own().any(|own| {
+                    own.definition().id == id
+                        && own.definition().drawn_from.as_ref().is_some_and(|from| !from.is_empty())
+                })
             };
             let names: Vec<String> = inside
                 .iter()
@@ -116,7 +116,7 @@ impl ModelFile {
 
     /// Returns the number of standard normal variates that [`Self::drawn_part`] needs.
     pub fn constants_drawn(&self) -> usize {
-        self.covariance().len()
+        self.covariance().nrows()
     }
 
     /// Returns friction in newtons and the silicone's share at `loads_n`, as [`Self::part_curve`],
@@ -139,8 +139,8 @@ impl ModelFile {
             .collect();
         let mut known = self.model(file)?;
         if z.iter().any(|z| *z != 0.0) {
-            let n = self.covariance().len();
-            let covariance = nalgebra::DMatrix::from_fn(n, n, |i, j| self.covariance()[i][j]);
+            let covariance = self.covariance();
+            let n = covariance.nrows();
             // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance
             // singular.
             let parts = nalgebra::SymmetricEigen::new(covariance);

@@ -4,9 +4,15 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::{COVERED, FRICTION_ABOVE, NONE};
-use crate::report::{Report, SessionReport};
-use crate::trial::TrialOutcome;
+use crate::confirmation::TrialOutcome;
+use crate::report::Report;
+
+/// Second explanation of a question about the presence of an effect.
+pub(crate) const NONE: &str = "none";
+/// Start of the name of a question about friction above a load.
+pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
+/// Share of the paper's heaviest load from which friction counts as recorded up to it.
+pub(crate) const COVERED: f64 = 0.9;
 
 /// Answer to a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -120,7 +126,7 @@ fn answer(question: &PlanQuestion, report: &Report, highest_n: f64) -> Answer {
         return match trial.outcome {
             TrialOutcome::Confirmed => Answer::Found,
             TrialOutcome::Refuted => Answer::Excluded,
-            TrialOutcome::Open | TrialOutcome::Drawn => Answer::Open,
+            TrialOutcome::Open | TrialOutcome::Suggested | TrialOutcome::Drawn => Answer::Open,
         };
     }
     if of.starts_with(FRICTION_ABOVE) {
@@ -128,26 +134,22 @@ fn answer(question: &PlanQuestion, report: &Report, highest_n: f64) -> Answer {
         let is_recorded = highest_n > COVERED * published::heaviest_load_n();
         return if is_recorded && !is_left { Answer::Recorded } else { Answer::Open };
     }
-    let session = SessionReport::after(String::new(), report);
-    let is_alone = |id: &String| session.effects.iter().any(|ids| ids.len() == 1 && ids[0] == *id);
-    let is_named = |id: &String| session.effects.iter().any(|ids| ids.contains(id));
-    if is_alone(of) || is_alone(or) {
+    let is_rival = |id: &String| report.effects.iter().any(|e| e.rivals.iter().any(|rival| rival.id == *id));
+    let found = |id: &String| report.effects.iter().find(|effect| effect.id == *id);
+    if [of, or].into_iter().filter_map(found).any(|effect| effect.rivals.is_empty()) {
         return Answer::Found;
     }
-    // The size in question may be larger than the smallest relevant size.
-    let is_smaller = |low: f64, high: f64| question.size.is_some_and(|size| low > -size && high < size);
-    let is_out = report
-        .limits
-        .iter()
-        .any(|limit| limit.id == *of && (limit.excluded || is_smaller(limit.low, limit.high)));
-    // An effect that is not identifiable at a typical size may still be smaller than the size in
-    // question.
-    let is_below = report
-        .invisible
-        .iter()
-        .any(|hidden| hidden.id == *of && hidden.possible.is_some_and(|[low, high]| is_smaller(low, high)));
-    let is_out = is_out || is_below;
-    if or == NONE && !is_named(of) && is_out { Answer::Excluded } else { Answer::Open }
+    if or != NONE || is_rival(of) || found(of).is_some() {
+        return Answer::Open;
+    }
+    // The size in question may be larger than the smallest relevant size, so that an effect may be
+    // smaller than it although no relevant size would be detected.
+    let is_smaller = |[low, high]: [f64; 2]| question.size.is_some_and(|size| low > -size && high < size);
+    let limits = report.limits.iter().filter(|limit| limit.id == *of);
+    let hidden = report.invisible.iter().filter(|hidden| hidden.id == *of);
+    let is_excluded = limits.into_iter().any(|limit| limit.excluded || is_smaller([limit.low, limit.high]))
+        || hidden.filter_map(|hidden| hidden.possible).any(is_smaller);
+    if is_excluded { Answer::Excluded } else { Answer::Open }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use pinswitch_friction::{Direction, Substrate, published};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::inference::{Model, Term};
+use crate::model::{Model, Term};
 use crate::table::{Frame, Labels, PlateauRow, Sweep};
 
 /// Number of repetitions of each series and direction.

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 
 /// Returns the text with every control character replaced by its escape, such as `\u{1b}`.
 ///
-/// Line feeds stay and tabs become a space. Replaced are the C0 and C1 controls and DEL, which terminals obey, and the
-/// marks that change the direction of text (Unicode TR 36, section 3.2), which make a line read as another.
+/// Line feeds stay and tabs become a space. Replaced are the C0 and C1 controls and DEL, which terminals obey, the
+/// marks that change the direction of text (Unicode TR 36, section 3.2), which make a line read as another, and characters
+/// without a width, such as the zero-width space and the soft hyphen, which make two different words look equal.
 ///
 /// ```
 /// use pinswitch_diagnostic::neutral;
@@ -41,13 +42,14 @@ pub fn neutral_line(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Whether a terminal or a text layout acts on this character instead of showing it.
+/// Whether a terminal or a text layout acts on this character, or hides it, instead of showing it.
 fn is_active(c: char) -> bool {
     let is_direction_mark = matches!(
         c,
         '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
     );
-    c.is_control() || is_direction_mark || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}')
+    let is_invisible = matches!(c, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}' | '\u{feff}');
+    c.is_control() || is_direction_mark || is_invisible || matches!(c, '\u{2028}' | '\u{2029}')
 }
 
 #[cfg(test)]
@@ -67,6 +69,10 @@ mod tests {
     #[test]
     fn escape_sequences_become_visible() {
         assert_eq!(neutral("a\u{1b}]0;title\u{7}b"), "a\\u{1b}]0;title\\u{7}b");
+        assert_eq!(
+            neutral("wid\u{ad}th\u{200b}_\u{200d}\u{2060}m"),
+            "wid\\u{ad}th\\u{200b}_\\u{200d}\\u{2060}m"
+        );
         assert_eq!(neutral("a\rb\tc\u{9b}d\u{202e}e"), "a\\u{d}b c\\u{9b}d\\u{202e}e");
     }
 }

@@ -12,12 +12,11 @@ use crate::design::{Component, Role};
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
+use crate::outliers::Outliers;
 use crate::problem::Problem;
 use crate::quadrature::log_sum_exp;
 use crate::random::Random;
 
-/// Weight below which a row is an outlier, which a new session is not judged by.
-const OUTLIER_WEIGHT: f64 = 0.12;
 /// Most hypotheses that are averaged.
 const MOST_HYPOTHESES: usize = 12;
 /// Simulated sessions, and resamples of the series.
@@ -38,6 +37,7 @@ pub(crate) fn expected_error(
     problem: &Problem,
     window: &[Fit],
     probabilities: &[f64],
+    outliers: &Outliers,
     seed: u64,
 ) -> Option<ExpectedError> {
     let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
@@ -58,8 +58,8 @@ pub(crate) fn expected_error(
         }
     }
     let (_, fit, linearised, _) = parts.first()?;
-    let sound: Vec<usize> =
-        (0..problem.len()).filter(|row| fit.mode.weights[*row] > OUTLIER_WEIGHT).collect();
+    // A new session is not expected to have gross errors.
+    let sound: Vec<usize> = (0..problem.len()).filter(|row| !outliers.contains(*row)).collect();
     let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
     for row in &sound {
         let (sum, count) = &mut squares[problem.rows.series[*row]];
@@ -72,14 +72,15 @@ pub(crate) fn expected_error(
         .iter()
         .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
         .collect();
-    let session = session_variance(&views, &sound);
-    let simulated = Simulation::new(problem, fit, linearised).run(&mut random, &sound);
-    let added = simulated.mount_variance + session;
-    let mut errors: Vec<f64> = (0..SIMULATIONS)
-        .map(|i| {
+    let simulation = Simulation::new(problem, fit, linearised);
+    let added = simulation.new_level_variance(&sound) + session_variance(&views, &sound);
+    let relative_squares = simulation.run(&mut random, &sound);
+    let mut errors: Vec<f64> = relative_squares
+        .iter()
+        .map(|relative| {
             let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
             let square = mean_square(drawn) + added;
-            (square * simulated.relative_squares[i]).sqrt()
+            (square * relative).sqrt()
         })
         .collect();
     errors.sort_by(f64::total_cmp);
@@ -173,36 +174,40 @@ struct Simulation<'a> {
     linearised: &'a Linearised,
 }
 
-/// Results of a simulation.
-struct Simulated {
-    /// Mean square of each session over the median one.
-    relative_squares: Vec<f64>,
-    /// Mean square that new levels of random effects add.
-    mount_variance: f64,
-}
-
 impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
         Self { problem, fit, linearised }
     }
 
-    fn run(&self, random: &mut Random, sound: &[usize]) -> Simulated {
-        let mean = |errors: &[f64]| -> f64 {
+    /// Returns the mean square of each session over the median one.
+    fn run(&self, random: &mut Random, sound: &[usize]) -> Vec<f64> {
+        let square = |errors: Vec<f64>| -> f64 {
             sound.iter().map(|row| errors[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
         };
-        let (mut squares, mut mounts) = (Vec::new(), Vec::new());
-        for _ in 0..SIMULATIONS {
-            let mut errors = self.session(random);
-            let before = mean(&errors);
-            self.add_new_levels(random, &mut errors);
-            squares.push(mean(&errors));
-            mounts.push(mean(&errors) - before);
-        }
+        let squares: Vec<f64> = (0..SIMULATIONS)
+            .map(|_| {
+                let mut errors = self.session(random);
+                self.add_new_levels(random, &mut errors);
+                square(errors)
+            })
+            .collect();
         let median = crate::quadrature::median(&squares).max(1e-300);
-        Simulated {
-            relative_squares: squares.iter().map(|s| s / median).collect(),
-            mount_variance: crate::quadrature::median(&mounts).max(0.0),
-        }
+        squares.iter().map(|s| s / median).collect()
+    }
+
+    /// Returns the mean square that new levels of random effects add.
+    fn new_level_variance(&self, sound: &[usize]) -> f64 {
+        let of_row = |row: &usize| -> f64 {
+            let redrawn = self.problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn);
+            redrawn
+                .filter(|(i, _)| self.problem.rows.levels[*i][*row].is_some())
+                .map(|(i, effect)| {
+                    let sd = self.fit.random_effect_sd(i).unwrap_or(0.0);
+                    (sd * self.linearised.design.channels[effect.channel][*row]).powi(2)
+                })
+                .sum()
+        };
+        sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
     }
 
     /// Returns errors of a session: uncertainty of constants and sizes, and noise.

@@ -7,14 +7,14 @@ use nalgebra::DVector;
 use crate::design::{Component, Design, Mode, Role};
 use crate::evidence::{Integrals, SizePosterior, log_evidence};
 use crate::hypothesis::{Element, Hypothesis, Member};
-use crate::noise::Scales;
-use crate::problem::{Problem, Space};
+use crate::noise::{EXCLUDED, Scales};
+use crate::problem::{Problem, SizedEffect, Space};
 use crate::scales::{ScalePoint, ScaleProblem};
 
 /// Degrees of freedom of Student's t distribution of the repetition noise.
 pub(crate) const DEGREES_OF_FREEDOM: f64 = 5.0;
 /// Range of the weights of the scale mixture.
-const WEIGHT_RANGE: (f64, f64) = (1e-3, 1.2);
+const WEIGHT_RANGE: (f64, f64) = (1e-12, 1.2);
 /// Prior standard deviation of a size while its mode is searched, in typical sizes: practically
 /// free, since a prior that is tight about a bad start keeps a fit there.
 const FREE_SIZE_SD: f64 = 300.0;
@@ -61,12 +61,20 @@ pub(crate) struct Start<'a> {
     pub(crate) is_final: bool,
     /// Size of an added effect, from its first-order score.
     pub(crate) hint: Option<(usize, f64)>,
+    /// Whether each row is excluded, for a start without a mode; empty if none is.
+    pub(crate) excluded: &'a [bool],
 }
 
 impl<'a> Start<'a> {
     /// Returns a start at the mode of a fit.
     pub(crate) fn at(fit: &'a Fit, hint: Option<(usize, f64)>) -> Self {
-        Self { mode: Some(&fit.mode), hypothesis: Some(&fit.hypothesis), is_final: false, hint }
+        Self {
+            mode: Some(&fit.mode),
+            hypothesis: Some(&fit.hypothesis),
+            is_final: false,
+            hint,
+            excluded: &[],
+        }
     }
 }
 
@@ -139,6 +147,11 @@ impl Fit {
         self.variances.get(&Component::Kernel(index)).map(|variance| variance.sqrt())
     }
 
+    /// Returns the effects of the hypothesis with sizes and shapes.
+    pub fn effects(&self) -> Vec<SizedEffect> {
+        self.mode.sized(&self.hypothesis)
+    }
+
     /// Returns the baseline's constants.
     pub fn constants(&self) -> &[f64] {
         &self.mode.constants
@@ -178,7 +191,10 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
         constants: space.constants.iter().map(|c| c.mean).collect(),
         sizes: BTreeMap::new(),
         shifts: BTreeMap::new(),
-        weights: DVector::from_element(problem.len(), 1.0),
+        weights: DVector::from_fn(problem.len(), |row, _| match start.excluded.get(row) {
+            Some(true) => EXCLUDED,
+            _ => 1.0,
+        }),
         scales: Scales::typical(&problem.reference),
         log_sd: BTreeMap::new(),
     });
@@ -213,7 +229,8 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
 /// Returns the logarithm of the mixing density of the weights, relative to weights of 1. With the
 /// weights at their mode the mixture is Student's t distribution.
 fn log_weight_term(weights: &DVector<f64>) -> f64 {
-    weights.iter().map(|w| DEGREES_OF_FREEDOM / 2.0 * (libm::log(*w) - w + 1.0)).sum()
+    let included = weights.iter().filter(|w| **w != EXCLUDED);
+    included.map(|w| DEGREES_OF_FREEDOM / 2.0 * (libm::log(*w) - w + 1.0)).sum()
 }
 
 /// Returns the weights that maximise the posterior, given the part of each residual that a row
@@ -224,8 +241,11 @@ fn student_weights(at: &ScaleProblem<'_>, point: &ScalePoint) -> DVector<f64> {
     let precision_residual = point.marginal.whitening.unwhiten_transposed(&white);
     let quantum = noise.quantum_variance();
     DVector::from_fn(at.problem.len(), |row, _| {
+        if at.weights[row] == EXCLUDED {
+            return EXCLUDED;
+        }
         let variance = noise.independent_variance(row);
-        let own = (variance / at.weights[row] + quantum) * precision_residual[row];
+        let own = (noise.own_variance(row) + quantum) * precision_residual[row];
         student_weight(own * own / (variance + quantum).max(1e-12))
     })
 }

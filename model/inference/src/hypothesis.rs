@@ -102,12 +102,20 @@ pub(crate) fn log_prior_odds(space: &Space, element: Element) -> f64 {
         Member::Effect(index) => {
             let effect = &space.effects[index];
             let odds = effect.probability / (1.0 - effect.probability);
-            libm::log(odds / effect.starts.len().max(1) as f64)
+            let equal = 1.0 / effect.starts.len().max(1) as f64;
+            libm::log(odds * effect.shape_probabilities.get(element.form).copied().unwrap_or(equal))
         }
         Member::Kernel(index) => {
-            let share = space.structure_probability / space.kernels.len() as f64;
-            let variant = space.kernels[index].variants.get(element.form).copied().unwrap_or(0.0);
-            libm::log(share * variant)
+            let kernel = &space.kernels[index];
+            let variant = kernel.variants.get(element.form).copied().unwrap_or(0.0);
+            let odds = kernel.noise_probability.map_or_else(
+                || {
+                    let structures = space.kernels.iter().filter(|k| k.noise_probability.is_none());
+                    space.structure_probability / structures.count() as f64
+                },
+                |probability| probability / (1.0 - probability),
+            );
+            libm::log(odds * variant)
         }
     }
 }
@@ -125,6 +133,7 @@ mod tests {
             is_one_sided: false,
             probability: 0.2,
             starts: starts.to_vec(),
+            shape_probabilities: Vec::new(),
             shape_constants: 0,
         };
         let space = Space { effects: vec![effect(&[1.0]), effect(&[1.0, 2.0])], ..Space::default() };

@@ -46,9 +46,32 @@ pub fn rms_norm(basis: &DMatrix<f64>) -> f64 {
     (basis.norm_squared() / basis.nrows().max(1) as f64).sqrt()
 }
 
+/// Returns the basis of an AR(1) process with this correlation over `count` steps, at the step of each
+/// row: cosines with the spectrum of the process, at most `rank` of them.
+pub fn autoregressive(step: &[usize], count: usize, correlation: f64, rank: usize) -> DMatrix<f64> {
+    let n = count.max(1) as f64;
+    DMatrix::from_fn(step.len(), rank.min(count), |row, k| {
+        let angle = std::f64::consts::PI * k as f64 / n;
+        let spectrum = (1.0 - correlation * correlation)
+            / (1.0 - 2.0 * correlation * libm::cos(angle) + correlation * correlation);
+        let scale = if k == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+        scale * (spectrum / n).sqrt() * libm::cos(angle * (step[row] as f64 + 0.5))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Steps in the middle of a long process have the correlation of their distance.
+    #[test]
+    fn autoregressive_basis_has_its_correlation() {
+        let basis = autoregressive(&[100, 101, 105], 200, 0.6, 200);
+        let covariance = &basis * basis.transpose();
+        for (i, j, distance) in [(0, 0, 0), (0, 1, 1), (0, 2, 5)] {
+            assert!((covariance[(i, j)] - 0.6f64.powi(distance)).abs() < 0.01, "{i} {j}: {covariance}");
+        }
+    }
 
     #[test]
     fn brownian_basis_has_its_covariance() {

@@ -8,10 +8,13 @@
 //! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
 //! `I + A_s C A_s'` gives it the spread of a new series.
 
+use std::collections::BTreeSet;
+
 use nalgebra::DMatrix;
 
-use crate::design::Design;
+use crate::design::{Design, Role};
 use crate::fit::{Fit, size_variances};
+use crate::marginal::posterior_mean;
 use crate::problem::Problem;
 use crate::scales::{ScalePoint, ScaleProblem};
 
@@ -75,12 +78,65 @@ impl Linearised {
     }
 }
 
+/// Predicts the series of each group from those of all other groups, with the noise and the members of
+/// a fit. `group_of_series` has the group of each series; constants of the baseline that `own` lists for
+/// a group are then fitted to it, since no other group determines them. Returns reading minus
+/// prediction of each row; `None` if the design of the fit is not finite.
+pub fn leave_groups_out(
+    problem: &Problem,
+    fit: &Fit,
+    group_of_series: &[usize],
+    own: impl Fn(usize) -> Vec<usize>,
+) -> Option<Vec<f64>> {
+    let Linearised { design, point } = Linearised::new(problem, fit)?;
+    let marginal = &point.marginal;
+    let mut residuals = vec![0.0; problem.len()];
+    let groups: BTreeSet<usize> = group_of_series.iter().copied().collect();
+    for group in groups {
+        let out: Vec<usize> = (0..problem.len())
+            .filter(|row| group_of_series.get(problem.rows.series[*row]) == Some(&group))
+            .collect();
+        let matrix = marginal.white_matrix.select_rows(&out);
+        let target = marginal.white_target.select_rows(&out);
+        let gram = &marginal.gram - matrix.tr_mul(&matrix);
+        let moment = &marginal.moment - matrix.tr_mul(&target);
+        let mut mean = posterior_mean(gram, &moment, &point.variances)?;
+        let own = own(group);
+        let is_own = |role: &Role| matches!(role, Role::Constant(i) if own.contains(i));
+        let columns: Vec<usize> = (0..design.roles.len()).filter(|i| is_own(&design.roles[*i])).collect();
+        if !columns.is_empty() {
+            let part = matrix.select_columns(&columns);
+            let left = part.tr_mul(&(target - &matrix * &mean));
+            let variances: Vec<f64> = columns.iter().map(|i| point.variances[*i]).collect();
+            let moved = posterior_mean(part.tr_mul(&part), &left, &variances)?;
+            columns.iter().zip(moved.iter()).for_each(|(i, step)| mean[*i] += step);
+        }
+        for row in out {
+            residuals[row] = design.target[row] - (design.matrix.row(row) * &mean)[0];
+        }
+    }
+    Some(residuals)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::marginal::Marginal;
     use crate::noise::Noise;
     use crate::test_problem::{ROWS_PER_SERIES, fitted, full_hypothesis, problem, rows};
+
+    /// Leaving one series out of many is a group of one series.
+    #[test]
+    fn groups_of_one_series_match_single_series() {
+        let problem = problem(7, 0.4);
+        let (fit, ..) = fitted(&problem, &full_hypothesis());
+        let single = Linearised::new(&problem, &fit).unwrap().leave_series_out().unwrap();
+        let groups: Vec<usize> = (0..7).collect();
+        let grouped = leave_groups_out(&problem, &fit, &groups, |_| Vec::new()).unwrap();
+        for (a, b) in grouped.iter().zip(&single.residuals) {
+            assert!((a - b).abs() < 1e-7, "{a} {b}");
+        }
+    }
 
     /// Prediction of the last series equals that of a solution without its rows.
     #[test]

@@ -43,8 +43,7 @@
 //!
 //! ```
 //! use pinswitch_inference::{
-//!     Constant, Effect, ForwardModel, Member, Problem, Rows, SearchOptions, SizedEffect, Space, Verdict,
-//!     infer,
+//!     Constant, Effect, ForwardModel, Member, Problem, Rows, SearchOptions, SizedEffect, Space, infer,
 //! };
 //!
 //! struct Line(Vec<f64>);
@@ -71,6 +70,7 @@
 //!         is_one_sided: false,
 //!         probability: 0.05,
 //!         starts: vec![0.1],
+//!         shape_probabilities: vec![],
 //!         shape_constants: 0,
 //!     }],
 //!     ..Space::default()
@@ -89,7 +89,7 @@
 //! };
 //! let problem = Problem::new(space, rows, readings)?;
 //! let posterior = infer(&problem, SearchOptions::default(), 1).ok_or("no finite readings")?;
-//! assert_eq!(posterior.verdict, Verdict::Attributed);
+//! assert_eq!(posterior.reported[0].member, Member::Effect(0));
 //! assert!(posterior.probability(Member::Effect(0)) > 0.99);
 //! assert!((posterior.size(0).ok_or("not in the window")?.mean - 0.5).abs() < 0.05);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -97,15 +97,18 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod coefficients;
 mod design;
 mod evidence;
 mod expected_error;
 mod fit;
 mod hypothesis;
+mod information;
 pub mod kernel;
 mod leave_out;
 mod marginal;
 mod noise;
+mod outliers;
 mod posterior;
 mod prediction;
 mod problem;
@@ -117,16 +120,21 @@ mod search;
 #[cfg(test)]
 mod test_problem;
 
+pub use coefficients::{Coefficient, Coefficients};
 pub use design::Mode;
 pub use evidence::SizePosterior;
 pub use expected_error::ExpectedError;
 pub use fit::Fit;
 pub use hypothesis::{Element, Hypothesis, Member};
+pub use information::information;
+pub use leave_out::leave_groups_out;
 pub use noise::{NoiseReference, Scales};
-pub use posterior::{Posterior, Reported, SizeEstimate, Verdict, infer};
+pub use outliers::{Outliers, OutlyingReading, OutlyingSeries};
+pub use posterior::{Candidate, Posterior, Reported, SizeEstimate, best_additions, infer};
 pub use prediction::Prediction;
 pub use problem::{
     Constant, Effect, ForwardModel, Kernel, MOST_SHAPE_CONSTANTS, Problem, ProblemError, RandomEffect, Rows,
     SizedEffect, Space,
 };
+pub use score::SizeLimits;
 pub use search::SearchOptions;

@@ -73,15 +73,7 @@ impl Marginal {
     }
 
     fn factor(&self, variances: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
-        let sd = DVector::from_iterator(variances.len(), variances.iter().map(|v| v.sqrt()));
-        let mut scaled = self.gram.clone();
-        for (j, mut column) in scaled.column_iter_mut().enumerate() {
-            column.iter_mut().zip(sd.iter()).for_each(|(x, s)| *x *= s * sd[j]);
-        }
-        for i in 0..sd.len() {
-            scaled[(i, i)] += 1.0;
-        }
-        let factor = scaled.cholesky()?.unpack();
+        let (factor, sd) = scaled_factor(self.gram.clone(), variances)?;
         let z = factor.solve_lower_triangular(&self.moment.component_mul(&sd))?;
         let determinant = 2.0 * factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
         let log_likelihood = -0.5 * (self.constant - z.norm_squared() + determinant);
@@ -92,6 +84,29 @@ impl Marginal {
     pub(crate) fn white_residual(&self, mean: &DVector<f64>) -> DVector<f64> {
         &self.white_target - &self.white_matrix * mean
     }
+}
+
+/// Returns the Cholesky factor of `I + S G S` and the diagonal of `S = sqrt(diag(l))`.
+fn scaled_factor(mut gram: DMatrix<f64>, variances: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    let sd = DVector::from_iterator(variances.len(), variances.iter().map(|v| v.sqrt()));
+    for (j, mut column) in gram.column_iter_mut().enumerate() {
+        column.iter_mut().zip(sd.iter()).for_each(|(x, s)| *x *= s * sd[j]);
+    }
+    for i in 0..sd.len() {
+        gram[(i, i)] += 1.0;
+    }
+    Some((gram.cholesky()?.unpack(), sd))
+}
+
+/// Returns the posterior mean of coefficients with prior variances `l` from `A'V^-1 A` and `A'V^-1 r`.
+pub(crate) fn posterior_mean(
+    gram: DMatrix<f64>,
+    moment: &DVector<f64>,
+    variances: &[f64],
+) -> Option<DVector<f64>> {
+    let (factor, sd) = scaled_factor(gram, variances)?;
+    let half = factor.solve_lower_triangular(&moment.component_mul(&sd))?;
+    Some(factor.tr_solve_lower_triangular(&half)?.component_mul(&sd))
 }
 
 #[cfg(test)]

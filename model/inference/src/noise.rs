@@ -9,9 +9,10 @@
 //! ```
 //!
 //! with the repetition noise `sigma` that grows with the load `F` by the ratio `c`, the weights `w`
-//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset per
-//! series and direction with a constant part `o_d` and a part `o_l` that grows with load, an offset `o_s` per series, and a scale of friction `s` per series, where
-//! `g` is the reading's sensitivity to friction. Rows of different series are independent.
+//! of the heavy tails, an AR(1) process with share `a` and correlation `rho`, an offset per series
+//! and direction with a constant part `o_d` and a part `o_l` that grows with load, an offset `o_s`
+//! per series, and a scale of friction `s` per series, where `g` is the reading's sensitivity to
+//! friction. Rows of different series are independent.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -35,6 +36,10 @@ const UNCORRELATED_PROBABILITY: f64 = 0.5;
 const LOG_LOAD_GROWTH: f64 = -0.7;
 /// Scale of the half-Cauchy prior of the scale of friction per series, relative.
 const SERIES_SCALE_PRIOR: f64 = 0.02;
+/// Weight of an excluded row.
+pub(crate) const EXCLUDED: f64 = 0.0;
+/// Standard deviation of an excluded row, in mean loads.
+const EXCLUDED_SD: f64 = 1e5;
 /// Power of a scale that multiplies its prior, so that its logarithm has a mode above zero.
 const SCALE_POWER: f64 = 0.02;
 
@@ -184,6 +189,15 @@ impl Noise<'_> {
         (1.0 - self.scales.autoregression().0) * self.repetition_sd(row).0.powi(2)
     }
 
+    /// Returns the variance of a row about its expectation under its weight; that of an excluded row is
+    /// so large that the row determines nothing.
+    pub(crate) fn own_variance(&self, row: usize) -> f64 {
+        match self.weights[row] {
+            EXCLUDED => (EXCLUDED_SD * self.reference.repetition_sd.max(self.reference.mean_load)).powi(2),
+            weight => self.independent_variance(row) / weight,
+        }
+    }
+
     /// Returns the variance of rounding to the quantum.
     pub(crate) fn quantum_variance(&self) -> f64 {
         self.reference.quantum.powi(2) / 12.0
@@ -206,7 +220,7 @@ impl Noise<'_> {
                 sum += share * sd[i] * sd[j] * powers[self.lag(a, b).min(range.len())];
             }
             if i == j {
-                sum += (1.0 - share) * sd[i] * sd[i] / self.weights[a] + self.quantum_variance();
+                sum += self.own_variance(a) + self.quantum_variance();
             }
             sum
         })
@@ -252,7 +266,10 @@ impl Noise<'_> {
                 (sd, if scale == LOAD_GROWTH { growth } else { 1.0 })
             })
             .collect();
-        let own = |i: usize| 2.0 * sd[i].1 * (1.0 - share) * sd[i].0 * sd[i].0 / self.weights[first + i];
+        let own = |i: usize| match self.weights[first + i] {
+            EXCLUDED => 0.0,
+            weight => 2.0 * sd[i].1 * (1.0 - share) * sd[i].0 * sd[i].0 / weight,
+        };
         if share == 0.0 {
             return Derivative::Diagonal(DVector::from_fn(range.len(), |i, _| own(i)));
         }

@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::design::Component;
 use crate::expected_error::{ExpectedError, expected_error, kernel_curve};
-use crate::fit::Fit;
+use crate::fit::{Fit, Start};
 use crate::hypothesis::{Hypothesis, Member};
 use crate::leave_out::Linearised;
+use crate::outliers::Outliers;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, normal_cdf};
-use crate::score::Scores;
+use crate::score::{Scores, SizeLimits};
 use crate::search::{Search, SearchOptions};
 
 /// Probability above which a member of the best hypothesis is reported, with its rivals.
@@ -20,33 +21,8 @@ const REPORTED_NEXT_TO_KERNEL: f64 = 0.99;
 /// Probability above which another member is a rival.
 const RIVAL_PROBABILITY: f64 = 0.05;
 
-/// Conclusion from a posterior.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// No effect is reported, and every effect is smaller than the smallest relevant one.
-    None,
-    /// No effect is reported, but the data do not exclude all.
-    Inconclusive,
-    /// All reported members are effects without rivals.
-    Attributed,
-    /// A reported effect has a rival.
-    Ambiguous,
-    /// Unnamed structure is reported.
-    Unattributed,
-}
-
-impl Verdict {
-    /// Returns its word in reports.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Inconclusive => "inconclusive",
-            Self::Attributed => "attributed",
-            Self::Ambiguous => "ambiguous",
-            Self::Unattributed => "unattributed",
-        }
-    }
-}
+/// Most searches that are repeated without suspected series.
+const MOST_EXCLUSIONS: usize = 3;
 
 /// A reported member of the best hypothesis.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,12 +53,21 @@ pub struct Posterior {
     pub window: Vec<Fit>,
     /// Probability of each hypothesis.
     pub probabilities: Vec<f64>,
-    /// Conclusion.
-    pub verdict: Verdict,
+    /// Fit of the baseline alone.
+    pub baseline: Fit,
+    /// Whether each row was excluded from the fits, as part of a series with a suspected gross error;
+    /// empty if none was.
+    pub excluded: Vec<bool>,
     /// Reported members.
     pub reported: Vec<Reported>,
+    /// Effects that are not reported and change some reading that the best hypothesis does not absorb.
+    pub candidates: Vec<Candidate>,
+    /// Series and readings with gross errors under the best hypothesis.
+    pub outliers: Outliers,
     /// Expected error of a new session.
     pub expected_error: Option<ExpectedError>,
+    /// Expected error of the baseline alone.
+    pub baseline_error: Option<ExpectedError>,
     /// Number of fits.
     pub fit_count: usize,
 }
@@ -90,50 +75,109 @@ pub struct Posterior {
 /// Searches the hypotheses of a problem; `None` if no reading of its forward model is finite. The
 /// seed is that of the interval of the expected error.
 pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Posterior> {
-    let mut search = Search::new(problem, options);
-    let window = search.run();
+    let mut excluded: Vec<bool> = Vec::new();
+    let mut search = Search::new(problem, options, &excluded);
+    let mut window = search.run();
+    let mut fits = search.fit_count;
+    for _ in 0..MOST_EXCLUSIONS {
+        let suspected = Outliers::suspected(problem, window.first()?);
+        let is_new = suspected
+            .iter()
+            .enumerate()
+            .any(|(row, out)| *out != excluded.get(row).copied().unwrap_or(false));
+        if !is_new {
+            break;
+        }
+        excluded = suspected;
+        search = Search::new(problem, options, &excluded);
+        window = search.run();
+        fits += search.fit_count;
+    }
     let best = window.first()?;
     let total = log_sum_exp(&window.iter().map(|fit| fit.score).collect::<Vec<f64>>());
     let probabilities: Vec<f64> = window.iter().map(|fit| libm::exp(fit.score - total)).collect();
-    let reported = reported(&window, &probabilities);
-    let is_kernel = |member: Member| matches!(member, Member::Kernel(_));
-    let verdict = if reported.iter().any(|r| is_kernel(r.member)) {
-        Verdict::Unattributed
-    } else if reported.iter().any(|r| !r.rivals.is_empty()) {
-        Verdict::Ambiguous
-    } else if !reported.is_empty() {
-        Verdict::Attributed
-    } else if excludes_all(problem, best) {
-        Verdict::None
-    } else {
-        Verdict::Inconclusive
-    };
-    let expected_error = expected_error(problem, &window, &probabilities, seed);
-    let fit_count = search.fit_count;
-    Some(Posterior { window, probabilities, verdict, reported, expected_error, fit_count })
+    let reported = reported(problem, &window, &probabilities);
+    let candidates = candidates(problem, best, &reported);
+    let outliers = Outliers::new(problem, best);
+    let error_of =
+        |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
+    let expected_error = error_of(&window, &probabilities);
+    let (fit_count, baseline) = (fits, search.baseline()?);
+    let baseline_error = error_of(std::slice::from_ref(&baseline), &[1.0]);
+    Some(Posterior {
+        window,
+        probabilities,
+        baseline,
+        excluded,
+        reported,
+        candidates,
+        outliers,
+        expected_error,
+        baseline_error,
+        fit_count,
+    })
 }
 
-/// Returns whether the limits of every effect that is not in a fit are below its smallest relevant
-/// size.
-fn excludes_all(problem: &Problem, fit: &Fit) -> bool {
-    let additions = Scores::new(problem, fit).map_or_else(Vec::new, |scores| scores.additions(None));
-    // Without any score the data determine nothing.
-    fit.hypothesis.is_empty()
-        && !additions.is_empty()
-        && additions.iter().all(|addition| addition.limit < 1.0)
+/// An effect that is not reported.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Index of the effect.
+    pub effect: usize,
+    /// Index of the shape with the widest limits.
+    pub shape: usize,
+    /// Logarithm of the posterior odds of adding it to the best hypothesis, to first order.
+    pub log_odds: f64,
+    /// Limits of its size for this shape.
+    pub size: SizeLimits,
+}
+
+impl Candidate {
+    /// Returns whether the data would report the effect if it had its smallest relevant size.
+    pub fn is_detectable(&self) -> bool {
+        self.size.expected_gain > libm::log(REPORTED_PROBABILITY / (1.0 - REPORTED_PROBABILITY))
+    }
+}
+
+/// Returns the effects that could be added to a fit, and those of its members that are not reported, in
+/// the order of the space.
+fn candidates(problem: &Problem, fit: &Fit, reported: &[Reported]) -> Vec<Candidate> {
+    let Some(scores) = Scores::new(problem, fit) else { return Vec::new() };
+    let mut additions = scores.additions(None);
+    let is_reported = |member: &Member| reported.iter().any(|r| r.member == *member);
+    for member in fit.hypothesis.members().filter(|member| !is_reported(member)) {
+        let alone = scores.additions(Some(member)).into_iter();
+        additions.extend(alone.filter(|addition| addition.element.member == member));
+    }
+    let mut candidates: BTreeMap<usize, Candidate> = BTreeMap::new();
+    for addition in additions {
+        let (Member::Effect(effect), Some(size)) = (addition.element.member, addition.size) else { continue };
+        let new = Candidate { effect, shape: addition.element.form, log_odds: addition.gain, size };
+        let known = candidates.entry(effect).or_insert(new);
+        let log_odds = known.log_odds.max(new.log_odds);
+        if new.size.largest_change() > known.size.largest_change() {
+            *known = new;
+        }
+        known.log_odds = log_odds;
+    }
+    candidates.into_values().collect()
 }
 
 /// Returns the members of the best hypothesis that are probable, or that have only rivals instead.
-fn reported(window: &[Fit], probabilities: &[f64]) -> Vec<Reported> {
+fn reported(problem: &Problem, window: &[Fit], probabilities: &[f64]) -> Vec<Reported> {
     let Some(best) = window.first().map(|fit| &fit.hypothesis) else { return Vec::new() };
     let hypotheses: Vec<(&Hypothesis, f64)> =
         window.iter().map(|fit| &fit.hypothesis).zip(probabilities.iter().copied()).collect();
-    let has_kernel = best.kernels().next().is_some();
+    // Noise is in the sum of all hypotheses, but it is neither reported nor a rival.
+    let is_noise = |member: &Member| match member {
+        Member::Kernel(kernel) => problem.space.kernels[*kernel].noise_probability.is_some(),
+        Member::Effect(_) => false,
+    };
+    let has_kernel = best.members().any(|m| matches!(m, Member::Kernel(_)) && !is_noise(&m));
     let mut reported = Vec::new();
-    for member in best.members() {
+    for member in best.members().filter(|member| !is_noise(member)) {
         let mut places: BTreeMap<Member, f64> = BTreeMap::new();
         for (hypothesis, probability) in hypotheses.iter().filter(|(h, _)| !h.contains(member)) {
-            for other in hypothesis.members().filter(|other| !best.contains(*other)) {
+            for other in hypothesis.members().filter(|other| !best.contains(*other) && !is_noise(other)) {
                 *places.entry(other).or_insert(0.0) += probability;
             }
         }
@@ -199,6 +243,12 @@ impl Posterior {
         Some(SizeEstimate { mean, sd: square.sqrt(), interval: [quantile(0.025), quantile(0.975)] })
     }
 
+    /// Fits the best hypothesis without a member, from its own mode.
+    pub fn best_without(&self, problem: &Problem, member: Member) -> Option<Fit> {
+        let best = self.window.first()?;
+        Fit::new(problem, &best.hypothesis.without(member), Start::at(best, None))
+    }
+
     /// Returns the function of a kernel at each row, in the unit of its channel, under the best
     /// hypothesis that contains it.
     pub fn curve(&self, problem: &Problem, kernel: usize) -> Option<Vec<f64>> {
@@ -206,5 +256,30 @@ impl Posterior {
         let linearised = Linearised::new(problem, fit)?;
         let columns = linearised.design.columns_of(Component::Kernel(kernel));
         Some(kernel_curve(problem, fit, kernel, &columns, &linearised.point.solution.mean))
+    }
+}
+
+/// Fits the best additions of some effects to a fit, one at a time, by their first-order scores; best
+/// first, and at most one form of each effect.
+pub fn best_additions(problem: &Problem, fit: &Fit, effects: &[usize], most: usize) -> Vec<Fit> {
+    let additions = Scores::new(problem, fit).map_or_else(Vec::new, |scores| scores.additions(None));
+    let mut tried: BTreeSet<Member> = BTreeSet::new();
+    let mut fits = Vec::new();
+    for addition in additions {
+        let member = addition.element.member;
+        let is_wanted = matches!(member, Member::Effect(effect) if effects.contains(&effect));
+        if tried.len() < most && is_wanted && tried.insert(member) {
+            fits.extend(Fit::new(problem, &addition.hypothesis, Start::at(fit, addition.hint)));
+        }
+    }
+    fits.sort_by(|a, b| b.score.total_cmp(&a.score));
+    fits
+}
+
+impl Fit {
+    /// Fits a hypothesis from scratch without the rows that are `excluded`, a list that may be empty;
+    /// `None` if its readings are not finite at any mode.
+    pub fn of_hypothesis(problem: &Problem, hypothesis: &Hypothesis, excluded: &[bool]) -> Option<Self> {
+        Self::new(problem, hypothesis, Start { is_final: true, excluded, ..Start::default() })
     }
 }

@@ -31,6 +31,8 @@ pub struct Effect {
     pub probability: f64,
     /// Size at which each shape is scored first, one per shape.
     pub starts: Vec<f64>,
+    /// Prior probabilities of the shapes, given the effect; empty if all are equal.
+    pub shape_probabilities: Vec<f64>,
     /// Number of constants of a shape, at most [`MOST_SHAPE_CONSTANTS`]. A fit shifts them from
     /// their discrete values.
     pub shape_constants: usize,
@@ -54,6 +56,9 @@ pub struct Kernel {
     pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
+    /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
+    /// structure, which shares [`Space::structure_probability`].
+    pub noise_probability: Option<f64>,
 }
 
 /// A random effect that every hypothesis contains, such as that of mounts.
@@ -250,6 +255,11 @@ impl Problem {
         &self.rows
     }
 
+    /// Returns the properties of the readings from which the priors of the noise follow.
+    pub fn noise_reference(&self) -> &NoiseReference {
+        &self.reference
+    }
+
     /// Returns the number of readings.
     pub fn len(&self) -> usize {
         self.readings.len()
@@ -287,6 +297,9 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
             let (length, expected) = (effect.shape_constants, MOST_SHAPE_CONSTANTS);
             return Err(ProblemError::Length { name: "constants of a shape", length, expected });
         }
+    }
+    for effect in space.effects.iter().filter(|effect| !effect.shape_probabilities.is_empty()) {
+        expect_length("shape probabilities", effect.shape_probabilities.len(), effect.starts.len())?;
     }
     expect_length("relevant", rows.relevant.len(), space.effects.len())?;
     for column in &rows.relevant {

@@ -49,6 +49,19 @@ fn geometric(first: f64, last: f64, count: i32) -> Vec<f64> {
     (0..count).map(|i| first * libm::exp(ratio * f64::from(i))).collect()
 }
 
+/// Returns the two-sided tail probability of Student's t distribution with 5 degrees of freedom at
+/// `z`, in closed form.
+pub(crate) fn student_tail(z: f64) -> f64 {
+    let angle = libm::atan(z.abs() / 5f64.sqrt());
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+    // For large z the closed form loses all digits; the leading term of the tail is then exact.
+    if z.abs() > 1e3 {
+        let density = 8.0 / (3.0 * PI * 5f64.sqrt());
+        return 2.0 * density * libm::pow(5.0, 3.0) / (5.0 * libm::pow(z.abs(), 5.0));
+    }
+    (1.0 - 2.0 / PI * (angle + sin * (cos + 2.0 / 3.0 * libm::pow(cos, 3.0)))).max(0.0)
+}
+
 /// Returns `ln sum exp(x)` without overflow; negative infinity for an empty list.
 pub(crate) fn log_sum_exp(terms: &[f64]) -> f64 {
     let most = terms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -88,6 +101,16 @@ pub(crate) fn log_normal_cdf(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Quantiles of a table of Student's t distribution.
+    #[test]
+    fn student_tails_match_the_table() {
+        for (z, p) in [(2.571, 0.05), (4.032, 0.01), (6.869, 0.001)] {
+            assert!((student_tail(z) / p - 1.0).abs() < 2e-3, "{z}: {}", student_tail(z));
+        }
+        let ratio = student_tail(1.001e3) / student_tail(0.999e3);
+        assert!((ratio - libm::pow(0.999 / 1.001, 5.0)).abs() < 0.02, "{ratio}");
+    }
 
     /// The density of the mixture is that of the Cauchy distribution within 3 % to 30 scales.
     #[test]

@@ -38,11 +38,12 @@ impl Random {
         radius * libm::cos(2.0 * PI * self.uniform())
     }
 
-    /// Returns a number of Student's t distribution with 5 degrees of freedom, the noise's.
+    /// Returns a number of Student's t distribution with 5 degrees of freedom, the noise's (Bailey,
+    /// Mathematics of Computation 62, 1994).
     pub(crate) fn student(&mut self) -> f64 {
-        let normal = self.normal();
-        let chi_squared: f64 = (0..5).map(|_| self.normal().powi(2)).sum();
-        normal / (chi_squared / 5.0).sqrt()
+        const NU: f64 = 5.0;
+        let radius = (NU * (libm::pow(self.uniform(), -2.0 / NU) - 1.0)).sqrt();
+        radius * libm::cos(2.0 * PI * self.uniform())
     }
 }
 

@@ -35,9 +35,40 @@ pub(crate) struct Addition {
     pub(crate) element: Element,
     /// Expected size, for an effect that has one.
     pub(crate) hint: Option<(usize, f64)>,
-    /// Largest change of a reading that the 95 % limits of an effect's size allow, relative to the
-    /// smallest relevant one.
-    pub(crate) limit: f64,
+    /// What the data say about the size of the effect; `None` for a kernel.
+    pub(crate) size: Option<SizeLimits>,
+}
+
+/// First-order posterior of the size of an effect in addition to a fit, if it acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeLimits {
+    /// Size that the data prefer, with a flat prior.
+    pub size: f64,
+    /// Standard deviation of it.
+    pub sd: f64,
+    /// Smallest relevant size: the one that changes a reading by its smallest relevant change.
+    pub relevant: f64,
+    /// Expected gain of the score if the effect had its smallest relevant size.
+    pub expected_gain: f64,
+}
+
+impl SizeLimits {
+    /// Returns the 95 % interval of the size.
+    pub fn interval(&self) -> [f64; 2] {
+        [self.size - NORMAL_95 * self.sd, self.size + NORMAL_95 * self.sd]
+    }
+
+    /// Returns the largest change of a reading that the interval allows, relative to the smallest
+    /// relevant one.
+    pub fn largest_change(&self) -> f64 {
+        let [low, high] = self.interval();
+        low.abs().max(high.abs()) / self.relevant
+    }
+
+    /// Returns whether every size in the interval is smaller than the smallest relevant one.
+    pub fn is_excluded(&self) -> bool {
+        self.largest_change() < 1.0
+    }
 }
 
 /// All candidates at the mode of a fit.
@@ -58,8 +89,7 @@ struct EffectGain {
     gain: f64,
     /// Expected size.
     size: Option<f64>,
-    /// Upper 95 % limit of the absolute size.
-    limit: f64,
+    limits: SizeLimits,
 }
 
 /// White columns of an element.
@@ -161,18 +191,16 @@ impl<'a> Scores<'a> {
                 let cross = &root * candidate.cross.select_rows(&kept);
                 let information = &candidate.gram - cross.transpose() * &cross;
                 let score = &candidate.moment - cross.tr_mul(&moment);
-                let EffectGain { gain, size, limit } = match candidate.element.member {
-                    Member::Effect(effect) => self.effect_gain(effect, candidate, &information, &score)?,
-                    Member::Kernel(kernel) => {
-                        let gain = self.kernel_gain(kernel, information, &score);
-                        EffectGain { gain, size: None, limit: 0.0 }
-                    }
-                };
                 let element = candidate.element;
                 let odds = log_prior_odds(&self.problem.space, element);
-                let hint = match element.member {
-                    Member::Effect(effect) => size.map(|size| (effect, size)),
-                    Member::Kernel(_) => None,
+                let (gain, hint, size) = match element.member {
+                    Member::Effect(effect) => {
+                        let found = self.effect_gain(effect, candidate, &information, &score)?;
+                        let mut limits = found.limits;
+                        limits.expected_gain += odds;
+                        (found.gain, found.size.map(|size| (effect, size)), Some(limits))
+                    }
+                    Member::Kernel(kernel) => (self.kernel_gain(kernel, information, &score), None, None),
                 };
                 Some(Addition {
                     score: gain + prior + odds,
@@ -180,7 +208,7 @@ impl<'a> Scores<'a> {
                     hypothesis: rest.with(element),
                     element,
                     hint,
-                    limit: limit * candidate.relevance,
+                    size,
                 })
             })
             .collect();
@@ -201,10 +229,25 @@ impl<'a> Scores<'a> {
             return None;
         }
         let prior = &self.problem.space.effects[effect];
-        let limit = (u / s).abs() + NORMAL_95 / s.sqrt();
+        let relevant = 1.0 / candidate.relevance.max(1e-300);
+        let mut limits = SizeLimits { size: u / s, sd: 1.0 / s.sqrt(), relevant, expected_gain: 0.0 };
         let Some(typical) = prior.typical_size else {
-            return Some(EffectGain { gain: u - 0.5 * s, size: None, limit: limit.min(1.0) });
+            // The whole effect has size 1; if that is irrelevant, the data need not exclude it.
+            if limits.relevant > 1.0 {
+                (limits.size, limits.sd) = (limits.size.clamp(0.0, 1.0), 0.0);
+            }
+            limits.expected_gain = 0.5 * s;
+            return Some(EffectGain { gain: u - 0.5 * s, size: None, limits });
         };
+        let (gain, size) = self.size_gain(typical, prior.is_one_sided, u, s);
+        limits.expected_gain = self.size_gain(typical, prior.is_one_sided, s * limits.relevant, s).0;
+        let size = if prior.is_one_sided { size.max(LEAST_START * typical) } else { size };
+        Some(EffectGain { gain, size: Some(size), limits })
+    }
+
+    /// Returns the gain of the log evidence by a size with score `u` and information `s`, and the
+    /// expected size.
+    fn size_gain(&self, typical: f64, is_one_sided: bool, u: f64, s: f64) -> (f64, f64) {
         let variances: Vec<f64> = self.cauchy.nodes.iter().map(|node| node * typical * typical).collect();
         let terms: Vec<f64> = variances
             .iter()
@@ -212,28 +255,33 @@ impl<'a> Scores<'a> {
             .map(|(v, w)| w - 0.5 * libm::log1p(v * s) + 0.5 * u * u * v / (1.0 + v * s))
             .collect();
         let precision = s + 1.0 / variances[largest(&terms)];
-        let (mut gain, mut size) = (log_sum_exp(&terms), u / precision);
-        if prior.is_one_sided {
+        let (mut gain, size) = (log_sum_exp(&terms), u / precision);
+        if is_one_sided {
             gain += libm::log(2.0) + log_normal_cdf(size * precision.sqrt());
-            size = size.max(LEAST_START * typical);
         }
-        Some(EffectGain { gain, size: Some(size), limit })
+        (gain, size)
     }
 
     fn kernel_gain(&self, kernel: usize, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
-        let prior = Mixture::half_cauchy(self.problem.space.kernels[kernel].scale);
-        let eigen = information.symmetric_eigen();
-        let rotated = eigen.eigenvectors.tr_mul(score);
-        let gain = |v: f64| -> f64 {
-            let terms = eigen.eigenvalues.iter().zip(rotated.iter()).map(|(value, u)| {
-                let growth = 1.0 + v * value.max(0.0);
-                -0.5 * libm::log(growth) + 0.5 * v * u * u / growth
-            });
-            terms.sum()
-        };
-        let nodes = prior.nodes.iter().zip(&prior.log_weights);
-        log_sum_exp(&nodes.map(|(sd, weight)| weight + gain(sd * sd)).collect::<Vec<f64>>())
+        variance_gain(self.problem.space.kernels[kernel].scale, information, score)
     }
+}
+
+/// Returns the gain of the log evidence by coefficients with a common standard deviation, whose prior
+/// is half-Cauchy with this scale.
+pub(crate) fn variance_gain(scale: f64, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
+    let prior = Mixture::half_cauchy(scale);
+    let eigen = information.symmetric_eigen();
+    let rotated = eigen.eigenvectors.tr_mul(score);
+    let gain = |v: f64| -> f64 {
+        let terms = eigen.eigenvalues.iter().zip(rotated.iter()).map(|(value, u)| {
+            let growth = 1.0 + v * value.max(0.0);
+            -0.5 * libm::log(growth) + 0.5 * v * u * u / growth
+        });
+        terms.sum()
+    };
+    let nodes = prior.nodes.iter().zip(&prior.log_weights);
+    log_sum_exp(&nodes.map(|(sd, weight)| weight + gain(sd * sd)).collect::<Vec<f64>>())
 }
 
 /// Returns the largest change of a reading, relative to the smallest relevant one.

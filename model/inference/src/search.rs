@@ -83,19 +83,21 @@ pub(crate) struct Search<'a> {
     selectivity: Selectivity,
     fits: BTreeMap<Hypothesis, Fit>,
     failed: BTreeSet<Hypothesis>,
+    excluded: &'a [bool],
     pub(crate) fit_count: usize,
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(problem: &'a Problem, options: SearchOptions) -> Self {
+    /// Returns a search without the rows that are `excluded`, a list that may be empty.
+    pub(crate) fn new(problem: &'a Problem, options: SearchOptions, excluded: &'a [bool]) -> Self {
         let selectivity = Selectivity::of_rows(problem.len());
         let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
-        Self { problem, options, selectivity, fits, failed, fit_count: 0 }
+        Self { problem, options, selectivity, fits, failed, excluded, fit_count: 0 }
     }
 
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
     pub(crate) fn run(&mut self) -> Vec<Fit> {
-        self.fit(&Hypothesis::default(), Start::default());
+        self.fit(&Hypothesis::default(), Start { excluded: self.excluded, ..Start::default() });
         if self.options.members == 0 {
             return self.fits.values().cloned().collect();
         }
@@ -105,8 +107,16 @@ impl<'a> Search<'a> {
             let Some(best) = self.best_score() else { break };
             let near = self.ranked().into_iter().filter(|fit| fit.score > best - EXPANSION_WINDOW);
             let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
-                break;
+                // Another autoregression may have changed the ranks.
+                self.polish();
+                match self.ranked().first() {
+                    Some(best) if !expanded.contains(&best.hypothesis) => continue,
+                    _ => break,
+                }
             };
+            // All hypotheses that follow start from this mode, and from its autoregression.
+            self.fit_again(&fit.hypothesis, &fit, true);
+            let Some(fit) = self.fits.get(&fit.hypothesis).cloned() else { break };
             expanded.insert(fit.hypothesis.clone());
             self.expand(&fit);
         }
@@ -114,6 +124,11 @@ impl<'a> Search<'a> {
         let Some(best) = self.best_score() else { return Vec::new() };
         let window = best - self.options.window;
         self.ranked().into_iter().filter(|fit| fit.score > window).cloned().collect()
+    }
+
+    /// Returns the fit without members.
+    pub(crate) fn baseline(&self) -> Option<Fit> {
+        self.fits.get(&Hypothesis::default()).cloned()
     }
 
     fn ranked(&self) -> Vec<&Fit> {
@@ -138,10 +153,11 @@ impl<'a> Search<'a> {
         self.fits.get(hypothesis)
     }
 
-    /// Fits a hypothesis again from another mode, and keeps the better fit.
-    fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit) {
+    /// Fits a hypothesis again from another mode, with its autoregression or with any, and keeps the
+    /// better fit.
+    fn fit_again(&mut self, hypothesis: &Hypothesis, start: &Fit, is_final: bool) {
         self.fit_count += 1;
-        let start = Start { is_final: true, ..Start::at(start, None) };
+        let start = Start { is_final, ..Start::at(start, None) };
         let Some(again) = Fit::new(self.problem, hypothesis, start) else { return };
         let known = self.fits.get(hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
         if again.score > known {
@@ -154,7 +170,8 @@ impl<'a> Search<'a> {
         let usual = self.problem.space.usual_effects.iter();
         let elements = usual.map(|effect| Element { member: Member::Effect(*effect), form: 0 });
         let hypothesis = Hypothesis::from_elements(elements);
-        let Some(mut fit) = self.fit(&hypothesis, Start::default()).cloned() else { return };
+        let start = Start { excluded: self.excluded, ..Start::default() };
+        let Some(mut fit) = self.fit(&hypothesis, start).cloned() else { return };
         while !fit.hypothesis.is_empty() {
             let mut best: Option<Fit> = None;
             for member in fit.hypothesis.members().collect::<Vec<_>>() {
@@ -240,14 +257,14 @@ impl<'a> Search<'a> {
         let near: Vec<Fit> =
             ranked.take(POLISHED.0).filter(|fit| fit.score > best - POLISHED.1).cloned().collect();
         for fit in &near {
-            self.fit_again(&fit.hypothesis, fit);
+            self.fit_again(&fit.hypothesis, fit, true);
         }
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
         for member in best.hypothesis.members() {
             let reduced = best.hypothesis.without(member);
-            let known = self.fits.get(&reduced).map(|fit| fit.score);
-            if known.is_some_and(|score| score > best.score - self.selectivity.loss) {
-                self.fit_again(&reduced, &best);
+            self.fit_again(&reduced, &best, false);
+            if self.fits.get(&reduced).is_none_or(|fit| fit.score < best.score - self.options.window) {
+                self.fit_again(&reduced, &best, true);
             }
         }
     }
@@ -264,14 +281,14 @@ mod tests {
 
     #[test]
     fn a_large_effect_wins() {
-        let window = Search::new(&problem(12, 0.6), SearchOptions::default()).run();
+        let window = Search::new(&problem(12, 0.6), SearchOptions::default(), &[]).run();
         assert!(window[0].hypothesis.contains(Member::Effect(0)));
         assert_eq!(window[0].hypothesis.len(), 1);
     }
 
     #[test]
     fn nothing_wins_without_effects() {
-        let window = Search::new(&problem(12, 0.0), SearchOptions::default()).run();
+        let window = Search::new(&problem(12, 0.0), SearchOptions::default(), &[]).run();
         assert!(window[0].hypothesis.is_empty());
     }
 }

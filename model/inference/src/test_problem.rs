@@ -58,6 +58,7 @@ fn space() -> Space {
             is_one_sided: false,
             probability: 0.1,
             starts: vec![0.15],
+            shape_probabilities: vec![],
             shape_constants: 0,
         }],
         kernels: vec![Kernel {
@@ -67,6 +68,7 @@ fn space() -> Space {
             scale: 0.3,
             variants: vec![1.0],
             is_session_bound: false,
+            noise_probability: None,
         }],
         random_effects: vec![RandomEffect {
             name: "mount".to_owned(),
@@ -83,11 +85,16 @@ fn space() -> Space {
 
 /// A problem with an offset, noise, and an offset per series.
 pub(crate) fn problem(series: usize, offset: f64) -> Problem {
+    problem_with(series, offset, |_| 0.0)
+}
+
+/// The same with gross errors of some rows.
+pub(crate) fn problem_with(series: usize, offset: f64, error: impl Fn(usize) -> f64) -> Problem {
     let rows = rows(series);
     let mut random = Random::new(11);
     let shared: Vec<f64> = (0..series).map(|_| 0.05 * random.normal()).collect();
     let readings = (0..rows.len())
-        .map(|i| 2.0 * rows.load[i] + offset + shared[rows.series[i]] + 0.03 * random.normal())
+        .map(|i| 2.0 * rows.load[i] + offset + shared[rows.series[i]] + 0.03 * random.normal() + error(i))
         .collect();
     Problem::new(space(), rows, readings).unwrap()
 }

@@ -119,6 +119,9 @@ pub enum DisturbanceKind {
         /// Relative change of friction on the silicone.
         silicone: f64,
     },
+    /// Friction alternates from repetition to repetition, higher by `size` at even ones and lower at
+    /// odd ones.
+    Alternation,
     /// Two operators: the zero of the load cell differs by `size` for the second one.
     Operators {
         /// Schedule of the operators.
@@ -155,7 +158,11 @@ impl DisturbanceKind {
             Self::Stribeck { speed_pct, width } => {
                 vec![("stribeck.speed_pct", speed_pct), ("stribeck.width", width)]
             }
-            Self::Layout { .. } | Self::Swap { .. } | Self::Operators { .. } | Self::Memory { .. } => vec![],
+            Self::Layout { .. }
+            | Self::Swap { .. }
+            | Self::Alternation
+            | Self::Operators { .. }
+            | Self::Memory { .. } => vec![],
         }
     }
 
@@ -181,6 +188,7 @@ impl Disturbance {
             DisturbanceKind::StrokeWave { .. } | DisturbanceKind::Spot { .. } => &[Covariate::Position],
             DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &[Covariate::Speed],
             DisturbanceKind::Layout { .. } => &[Covariate::Condition],
+            DisturbanceKind::Alternation => &[Covariate::Repetition],
             DisturbanceKind::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
             // A random group of series correlates weakly with every covariate.
             DisturbanceKind::Operators { .. } => &Covariate::ALL,
@@ -222,6 +230,7 @@ impl Disturbance {
                 at.step_down * (-(at.series_repetition - 1.0) / repetitions).exp()
             }
             DisturbanceKind::Swap { at: from, .. } => flag(time_share >= *from),
+            DisturbanceKind::Alternation => 2.0 * flag(at.repetition % 2.0 == 0.0) - 1.0,
             DisturbanceKind::Operators { .. } => flag(at.operator == 2),
         }
     }

@@ -47,13 +47,13 @@
 //! The calibrator attributes an offset of the load cell:
 //!
 //! ```
-//! use pinswitch_calibration::inference::Levels;
+//! use pinswitch_calibration::effects::Vocabulary;
 //! use pinswitch_calibration::{Verdict, calibrate};
 //! use pinswitch_simulation::{EffectPlan, Plan, simulate};
 //!
 //! let mut plan = Plan::randomised();
 //! plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![0.8], form: 0 });
-//! let report = calibrate(&simulate(&plan).rows, Levels::default())?.report;
+//! let report = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1)?.report;
 //! assert_eq!(report.verdict, Verdict::Attributed);
 //! assert_eq!(report.effects[0].id, "load_cell_offset");
 //! # Ok::<(), pinswitch_calibration::CalibrationError>(())
@@ -106,7 +106,7 @@ pub use raw::{Faults, RawLog, RawRun};
 pub use series_traits::{SeriesTraits, SessionTraits};
 pub use simulate::{SimulatedSession, simulate, simulate_rows};
 pub use study::{
-    AnswerForecast, Attribution, Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome,
-    FormStudy, Group, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case,
+    Attribution, Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, Forecast, FormOutcome, FormStudy,
+    Group, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case,
     study_cases,
 };

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
@@ -24,7 +25,7 @@ pub fn simulate_from_model(
     mut rows: Vec<PlateauRow>,
     seed: u64,
 ) -> Result<Vec<PlateauRow>, Diagnostic> {
-    let (readings_n, _) = model.predict(&rows, file)?;
+    let (readings_n, _) = model.predict(&rows, Session::New, file)?;
     let (known, noise) = (model.model(file)?, model.noise());
     let mut frame: Frame = known.frame.clone();
     rows.iter().for_each(|row| frame.extend(row));

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::inference::{Levels, Model, Observations, select};
-use pinswitch_calibration::table::Frame;
+use pinswitch_calibration::calibrate;
+use pinswitch_calibration::model::UNATTRIBUTED;
 use serde::Serialize;
 
 use crate::plan::{EffectPlan, Plan};
@@ -25,8 +25,8 @@ pub struct Power {
     pub ambiguous: usize,
     /// Runs in which it was not detected.
     pub missed: usize,
-    /// Other effects that were reported, with the number of runs.
-    pub others: BTreeMap<&'static str, usize>,
+    /// Other effects that were reported or their rivals, with the number of runs.
+    pub others: BTreeMap<String, usize>,
 }
 
 /// Simulates and calibrates the plan with each effect, with a small and a large typical size,
@@ -34,32 +34,31 @@ pub struct Power {
 ///
 /// ```
 /// use pinswitch_calibration::effects::CATALOGUE;
-/// use pinswitch_calibration::inference::Levels;
 /// use pinswitch_simulation::{Plan, power};
 ///
 /// // Bare silicone, with few repetitions.
 /// let mut plan = Plan { layouts: Vec::new(), repetitions: [4, 4], ..Plan::default() };
 /// plan.repetitions_spread = 0;
-/// let table = power(&plan, 1, Levels::default());
+/// let table = power(&plan, 1);
 /// assert!(table.len() > CATALOGUE.len(), "two sizes of each effect");
 /// let dwell = table.iter().find(|p| p.id == "dwell_relaxation").ok_or("not in the catalogue")?;
 /// assert_eq!(dwell.missed, dwell.runs, "the plan has a single dwell");
 /// # Ok::<(), &str>(())
 /// ```
-pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
+pub fn power(plan: &Plan, runs: u64) -> Vec<Power> {
     let mut all = Vec::new();
     for effect in plan.vocabulary.effects() {
         let range = effect.description().study;
         let sizes = range.size.map_or(vec![None], |(least, most)| vec![Some(least), Some(most)]);
         for size in sizes {
-            all.push(one(plan, effect.id(), range.values_at(size), runs, levels));
+            all.push(one(plan, effect.id(), range.values_at(size), runs));
         }
     }
     all
 }
 
 /// Simulates and calibrates the plan with one effect.
-fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Levels) -> Power {
+fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64) -> Power {
     let mut power = Power {
         id,
         values: values.clone(),
@@ -74,18 +73,16 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
         planned.seed = plan.seed.wrapping_add(run);
         planned.effects.push(EffectPlan { id: id.to_owned(), values: values.clone(), form: 0 });
         let rows = simulate(&planned).rows;
-        let frame = Frame::new(&rows);
-        let Some(mut data) = Observations::new(&frame, &rows) else { continue };
-        let selection = select(&Model::baseline(frame).among(&plan.vocabulary), &mut data, levels);
+        let Ok(calibration) = calibrate(&rows, &plan.vocabulary, planned.seed) else { continue };
         power.runs += 1;
         let (mut alone, mut with_rivals) = (false, false);
-        for effect in &selection.effects {
-            let ids = effect.ids();
-            let here = ids.contains(&id);
-            alone |= here && effect.rivals.is_empty();
-            with_rivals |= here && !effect.rivals.is_empty();
-            for other in ids.into_iter().filter(|other| *other != id) {
-                *power.others.entry(other).or_default() += 1;
+        for effect in calibration.report.effects.iter().filter(|effect| effect.id != UNATTRIBUTED) {
+            let ids = || std::iter::once(&effect.id).chain(effect.rivals.iter().map(|rival| &rival.id));
+            let is_here = ids().any(|named| named == id);
+            alone |= is_here && effect.rivals.is_empty();
+            with_rivals |= is_here && !effect.rivals.is_empty();
+            for other in ids().filter(|other| *other != id) {
+                *power.others.entry(other.clone()).or_default() += 1;
             }
         }
         power.named += usize::from(alone);

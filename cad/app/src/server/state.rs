@@ -43,9 +43,9 @@ impl State {
         let design = source.design(content).map_err(ServerError::Configuration)?;
         let prediction = source.prediction(&design).map_err(ServerError::Configuration)?;
         let refused = |e: Diagnostic| ServerError::Configuration(e);
-        let built = Built::new(design).map_err(|e| refused(Diagnostic::from_error(e)))?;
+        let built = Built::new(design).map_err(|e| refused(Diagnostic::from(e)))?;
         let formats = named(&["stl"]).map_err(ServerError::Internal)?;
-        let set = Set::new(&built, &prediction, &formats).map_err(|e| refused(Diagnostic::from_error(e)))?;
+        let set = Set::new(&built, &prediction, &formats).map_err(|e| refused(Diagnostic::from(e)))?;
         let data = PageData::new(&built, &prediction, &set.manifest, Some(version));
         // Without a picture, which takes longer than the rest: the browser draws the assembly.
         let page = page_html(&data, "").map_err(ServerError::internal)?;

@@ -4,7 +4,7 @@ use pinswitch_diagnostic::Diagnostic;
 use toml_edit::Item;
 
 use super::values;
-use super::{AxisTable, SweepAxis, fields};
+use super::{AxisTable, ParameterRef, SweepAxis, fields};
 use crate::source::SweepSource;
 
 /// The table of a grid.
@@ -13,7 +13,10 @@ pub(super) const TABLE: AxisTable = AxisTable { name: "axes", keys: &[], level: 
 fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, Diagnostic> {
     fields(table.as_table_like())
         .into_iter()
-        .map(|(path, item)| axis(&path, item).map_err(|e| source.locate(e, item.span())))
+        .map(|entry| {
+            let field = entry.field(source)?;
+            axis(field, entry.item).map_err(|e| source.locate(e, entry.item.span()))
+        })
         .collect()
 }
 
@@ -21,8 +24,7 @@ fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, Diagnostic
 ///
 /// # Errors
 /// Values that the field does not accept, an empty or repeating list, and an invalid range.
-fn axis(path: &str, item: &Item) -> Result<SweepAxis, Diagnostic> {
-    let field = super::field(path)?;
+fn axis(field: ParameterRef, item: &Item) -> Result<SweepAxis, Diagnostic> {
     let series = (values::notation(field, item)?.series)(field, item)?;
     Ok(SweepAxis::new(vec![field], series.count, move |index| vec![(series.at)(index)]))
 }
@@ -33,7 +35,7 @@ mod tests {
 
     fn values(path: &str, text: &str) -> Result<Vec<String>, Diagnostic> {
         let item = Item::Value(text.parse().unwrap());
-        let axis = axis(path, &item)?;
+        let axis = axis(crate::axis::field(path)?, &item)?;
         Ok((0..axis.count()).map(|i| axis.row(i)[0].to_string()).collect())
     }
 

@@ -5,6 +5,7 @@
 
 mod values;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use pinswitch_diagnostic::Diagnostic;
@@ -143,20 +144,52 @@ fn table_names(conjunction: &str) -> String {
     }
 }
 
+/// A field of a table of a sweep, and its place in the file.
+#[derive(Debug)]
+pub(super) struct FieldEntry<'a> {
+    pub(super) path: String,
+    pub(super) item: &'a Item,
+    /// Span of the key, for errors about the name.
+    pub(super) key: Option<Range<usize>>,
+}
+
+impl FieldEntry<'_> {
+    /// Returns the field with this name.
+    ///
+    /// # Errors
+    /// As [`field`], at the key.
+    pub(super) fn field(&self, source: &SweepSource) -> Result<ParameterRef, Diagnostic> {
+        field(&self.path).map_err(|error| source.locate(error, self.key.clone().or(self.item.span())))
+    }
+}
+
 /// Returns the fields of a table, whether written `"shell.width_mm" = ..` or as `[axes.shell]
 /// width_mm = ..`.
-pub(super) fn fields(table: Option<&dyn TableLike>) -> Vec<(String, &Item)> {
+pub(super) fn fields(table: Option<&dyn TableLike>) -> Vec<FieldEntry<'_>> {
     let mut all = Vec::new();
-    for (key, item) in table.into_iter().flat_map(|t| t.iter()) {
+    for (name, item) in table.into_iter().flat_map(|t| t.iter()) {
         match item.as_table_like() {
             // A range is a table, too: its keys are not fields of a section.
-            Some(inner) if !key.contains('.') && !values::is_range_or_list(item) => {
-                all.extend(inner.iter().map(|(k, item)| (format!("{key}.{k}"), item)));
+            Some(inner) if !name.contains('.') && !values::is_range_or_list(item) => {
+                all.extend(inner.iter().map(|(k, item)| FieldEntry {
+                    path: format!("{name}.{k}"),
+                    item,
+                    key: key_span(inner, k),
+                }));
             }
-            _ => all.push((key.to_owned(), item)),
+            _ => all.push(FieldEntry {
+                path: name.to_owned(),
+                item,
+                key: table.and_then(|t| key_span(t, name)),
+            }),
         }
     }
     all
+}
+
+/// Returns the span of a key in the file of the table.
+pub(super) fn key_span(table: &dyn TableLike, key: &str) -> Option<Range<usize>> {
+    table.key(key).and_then(toml_edit::Key::span)
 }
 
 /// Returns the field with this path.

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use csv::{Position, Reader, ReaderBuilder, StringRecord};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use toml_edit::{Item, Value};
 
 use super::{AxisTable, ParameterRef, SweepAxis};
-use crate::diagnostics::{at_line, field_error};
+use crate::diagnostics::field_error;
 use crate::source::SweepSource;
 
 /// The table with the file of rows; the sweep's source contains its text.
@@ -54,14 +54,17 @@ impl Rows {
             at_row(malformed_row(e), file, text, offset)
         };
         let header = reader.headers().map_err(malformed)?.clone();
-        let at_header = |e: Diagnostic| at_row(e, file, text, 0);
-        let fields: Vec<ParameterRef> =
-            header.iter().map(|name| super::field(name).map_err(at_header)).collect::<Result<_, _>>()?;
+        let at_column = |e: Diagnostic, column: usize| at_cell(e, file, text, 0, column);
+        let fields: Vec<ParameterRef> = header
+            .iter()
+            .enumerate()
+            .map(|(column, name)| super::field(name).map_err(|e| at_column(e, column)))
+            .collect::<Result<_, _>>()?;
         let duplicate =
             fields.iter().enumerate().find(|(i, f)| fields[..*i].iter().any(|g| g.path() == f.path()));
-        if let Some((_, field)) = duplicate {
+        if let Some((column, field)) = duplicate {
             let error = field_error(&field.path(), None, "two columns have this name", "remove one of them");
-            return Err(at_header(error));
+            return Err(at_column(error, column));
         }
         let (mut record, mut starts) = (csv::ByteRecord::new(), Vec::new());
         loop {
@@ -73,7 +76,8 @@ impl Rows {
         }
         if starts.is_empty() {
             let error = Diagnostic::new("the table has no rows");
-            return Err(at_header(error.with_help("write one variant a line below the header")));
+            let error = error.with_help("write one variant a line below the header");
+            return Err(at_row(error, file, text, 0));
         }
         Ok(Self { file: file.to_owned(), text: text.to_owned(), fields, starts })
     }
@@ -91,10 +95,12 @@ impl Rows {
             .map_err(|e| here(malformed_row(e)))?;
         let cells = self.fields.iter().zip(record.iter());
         cells
-            .map(|(field, cell)| {
+            .enumerate()
+            .map(|(column, (field, cell))| {
                 // A bare word is text, as with --set.
                 let value = cell.parse::<Value>().unwrap_or_else(|_| Value::from(cell));
-                super::accepted(field, &value).map_err(here)
+                let refused = |e| at_cell(e, &self.file, &self.text, start, column);
+                super::accepted(field, &value).map_err(refused)
             })
             .collect()
     }
@@ -119,9 +125,18 @@ fn malformed_row(error: csv::Error) -> Diagnostic {
     }
 }
 
-/// The same error at the line of the first row at or after byte `start`: comments and empty lines
-/// are skipped.
+/// The same error at the line of the first row at or after byte `start`.
 fn at_row(error: Diagnostic, file: &str, text: &str, start: usize) -> Diagnostic {
+    error.or_at(&Location::in_csv(file, text, row_start(text, start), None))
+}
+
+/// The same error at a cell of the first row at or after byte `start`.
+fn at_cell(error: Diagnostic, file: &str, text: &str, start: usize, column: usize) -> Diagnostic {
+    error.or_at(&Location::in_csv(file, text, row_start(text, start), Some(column)))
+}
+
+/// Returns the byte of the first row at or after byte `start`: comments and empty lines are skipped.
+fn row_start(text: &str, start: usize) -> usize {
     let mut offset = start.min(text.len());
     for line in text.get(offset..).unwrap_or_default().split_inclusive('\n') {
         if !line.trim().is_empty() && !line.starts_with('#') {
@@ -129,7 +144,7 @@ fn at_row(error: Diagnostic, file: &str, text: &str, start: usize) -> Diagnostic
         }
         offset += line.len();
     }
-    at_line(error, file, text, offset)
+    offset
 }
 
 #[cfg(test)]
@@ -153,13 +168,16 @@ mod tests {
     #[test]
     fn invalid_rows_are_located() {
         for (text, expected) in [
-            ("shell.with_mm\n3\n", "a.csv:1: shell.with_mm: unknown field; did you mean"),
-            ("shell.width_mm\n12\n-3\n", "a.csv:3: shell.width_mm = -3: outside 2 to 100"),
-            ("shell.width_mm\n12\n# a\n\n-3\n", "a.csv:5: shell.width_mm = -3: outside 2 to 100"),
+            ("shell.with_mm\n3\n", "a.csv:1:1: shell.with_mm: unknown field; did you mean"),
+            ("shell.width_mm\n12\n-3\n", "a.csv:3:1: shell.width_mm = -3: outside 2 to 100"),
+            ("shell.width_mm\n12\n# a\n\n-3\n", "a.csv:5:1: shell.width_mm = -3: outside 2 to 100"),
             ("shell.width_mm,shell.wall_mm\n12\n", "a.csv:2: expected 2 cells, found 1; give one cell"),
             ("shell.width_mm,shell.wall_mm\n# a\n12\n", "a.csv:3: expected 2 cells, found 1"),
             ("shell.width_mm\n", "a.csv:1: the table has no rows"),
-            ("shell.width_mm,shell.width_mm\n12,13\n", "a.csv:1: shell.width_mm: two columns have this name"),
+            (
+                "shell.width_mm,shell.width_mm\n12,13\n",
+                "a.csv:1:16: shell.width_mm: two columns have this name",
+            ),
         ] {
             let error = axis(text, "a.csv").and_then(|axis| axis.check()).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

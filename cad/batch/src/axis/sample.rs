@@ -104,6 +104,9 @@ pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<
 
 fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, Diagnostic> {
     let Some(table) = item.as_table_like() else { return Ok(Vec::new()) };
+    for entry in fields(table.get("axes").and_then(Item::as_table_like)) {
+        entry.field(source)?;
+    }
     let axis = axis(table).map_err(|e| source.locate(e, item.span()))?;
     Ok(vec![axis])
 }
@@ -127,7 +130,7 @@ fn axis(table: &dyn TableLike) -> Result<SweepAxis, Diagnostic> {
     }
     let seed = whole("seed").unwrap_or(0).unsigned_abs();
     let axes = fields(table.get("axes").and_then(Item::as_table_like));
-    sample(method, count, seed, axes.iter().map(|(path, item)| (path.as_str(), *item)))
+    sample(method, count, seed, axes.iter().map(|entry| (entry.path.as_str(), entry.item)))
 }
 
 /// Samples `axes`: lists are choices; ranges are continuous, or a grid if they have a `step`.

@@ -1,30 +1,40 @@
 //! The summary of a calibration for the terminal; report.html has the details.
 
-use pinswitch_calibration::{FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict};
+use pinswitch_calibration::{
+    ExpectedErrorReport, FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict,
+};
 use pinswitch_diagnostic::neutral_line;
+use pinswitch_report::{
+    constants_words, effect_clause, estimate_words, other_probabilities, parameters_words, reported_clause,
+};
 
 /// Most series, effects and columns that a line lists.
 const MAX_LISTED: usize = 6;
 
-/// Formats the summary.
+/// Probability above which an effect that is not reported is named.
+const NAMED_PROBABILITY: f64 = 0.05;
+
+/// Formats the summary, the result first.
 pub(super) fn summary(report: &Report) -> String {
     let mut text = sessions(report);
-    text.push_str(&format!("verdict: {}\n", verdict(report)));
-    report.changes.iter().for_each(|change| text.push_str(&format!("changed: {}\n", change.words())));
-    report.unequal.iter().for_each(|effect| text.push_str(&format!("changed: {}\n", effect.words())));
-    text.push_str(&errors(report));
+    text.push_str(&friction(report));
     text.push_str(&effects(report));
-    text.push_str(&trials(report));
-    text.push_str(&noise(report));
+    text.push_str(&others(report));
+    text.push_str(&not_excluded(report));
+    text.push_str(&errors(report));
+    text.push_str(&format!("verdict: {}\n", verdict(report)));
     if !report.adequate {
-        text.push_str("lack of fit: the held-out error exceeds the noise, see report.html\n");
+        text.push_str("lack of fit: repeated readings are closer to each other than to the model, see report.html\n");
     }
+    text.push_str(&bad_series(report));
+    text.push_str(&trials(report));
+    report.changes.iter().for_each(|change| text.push_str(&format!("changed: {}\n", change.words())));
+    text.push_str(&noise(report));
     text.push_str(&confounded(report));
     if !report.ignored_columns.is_empty() {
         text.push_str(&format!("ignored columns: {}\n", neutral_line(&listed(&report.ignored_columns))));
     }
     text.push_str(&extrapolation(report));
-    text.push_str(&bad_series(report));
     text
 }
 
@@ -56,7 +66,7 @@ fn verdict(report: &Report) -> String {
     match report.verdict {
         Verdict::None => "none: the paper's model explains the data down to the noise".to_owned(),
         Verdict::Inconclusive => inconclusive(report),
-        Verdict::Attributed => "attributed".to_owned(),
+        Verdict::Attributed => "attributed: the data identify what the paper's model lacks".to_owned(),
         Verdict::Ambiguous => "ambiguous: the data cannot separate rival effects".to_owned(),
         Verdict::Unattributed => {
             "unattributed: the residuals have structure that no named effect explains".to_owned()
@@ -65,18 +75,16 @@ fn verdict(report: &Report) -> String {
 }
 
 fn inconclusive(report: &Report) -> String {
-    let open: Vec<&str> = report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
     let is_confirmed = |t: &&TrialReport| t.outcome == TrialOutcome::Confirmed;
     let confirmed: Vec<&str> = report.trials.iter().filter(is_confirmed).map(|t| t.id.as_str()).collect();
     let changed = if report.changes.is_empty() { "" } else { "changed constants, but " };
-    let mut text = format!("inconclusive: {changed}no effect detected");
+    let mut text = format!("inconclusive: {changed}no effect is detected");
     if !confirmed.is_empty() {
-        text.push_str(&format!(" in the search; tested alone, {} is confirmed", listed(&confirmed)));
-    }
-    if !open.is_empty() {
-        text.push_str(&format!("; cannot rule out {}", listed(&open)));
-    } else if confirmed.is_empty() {
-        text.push_str(&format!("; {}", report.reservations().join("; ")));
+        text.push_str(&format!("; {} is confirmed on unseen readings", listed(&confirmed)));
+    } else if report.limits.iter().any(|limit| !limit.excluded) {
+        text.push_str(", and effects of consequence are not excluded");
+    } else {
+        report.reservations().iter().for_each(|reason| text.push_str(&format!("; {reason}")));
     }
     text
 }
@@ -90,76 +98,109 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
     }
 }
 
-/// Formats the held-out error and the expected error of a new session, of the baseline and of the model.
-fn errors(report: &Report) -> String {
-    let held_out = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
-    let mut text = match held_out {
-        [baseline, model] if baseline.is_finite() && model.is_finite() => format!(
-            "held-out error: baseline {baseline:.4} N, model {model:.4} N (noise {:.4} N)\n",
-            report.noise_floor_n
-        ),
-        _ => "held-out error: unknown, too few series to hold any out\n".to_owned(),
-    };
-    if let (Some(baseline), Some(model)) = (report.promise_baseline_n, report.promise_n)
-        && baseline.is_finite()
-        && model.is_finite()
-    {
-        text.push_str(&format!(
-            "expected error of a new session: baseline {baseline:.4} N, model {model:.4} N\n"
-        ));
-    }
-    text
+/// Formats the friction coefficient of a plain contact.
+fn friction(report: &Report) -> String {
+    report.augmented.parameters.get("mu").map_or_else(String::new, |mu| {
+        format!("mu = {}\n", estimate_words(mu))
+    })
 }
 
+/// Formats a probability, never as 0 or 1: it depends on the priors.
+fn probability(p: f64) -> String {
+    match p {
+        p if p > 0.9995 => ">0.999".to_owned(),
+        p if p < 0.0005 => "<0.001".to_owned(),
+        p => format!("{p:.3}"),
+    }
+}
+
+/// Formats the reported effects with their probabilities and rivals.
 fn effects(report: &Report) -> String {
     let mut text = String::new();
     for effect in &report.effects {
-        let constants: Vec<String> = effect
-            .parameters
-            .iter()
-            .map(|(name, e)| {
-                format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit)
-            })
-            .collect();
-        text.push_str(&format!("  {} ({}): {}\n", effect.id, effect.covariate, constants.join(", ")));
-        if effect.id == "unattributed" {
-            text.push_str(&format!("    {}\n", effect.formula));
-        }
+        let named = effect.side.is_some();
+        let name = if named { &effect.id } else { &effect.formula };
+        let constants = constants_words(effect);
+        let constants = if constants.is_empty() { constants } else { format!(": {constants}") };
+        text.push_str(&format!(
+            "probability {} that {}{constants} ({name})\n",
+            probability(effect.probability),
+            reported_clause(effect)
+        ));
         if let Some(form) = &effect.form {
             text.push_str(&fitted_form(form));
         }
         for rival in &effect.rivals {
             text.push_str(&format!(
-                "    or {}: {}; to separate them: {}\n",
-                rival.id, rival.why, rival.experiment
+                "  or {} that {} ({})\n",
+                probability(rival.probability),
+                effect_clause(&rival.id),
+                rival.id
             ));
+        }
+        if let Some(rival) = effect.rivals.iter().find(|rival| !rival.experiment.is_empty()) {
+            text.push_str(&format!("  to separate them: {}\n", rival.experiment));
         }
     }
     text
 }
 
-/// Formats the test of each user-defined effect.
+/// Formats the other effects and structures that are not improbable.
+fn others(report: &Report) -> String {
+    let others = other_probabilities(report, NAMED_PROBABILITY);
+    let each: Vec<String> = others.iter().map(|(name, p)| format!("{name} {}", probability(*p))).collect();
+    match (report.effects.is_empty(), each.is_empty()) {
+        (true, true) => format!("no effect is detected; none has a probability above {NAMED_PROBABILITY}\n"),
+        (true, false) => format!("no effect is detected; probabilities: {}\n", listed(&each)),
+        (false, true) => format!("nothing else above {NAMED_PROBABILITY}\n"),
+        (false, false) => format!("other probabilities above {NAMED_PROBABILITY}: {}\n", listed(&each)),
+    }
+}
+
+/// Formats the effects of consequence that are not excluded.
+fn not_excluded(report: &Report) -> String {
+    let open: Vec<&str> = report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
+    if open.is_empty() { String::new() } else { format!("not excluded: {}\n", listed(&open)) }
+}
+
+/// Formats the held-out errors before and after, and the expected error of a new session.
+fn errors(report: &Report) -> String {
+    let newtons = |error: f64| if error.is_finite() { format!("{error:.4} N") } else { "unknown".to_owned() };
+    let least_squares = report.least_squares_n.map_or_else(String::new, |error| {
+        format!("{} by least squares with drag, offset and gain, ", newtons(error))
+    });
+    let mut text = format!(
+        "held-out error: {} by the paper's model, {least_squares}{} by this model (noise {})\n",
+        newtons(report.baseline.heldout_series_rmse_n),
+        newtons(report.augmented.heldout_series_rmse_n),
+        newtons(report.noise_floor_n)
+    );
+    text.push_str(&match report.expected_error_n {
+        Some(ExpectedErrorReport { value, ci90: [low, high] }) => {
+            format!("expected error of a new session: {value:.4} N [{low:.4}, {high:.4}]\n")
+        }
+        None => "expected error of a new session: unknown, too few series\n".to_owned(),
+    });
+    text
+}
+
+/// Formats the trial of each user-defined effect.
 fn trials(report: &Report) -> String {
     let line = |trial: &TrialReport| {
-        format!("  test of {}: {}: {}\n", trial.id, trial.outcome.as_str(), trial.words())
+        format!("trial of {}: {}: {}\n", trial.id, trial.outcome.as_str(), trial.words())
     };
     report.trials.iter().map(line).collect()
 }
 
 /// Formats the form that was fitted to unattributed structure.
 fn fitted_form(form: &FormReport) -> String {
-    let constants: Vec<String> = form
-        .parameters
-        .iter()
-        .map(|(name, e)| format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit))
-        .collect();
     let rivals: Vec<String> = form.rivals.iter().map(|r| format!("{} on {}", r.shape, r.acts_on)).collect();
     let rivals = if rivals.is_empty() { String::new() } else { format!("; or {}", listed(&rivals)) };
     format!(
-        "    resembles {} on {}: {}; explains {:.0} %{rivals}; {}; see discovered.toml\n",
+        "  resembles {} on {}: {}; explains {:.0} %{rivals}; {}; see discovered.toml\n",
         form.words(),
         form.acts_on,
-        constants.join(", "),
+        parameters_words(&form.parameters),
         100.0 * form.explains,
         if form.in_model { "included in the model" } else { "the model keeps the shapes" }
     )
@@ -171,11 +212,7 @@ fn noise(report: &Report) -> String {
         .noise_parts
         .iter()
         .map(|part| {
-            let name = match part.part.as_str() {
-                "group" if part.what.contains("operator") => "between operators".to_owned(),
-                "group" => "between sessions".to_owned(),
-                name => name.replace('_', " "),
-            };
+            let name = part.part.replace('_', " ");
             if part.size == 0.0 {
                 return format!("{name} unknown");
             }
@@ -220,8 +257,9 @@ fn extrapolation(report: &Report) -> String {
 fn bad_series(report: &Report) -> String {
     let mut text = String::new();
     for bad in report.bad_series.iter().take(MAX_LISTED) {
+        let gross = bad.probability.map_or_else(String::new, |p| format!(", probability {}", probability(p)));
         text.push_str(&format!(
-            "  check {}: off by {:+.3} N ({:+.1} standard deviations)\n",
+            "gross error: {}: off by {:+.3} N ({:+.1} standard deviations{gross})\n",
             bad.place(),
             bad.offset_n,
             bad.standard_deviations
@@ -231,4 +269,14 @@ fn bad_series(report: &Report) -> String {
         text.push_str(&format!("  and {more} more, see report.html\n"));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn probabilities_are_never_certain() {
+        assert_eq!([0.99996, 0.9981, 1e-9].map(probability), [">0.999", "0.998", "<0.001"]);
+    }
 }

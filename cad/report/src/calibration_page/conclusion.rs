@@ -1,38 +1,128 @@
-//! The conclusion of a calibration: verdict, open questions, and expected errors.
+//! The conclusion of a calibration: effects with their probabilities, errors, and verdict.
 
 use std::fmt::Write;
 
 use pinswitch_calibration::{Answer, EffectReport, PlanQuestion, Report, SessionPlan, TrialReport, Verdict};
 
+use super::super::effect_words::{
+    constants_words, effect_clause, estimate_words, other_probabilities, reported_clause,
+};
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
-use super::number::{newtons, short};
+use super::number::{newtons, number, probability, short};
 
 /// Most open effects in the conclusion; the section on limits lists all.
 const MAX_NAMED: usize = 4;
+/// Probability above which an effect that is not reported is named.
+const NAMED_PROBABILITY: f64 = 0.05;
 
 /// Returns the box at the top of the page, and the verdicts of several tables.
 pub(super) fn conclusion(report: &Report) -> String {
-    let html = [changes(report), verdict(report), trials(report), errors(report), adequacy(report)].concat();
+    let html = [
+        friction(report),
+        effects(report),
+        others(report),
+        open(report),
+        errors(report),
+        verdict(report),
+        adequacy(report),
+        gross_errors(report),
+        trials(report),
+        changes(report),
+    ]
+    .concat();
     format!("<div class=\"verdict\">{html}</div>\n{}", sessions(report))
+}
+
+/// Returns the friction coefficient of a plain contact.
+fn friction(report: &Report) -> String {
+    report
+        .augmented
+        .parameters
+        .get("mu")
+        .map_or_else(String::new, |mu| format!("<p><b>mu = {}</b></p>", estimate_words(mu)))
+}
+
+/// Returns the reported effects with their probabilities and rivals.
+fn effects(report: &Report) -> String {
+    if report.effects.is_empty() {
+        return "<p>No effect is detected.</p>".to_owned();
+    }
+    report.effects.iter().map(effect).collect()
+}
+
+fn effect(effect: &EffectReport) -> String {
+    let name = if effect.side.is_some() { &effect.id } else { &effect.formula };
+    let constants = constants_words(effect);
+    let constants = if constants.is_empty() { constants } else { format!(": {}", escape(&constants)) };
+    let mut html = format!(
+        "<p>Probability <b>{}</b> that {}{constants} ({})",
+        probability(effect.probability),
+        escape(&reported_clause(effect)),
+        escape(name)
+    );
+    for rival in &effect.rivals {
+        let _ = write!(
+            html,
+            "<br>or <b>{}</b> that {} ({})",
+            probability(rival.probability),
+            escape(&effect_clause(&rival.id)),
+            escape(&rival.id)
+        );
+    }
+    if let Some(rival) = effect.rivals.iter().find(|rival| !rival.experiment.is_empty()) {
+        let _ = write!(html, "<br>Experiment that would decide: {}.", escape(&rival.experiment));
+    }
+    html.push_str("</p>");
+    html
+}
+
+/// Names the other effects and structures that are not improbable.
+fn others(report: &Report) -> String {
+    let named = other_probabilities(report, NAMED_PROBABILITY);
+    if named.is_empty() {
+        return format!("<p>Nothing else has a probability above {NAMED_PROBABILITY}.</p>");
+    }
+    let each: Vec<String> =
+        named.iter().map(|(name, p)| format!("{} {}", escape(name), probability(*p))).collect();
+    format!("<p>Other probabilities above {NAMED_PROBABILITY}: {}.</p>", each.join(", "))
+}
+
+/// Lists the effects of consequence that the data do not exclude.
+fn open(report: &Report) -> String {
+    let open = open_limits(report);
+    if open.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = open.iter().map(|limit| escape(&limit.id)).collect();
+    format!("<p>Not excluded: {}.</p>", names.join(", "))
+}
+
+/// Names the series with gross errors.
+fn gross_errors(report: &Report) -> String {
+    if report.bad_series.is_empty() {
+        return String::new();
+    }
+    let each: Vec<String> =
+        report.bad_series.iter().take(MAX_NAMED).map(|bad| escape(&bad.place())).collect();
+    let more = report.bad_series.len().saturating_sub(MAX_NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("<p>Gross errors, see section 6: {}{more}.</p>", each.join(", "))
 }
 
 /// Returns the differences of the switch between tables.
 fn changes(report: &Report) -> String {
-    let unequal: String =
-        report.unequal.iter().map(|effect| format!("<p>{}.</p>", escape(&effect.words()))).collect();
     if report.changes.is_empty() {
-        return unequal;
+        return String::new();
     }
     let each: String =
         report.changes.iter().map(|change| format!("<li>{}</li>", escape(&change.words()))).collect();
-    unequal
-        + &format!(
-            "<p><b>The switch differs between the tables.</b> Curves and predictions are for the latest one:</p><ul>{each}</ul>"
-        )
+    format!(
+        "<p><b>The switch differs between the tables.</b> Curves and predictions are for the latest one:</p><ul>{each}</ul>"
+    )
 }
 
-/// Returns the outcome of each confirmation test.
+/// Returns the outcome of the trial of each user-defined effect.
 fn trials(report: &Report) -> String {
     if report.trials.is_empty() {
         return String::new();
@@ -47,7 +137,7 @@ fn trials(report: &Report) -> String {
     };
     let each: String = report.trials.iter().map(item).collect();
     format!(
-        "<p>Confirmation tests of user-defined effects, each alone with its shape from the file:</p><ul>{each}</ul>"
+        "<p>Trials of user-defined effects, with readings that they were not derived from:</p><ul>{each}</ul>"
     )
 }
 
@@ -107,55 +197,32 @@ fn plan_answers(plan: &SessionPlan) -> String {
     )
 }
 
-/// Returns the verdict, with experiments for what it leaves open.
+/// Returns the verdict in words.
 fn verdict(report: &Report) -> String {
-    let names: Vec<&str> =
-        report.effects.iter().map(|e| e.id.as_str()).filter(|id| *id != "unattributed").collect();
-    let besides = if names.is_empty() {
-        String::new()
-    } else {
-        format!(" in addition to {}", escape(&names.join(", ")))
-    };
-    match report.verdict {
-        Verdict::None => "<p>The paper's model explains this data within its noise. Each visible effect is smaller than \
-                          its size of consequence, which changes friction or reading by 5 % somewhere in the table.</p>"
-            .to_owned(),
-        Verdict::Inconclusive => inconclusive(report),
-        Verdict::Attributed => format!("<p>The paper's model lacks: {}.</p>", escape(&names.join(", "))),
+    let named = report.effects.iter().filter(|e| e.side.is_some()).count();
+    let words = match report.verdict {
+        Verdict::None => {
+            "the paper's model explains this data within its noise. Each visible effect is smaller than its size of consequence, \
+             which changes friction or reading by 5 % somewhere in the table."
+        }
+        Verdict::Inconclusive => return inconclusive(report),
+        Verdict::Attributed if named == 1 => "the paper's model lacks one effect, which the data identify.",
+        Verdict::Attributed => "the paper's model lacks these effects, which the data identify.",
         Verdict::Ambiguous => {
-            let sets: Vec<String> = report.effects.iter().map(alternatives).collect();
-            let mut html =
-                format!("<p>The paper's model lacks {}; this data does not decide which.</p>", sets.join(", and "));
-            for rival in report.effects.iter().filter_map(|e| e.rivals.first()) {
-                let _ = write!(html, "<p>Experiment that would decide: {}.</p>", escape(&rival.experiment));
-            }
-            html
+            "the paper's model lacks an effect, and the data cannot separate it from its rivals."
         }
-        Verdict::Unattributed => {
-            let of = |e: &&EffectReport| e.id == "unattributed";
-            let covariates: Vec<&str> = report.effects.iter().filter(of).map(|e| e.covariate.as_str()).collect();
-            format!(
-                "<p>The residuals have a structure{besides} that no named effect explains, in {}.</p>",
-                escape(&covariates.join(", "))
-            )
-        }
-    }
-}
-
-/// Lists an effect with its rivals.
-fn alternatives(effect: &EffectReport) -> String {
-    let ids = std::iter::once(effect.id.as_str()).chain(effect.rivals.iter().map(|r| r.id.as_str()));
-    escape(&ids.collect::<Vec<_>>().join(" or "))
+        Verdict::Unattributed => "the residuals have structure that no named effect explains.",
+    };
+    format!("<p>Verdict: <b>{}</b>: {words}</p>", report.verdict.as_str())
 }
 
 fn inconclusive(report: &Report) -> String {
     let open = open_limits(report);
-    let summary = if report.changes.is_empty() { "Inconclusive" } else { "Otherwise inconclusive" };
     let reason = match (open.is_empty(), report.reservations()) {
         (true, reservations) if !reservations.is_empty() => escape(&reservations.join("; ")),
-        _ => "no effect detected, but effects of consequence cannot be ruled out".into(),
+        _ => "no effect is detected, but effects of consequence are not excluded".to_owned(),
     };
-    let mut html = format!("<p>{summary}: {reason}. Record more data.</p>");
+    let mut html = format!("<p>Verdict: <b>inconclusive</b>: {reason}. Record more data.</p>");
     html.push_str(if open.is_empty() { "" } else { "<ul>" });
     for limit in open.iter().take(MAX_NAMED) {
         let _ = write!(
@@ -169,69 +236,53 @@ fn inconclusive(report: &Report) -> String {
         );
     }
     html.push_str(if open.is_empty() { "" } else { "</ul>" });
-    if let Some(group) = report.noise_parts.iter().find(|part| part.part == "group") {
-        let _ = write!(
-            html,
-            "<p>Part of the noise: {}, {}. It is not in the curve of a part, but in the uncertainty of each predicted \
-             reading.</p>",
-            escape(&group.what),
-            newtons(group.size)
-        );
-    }
     if let Some(more) = open.len().checked_sub(MAX_NAMED).filter(|n| *n > 0) {
-        let _ = write!(html, "<p>{more} more effects are open, see section 8.</p>");
+        let _ = write!(html, "<p>Section 3 lists {more} more.</p>");
     }
     html
 }
 
-/// Returns the held-out and expected errors of both models, with the noise.
+/// Returns the held-out and expected errors of the paper's model, of least squares and of the model, with
+/// the noise.
 fn errors(report: &Report) -> String {
-    let held = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
-    let expected = [report.promise_baseline_n, report.promise_n];
-    if held.iter().all(|e| !e.is_finite()) && expected.iter().all(Option::is_none) {
-        return "<p>The data is too small for cross-validation: no error is known.</p>".to_owned();
-    }
-    let or_unknown = |value: Option<f64>| value.map_or("unknown".to_owned(), newtons);
-    // Without effects both models are equal.
-    let both = !report.effects.is_empty();
-    let row = |name: &str, before: String, after: String| match both {
-        true => {
-            format!("<tr><td>{name}</td><td class=\"n b\">{before}</td><td class=\"n a\">{after}</td></tr>")
-        }
-        false => format!("<tr><td>{name}</td><td class=\"n\">{after}</td></tr>"),
+    let row = |name: &str, class: &str, held_out: Option<f64>, expected: String| {
+        let held_out = held_out.map_or_else(|| "unknown".to_owned(), newtons);
+        format!(
+            "<tr><td>{name}</td><td class=\"n {class}\">{held_out}</td><td class=\"n {class}\">{expected}</td></tr>"
+        )
     };
-    let (columns, span) = match both {
-        true => ("<th class=\"b\">baseline</th><th class=\"a\">augmented model</th>", 2),
-        false => ("<th>baseline</th>", 1),
-    };
-    format!(
-        "<div class=\"wide\"><table><tr><th>error</th>{columns}</tr>{}{}\
-         <tr><td>noise of a reading</td><td class=\"n\" colspan=\"{span}\">{}</td></tr></table></div>",
-        row("held-out error (series and loads)", newtons(held[0]), newtons(held[1])),
+    let expected = report.expected_error_n.map_or_else(
+        || "too few series".to_owned(),
+        |e| format!("{}<br>[{}, {}]", newtons(e.value), number(e.ci90[0], 4), number(e.ci90[1], 4)),
+    );
+    let before = report.promise_baseline_n.map_or_else(String::new, newtons);
+    let rows = [
+        row("paper's model", "b", Some(report.baseline.heldout_series_rmse_n), before),
         row(
-            "expected error of a new session of the same rig",
-            or_unknown(expected[0]),
-            or_unknown(expected[1])
+            "the same with drag, offset and gain, by least squares",
+            "",
+            report.least_squares_n,
+            String::new(),
         ),
+        row("this model", "a", Some(report.augmented.heldout_series_rmse_n), expected),
+    ];
+    format!(
+        "<div class=\"wide\"><table><tr><th>error (RMS)</th><th>held-out series</th><th>new session, expected</th></tr>{}</table></div>\
+         <p>Noise of a reading: {}.</p>",
+        rows.concat(),
         newtons(report.noise_floor_n)
     )
 }
 
-/// Returns whether the held-out error exceeds the noise.
+/// Returns whether repeated readings are as close to the model as to each other.
 fn adequacy(report: &Report) -> String {
-    let (error, noise) = (report.augmented.heldout_series_rmse_n, report.noise_floor_n);
-    if !error.is_finite() {
-        return String::new();
-    }
     if report.adequate {
-        return "<p>The model is adequate: its held-out error on series is within the noise.</p>".to_owned();
+        return "<p>The model is adequate: repeated readings are as close to it as to each other.</p>"
+            .to_owned();
     }
-    format!(
-        "<p><b>The model is not adequate.</b> Its held-out error on series is {}, the noise only {}. Check the right panels of \
-         section 4, and the series listed in section 1.</p>",
-        newtons(error),
-        newtons(noise)
-    )
+    "<p><b>The model is not adequate.</b> Repeated readings are closer to each other than to the model. Check the right panels of \
+     section 5, and the series in section 6.</p>"
+        .to_owned()
 }
 
 #[cfg(test)]

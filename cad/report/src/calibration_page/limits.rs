@@ -1,5 +1,4 @@
-//! Limits: sizes of undetected effects that are not excluded, and effects that the design of the
-//! table cannot separate.
+//! Limits: sizes of undetected effects that are not excluded, and confounded covariates.
 
 use std::fmt::Write;
 
@@ -72,7 +71,7 @@ fn sized(value: f64, unit: &str) -> String {
 
 /// Returns the section.
 pub(super) fn limits(report: &Report) -> String {
-    let mut html = "<h2>8. Limits on undetected effects</h2>\n".to_owned();
+    let mut html = "<h3>Limits on effects that were not detected</h3>\n".to_owned();
     if report.limits.is_empty() {
         html.push_str("<p>None: no other effect is visible in this data.</p>\n");
     } else {
@@ -172,24 +171,17 @@ fn interval_figure(all: &[&LimitReport]) -> String {
     svg
 }
 
-/// Lists aliased effects and confounded covariates.
+/// Lists confounded covariates.
 fn confounding(report: &Report) -> String {
-    if report.classes.is_empty() && report.aliasing.is_empty() {
+    if report.aliasing.is_empty() {
         return String::new();
     }
-    let mut html = "<h3>Aliased effects and confounded covariates</h3><ul>\n".to_owned();
-    for class in &report.classes {
-        let _ = writeln!(
-            html,
-            "<li>aliased: {}. After the refit their sensitivities are equal; each may replace another.</li>",
-            escape(&class.join(", "))
-        );
-    }
+    let mut html = "<h3>Confounded covariates</h3><ul>\n".to_owned();
     for pair in &report.aliasing {
         let [a, b] = &pair.covariates;
         let _ = writeln!(
             html,
-            "<li>confounded: {} and {} (r = {}). An effect of one may be an effect of the other.</li>",
+            "<li>{} and {} (r = {}). An effect of one may be an effect of the other.</li>",
             escape(a),
             escape(b),
             number(pair.correlation, 2)

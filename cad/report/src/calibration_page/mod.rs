@@ -4,19 +4,23 @@ mod conclusion;
 mod limits;
 mod noise;
 mod number;
+mod probabilities;
+mod series;
 mod style;
 
 use std::fmt::Write;
 
 use pinswitch_calibration::effects::Covariate;
-use pinswitch_calibration::{Calibration, Estimate, Fate, FormReport, ModelReport, Report};
+use pinswitch_calibration::{Calibration, Estimate, FormReport, ModelReport, Report};
 
 use super::Plot;
 use super::html::escape;
 use conclusion::conclusion;
 use limits::limits;
 use noise::noise;
-use number::{newtons, number, probability};
+use number::{newtons, number, probability, short};
+use probabilities::probabilities;
+use series::series;
 pub(super) use style::head;
 
 /// Returns the page, with figures from [`plots`](super::plots).
@@ -26,16 +30,16 @@ pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
     let sections = [
         format!("<h1>Calibration with {}</h1>\n", escape(title)),
         conclusion(report),
-        data(report),
-        noise(report),
+        probabilities(report),
+        detected(report),
+        unseen(report),
         conditions(plots),
         residuals(plots),
-        candidates(report),
-        detected(report),
+        series(report, plots),
         errors(report),
-        limits(report),
+        noise(report),
         constants(report),
-        invisible(report),
+        data(report),
     ];
     sections.iter().for_each(|s| html.push_str(s));
     html.push_str("</body></html>\n");
@@ -45,7 +49,8 @@ pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
 fn data(report: &Report) -> String {
     let d = &report.data;
     let mut html = format!(
-        "<h2>1. Data</h2><p>{} rows in {} series of {} condition(s); {} outliers with reduced weight.</p>\n",
+        "<h2>10. Data</h2><p>{} rows in {} series of {} condition(s); {} readings with gross errors, which count in no error \
+         on this page.</p>\n",
         d.rows, d.series, d.conditions, d.outliers
     );
     if !report.ignored_columns.is_empty() {
@@ -55,53 +60,31 @@ fn data(report: &Report) -> String {
             escape(&report.ignored_columns.join(", "))
         );
     }
-    if !report.bad_series.is_empty() {
-        html.push_str(
-            "<p>Suspicious series (wrong weight, failed run, wrong reading), without effect on the verdict:</p><ul>",
-        );
-        for bad in &report.bad_series {
-            let _ = write!(
-                html,
-                "<li>{}: deviates by {} ({} standard deviations)</li>",
-                escape(&bad.place()),
-                newtons(bad.offset_n),
-                number(bad.standard_deviations, 1)
-            );
-        }
-        html.push_str("</ul>\n");
-    }
     html
 }
 
+/// Returns a figure with its caption as its accessible name; a broad one scrolls on a narrow screen.
+fn figure(plot: &Plot) -> String {
+    let is_broad = plot.file.starts_with("residual-") || plot.file == "left-out-series.svg";
+    let class = if is_broad { "plot broad" } else { "plot" };
+    format!("<figure class=\"{class}\" aria-label=\"{}\">{}</figure>\n", escape(&plot.caption), plot.svg)
+}
+
 fn conditions(plots: &[Plot]) -> String {
-    let mut html = "<h2>3. Readings and models</h2><p>Mean difference between reading and load for each condition: readings (dots), \
+    let mut html = "<h2>4. Readings and models</h2><p>Mean difference between reading and load for each condition: readings (dots), \
                     <span class=\"b\">baseline</span> (the paper's model, refitted) and <span class=\"a\">augmented model</span>; \
                     concentric above zero, eccentric below.</p>\n<div class=\"grid\">"
         .to_owned();
-    for plot in plots.iter().filter(|p| p.file.starts_with("condition-")) {
-        let _ = writeln!(
-            html,
-            "<figure class=\"plot\" aria-label=\"{}\">{}</figure>",
-            escape(&plot.caption),
-            plot.svg
-        );
-    }
+    plots.iter().filter(|p| p.file.starts_with("condition-")).for_each(|plot| html.push_str(&figure(plot)));
     html.push_str("</div>\n");
     html
 }
 
 fn residuals(plots: &[Plot]) -> String {
-    let mut html = "<h2>4. Residuals</h2><p>Residuals over each covariate that varies; large dots are means. A trend on the left \
+    let mut html = "<h2>5. Residuals</h2><p>Residuals over each covariate that varies; large dots are means. A trend on the left \
                     (baseline) shows what the model lacks; the right panel (augmented model) should have none.</p>\n"
         .to_owned();
-    for plot in plots.iter().filter(|p| p.file.starts_with("residual-")) {
-        let _ = writeln!(
-            html,
-            "<figure class=\"plot\" aria-label=\"{}\">{}</figure>",
-            escape(&plot.caption),
-            plot.svg
-        );
-    }
+    plots.iter().filter(|p| p.file.starts_with("residual-")).for_each(|plot| html.push_str(&figure(plot)));
     let constant: Vec<&str> = Covariate::ALL
         .iter()
         .map(|c| c.as_str())
@@ -114,44 +97,21 @@ fn residuals(plots: &[Plot]) -> String {
             constant.join(", ")
         );
     }
-    html
-}
-
-fn candidates(report: &Report) -> String {
-    let mut html = "<h2>5. Candidates</h2><p>Gain of each effect alone over the baseline, in units of the noise variance; \
-                    probability of such a gain by chance among all effects; and remaining gain in addition to the detected \
-                    effects.</p><div class=\"wide\"><table><tr><th>effect</th><th>gain</th><th>probability by chance</th><th>remaining gain</th>\
-                    <th>decision</th></tr>\n"
-        .to_owned();
-    for c in &report.candidates {
-        let (class, decision) = match c.fate {
-            Fate::Kept => ("selected", "detected"),
-            Fate::Rival => ("rival", "rival: explains the data as well as a detected effect"),
-            Fate::Invisible => ("", "rejected: invisible in this data"),
-            Fate::Chance => ("", "rejected: may be chance"),
-            Fate::Superfluous => ("", "rejected: no gain in addition to the detected effects"),
-            Fate::Unsettled => (
-                "",
-                "rejected: random effects explain the data as well, or the held-out error is not smaller",
-            ),
-        };
-        let left = c.gain_left.map_or_else(String::new, |g| number(g, 1));
-        let _ = writeln!(
-            html,
-            "<tr class=\"{class}\"><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{left}</td><td>{decision}</td></tr>",
-            c.id,
-            number(c.gain, 1),
-            probability(c.p_value)
+    if let Some(plot) = plots.iter().find(|p| p.file == "noise-quantiles.svg") {
+        html.push_str(
+            "<h3>Distribution of the noise</h3><p>Each dot is a reading: its repetition noise, in units of the scale of the noise, \
+             over the quantile that the assumed distribution has there. Dots near the line are as expected; dots \
+             beyond it at the ends are more large errors than expected, and dots short of it fewer.</p>\n",
         );
+        html.push_str(&figure(plot));
     }
-    html.push_str("</table></div>\n");
     html
 }
 
 fn detected(report: &Report) -> String {
-    let mut html = "<h2>6. Detected effects</h2>\n".to_owned();
+    let mut html = "<h2>2. Detected effects</h2>\n".to_owned();
     if report.effects.is_empty() {
-        html.push_str("<p>None.</p>\n");
+        html.push_str("<p>None: no effect is probable.</p>\n");
     }
     for effect in &report.effects {
         let side = match effect.side.as_deref() {
@@ -161,12 +121,13 @@ fn detected(report: &Report) -> String {
         };
         let _ = write!(
             html,
-            "<h3>{}</h3><p>{}<br>Covariate: {}. {side} Probability of such a gain by chance: {}. \
+            "<h3>{}</h3><p>{}<br>Covariate: {}. {side} Posterior probability {}; posterior odds against the model without it {}. \
              Held-out error without it <b class=\"b\">{}</b>, with it <b class=\"a\">{}</b>.</p>{}",
             escape(&effect.id),
             escape(&effect.formula),
             effect.covariate,
-            probability(effect.p_value),
+            probability(effect.probability),
+            odds(effect.odds),
             newtons(effect.error_before_n),
             newtons(effect.error_after_n),
             table(effect.parameters.iter())
@@ -177,7 +138,7 @@ fn detected(report: &Report) -> String {
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
-                "<p>Rival: <b>{}</b>. {}.<br><b>Experiment that would decide:</b> {}.</p>",
+                "<p>Rival: <b>{}</b>: {}.<br><b>Experiment that would decide:</b> {}.</p>",
                 escape(&rival.id),
                 escape(&rival.why),
                 escape(&rival.experiment)
@@ -187,7 +148,16 @@ fn detected(report: &Report) -> String {
     html
 }
 
-/// Describes the discovered effect of a structure, and its confirmation test.
+/// Formats posterior odds.
+fn odds(odds: f64) -> String {
+    match odds {
+        odds if !odds.is_finite() => number(odds, 0),
+        odds if odds >= 1e6 => "above 1e6".to_owned(),
+        odds => short(odds),
+    }
+}
+
+/// Describes the discovered effect of a structure, and how to test it.
 fn discovered(form: &FormReport) -> String {
     let mut html = format!(
         "<p>Discovered effect: <b>{}</b> on {}: <code>{}</code>. It explains {:.0} % of the shapes; held-out error with \
@@ -203,7 +173,9 @@ fn discovered(form: &FormReport) -> String {
         let rivals: Vec<String> = form
             .rivals
             .iter()
-            .map(|r| format!("{} on {} (deviance larger by {})", r.shape, r.acts_on, number(r.worse_by, 1)))
+            .map(|r| {
+                format!("{} on {} (log evidence smaller by {})", r.shape, r.acts_on, number(r.worse_by, 1))
+            })
             .collect();
         let _ = write!(html, "<p>Equally good shapes: {}.</p>", escape(&rivals.join(", ")));
     }
@@ -240,6 +212,13 @@ fn errors(report: &Report) -> String {
         }
     }
     html.push_str("</table></div>\n");
+    if let Some(error) = report.least_squares_n {
+        let _ = writeln!(
+            html,
+            "<p>Robust least squares of the paper's model with drag, offset and gain, leave-series-out: {}.</p>",
+            newtons(error)
+        );
+    }
     if let Some(e) = &report.extrapolation {
         let _ = writeln!(
             html,
@@ -286,8 +265,13 @@ fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
     if any { html } else { String::new() }
 }
 
+/// Returns the section on effects that the data neither show nor exclude.
+fn unseen(report: &Report) -> String {
+    format!("<h2>3. What the data cannot show</h2>\n{}{}", limits(report), invisible(report))
+}
+
 fn invisible(report: &Report) -> String {
-    let mut html = "<h2>10. Invisible effects</h2>\n".to_owned();
+    let mut html = "<h3>Effects that are not identifiable</h3>\n".to_owned();
     if !report.invisible.is_empty() {
         html.push_str("<div class=\"wide\"><table><tr><th>effect</th><th>reason</th><th>experiment that would show it</th></tr>\n");
         for i in &report.invisible {

@@ -36,16 +36,13 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
     }
 }
 
-/// Formats a probability.
+/// Formats a probability, never as 0 or 1: it depends on the priors.
 pub(super) fn probability(p: f64) -> String {
-    if !p.is_finite() {
-        number(p, 0)
-    } else if p < 1e-12 {
-        "&lt; 1e-12".to_owned()
-    } else if p < 0.001 {
-        format!("{p:.0e}")
-    } else {
-        format!("{p:.3}")
+    match p {
+        p if !p.is_finite() => number(p, 0),
+        p if p > 0.9995 => "&gt;0.999".to_owned(),
+        p if p < 0.0005 => "&lt;0.001".to_owned(),
+        p => format!("{p:.3}"),
     }
 }
 
@@ -71,6 +68,7 @@ mod tests {
                 assert_eq!(text, "unknown");
             }
         }
+        assert_eq!([0.99996, 0.9981, 1e-9].map(probability), ["&gt;0.999", "0.998", "&lt;0.001"]);
         assert_eq!(with_unit(0.029, "1"), "2.90 %");
         assert_eq!(with_unit(0.31, "N"), "0.310 N");
     }

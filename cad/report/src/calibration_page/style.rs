@@ -20,6 +20,14 @@ td.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}\
 figure{margin:.6em 0}.grid{display:grid;grid-template-columns:1fr 1fr;gap:.4em}.grid figure{margin:0}\
 @media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}.wide td:not(.n){min-width:7em}}\
 figcaption,.soft,tr.soft td{color:var(--soft)}svg{max-width:100%;height:auto}.b{color:var(--before)}.a{color:var(--after)}\
+\
+.bars td.bar{width:45%;min-width:5em;padding-top:.55em}.bars svg{display:block;width:100%;height:.9em}.bars rect{fill:var(--soft)}\
+.bars .selected rect{fill:var(--after)}.bars .rival rect{fill:var(--before)}.bars rect.track{fill:var(--band)}\
+.bars .rival td:first-child{padding-left:1.6em}\
+@media(max-width:640px){.broad{overflow-x:auto}.broad svg{max-width:none;width:640px}}\
+@media(max-width:640px){.verdict table{font-size:.85em}.verdict td,.verdict th{padding:.25em .35em}.verdict .wide td:not(.n){min-width:5em}\
+.bars{font-size:.82em;width:100%}.bars th,.bars td{padding:.25em .25em}.wide .bars td:not(.n){min-width:0}\
+.bars td.bar{width:16%;padding-top:.5em}}\
 tr.selected td{background:var(--selected)}tr.rival td{background:var(--rival)}\
 .strip{width:700px;min-width:320px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\
 .strip .open{stroke:var(--before)}.strip .excluded{stroke:var(--soft)}.strip .quiet{fill:var(--soft)}";

@@ -20,5 +20,5 @@ pub use pinswitch_diagnostic::{Change, Diagnostic, Location};
 pub(crate) use read::shown;
 pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub use reference::{reference_toml, to_toml};
-pub use rewrite::rewritten;
+pub use rewrite::{rewritten, rewritten_fields};
 pub use text::text;

@@ -4,6 +4,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use toml_edit::{Array, DocumentMut, Item, RawString, Table, TableLike, Value};
 
 use super::error::syntax_error;
+use super::parameter::Parameter;
 use super::parameters::Configuration;
 
 /// Returns `text` with the values in which the configuration `wanted` differs from `shown`, the one that the text was
@@ -31,14 +32,35 @@ pub fn rewritten(
     shown: &Configuration,
     wanted: &Configuration,
 ) -> Result<String, Diagnostic> {
+    rewritten_where(text, file, wanted, |parameter| {
+        (parameter.get)(wanted).to_string() != (parameter.get)(shown).to_string()
+    })
+}
+
+/// Returns `text` with the values of `wanted` for these fields, as [`rewritten`] writes them.
+///
+/// # Errors
+/// A [`Diagnostic`] for invalid TOML.
+pub fn rewritten_fields(
+    text: &str,
+    file: &str,
+    fields: &[String],
+    wanted: &Configuration,
+) -> Result<String, Diagnostic> {
+    rewritten_where(text, file, wanted, |parameter| fields.contains(&parameter.path()))
+}
+
+fn rewritten_where(
+    text: &str,
+    file: &str,
+    wanted: &Configuration,
+    is_written: impl Fn(&Parameter<Configuration>) -> bool,
+) -> Result<String, Diagnostic> {
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| {
         syntax_error(Location::in_text(file, text, e.span().unwrap_or(0..0)), e.message())
     })?;
-    for parameter in Configuration::PARAMETERS {
+    for parameter in Configuration::PARAMETERS.iter().filter(|parameter| is_written(parameter)) {
         let value = (parameter.get)(wanted);
-        if value.to_string() == (parameter.get)(shown).to_string() {
-            continue;
-        }
         if document.get(parameter.section).is_none() {
             let mut table = Table::new();
             // A comment at the end of the text stays before the new table.

@@ -68,7 +68,7 @@ impl Design {
         let tolerance_mm = dimensions.configuration().mesh.chord_tolerance_mm;
         let tolerance = ChordTolerance::new(tolerance_mm).map_err(|e| {
             let location = Location::field("mesh.chord_tolerance_mm", tolerance_mm.to_string());
-            Diagnostic::from_error(e).with_location(location)
+            Diagnostic::from(e).with_location(location)
         })?;
         let contact = contact(&dimensions)?;
         Ok(Self { dimensions, tolerance, contact })

@@ -420,7 +420,7 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             "middle of the wall under the grooves",
         ),
         entry(
-            "unloaded_contact_beside_pins",
+            "unloaded_contact_outside_pins",
             bare_deg,
             "deg",
             Assumed,

@@ -8,7 +8,6 @@ mod fastening;
 mod guide_pulley;
 mod label;
 mod layer;
-mod left_out;
 mod marks;
 mod mould;
 mod mount;
@@ -19,7 +18,6 @@ mod shell;
 mod stroke_font;
 mod support;
 mod tendon;
-mod thin_walls;
 
 use crate::config::{ConfigError, Configuration, Location, MouldKind, MountKind, field_location};
 use crate::design::Design;
@@ -151,6 +149,20 @@ fn offset_error(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
 /// Returns clockwise circles on `radius_mm` at `angles_rad`, for holes.
 fn holes_at(radius_mm: f64, angles_rad: &[f64], hole_radius_mm: f64) -> Vec<Contour> {
     angles_rad.iter().map(|a| Contour::circle(polar(radius_mm, *a), hole_radius_mm).reversed()).collect()
+}
+
+/// Returns all features that a design leaves out, each with its part. No part is built for it.
+pub(crate) fn left_out_features(design: &Design) -> Vec<(&'static str, LeftOut)> {
+    let c = design.configuration();
+    let on = |part: &'static str, lost: Vec<LeftOut>| lost.into_iter().map(move |feature| (part, feature));
+    let core = (has_split_mould(c) && mould::core_has_lost_label(design)).then_some(LeftOut::Label);
+    let plate = if c.mount.kind == MountKind::None { Vec::new() } else { mount::left_out(design) };
+    on("shell", shell::left_out(design))
+        .chain(on("mould-core", core.into_iter().collect()))
+        .chain(on("support-left", support::left_out(design, support::Side::Left)))
+        .chain(on("support-right", support::left_out(design, support::Side::Right)))
+        .chain(on("plate", plate))
+        .collect()
 }
 
 #[cfg(test)]

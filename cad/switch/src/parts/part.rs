@@ -12,6 +12,9 @@ use pinswitch_solid::profile::Contour;
 use pinswitch_solid::solid::{CapError, Facing, Solid, ThinPlace};
 use pinswitch_solid::validity::Expectation;
 
+/// Tolerance of the thickness of walls of exactly two lines, mm.
+const THIN_ROUNDING_MM: f64 = 1e-6;
+
 /// The material of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -191,5 +194,22 @@ impl Part {
     /// [`CapError`] if contours cross, which a valid design excludes.
     pub fn print_mesh(&self, design: &Design) -> Result<Mesh, CapError> {
         Ok(self.mesh(design)?.translated(self.print_shift_mm()))
+    }
+
+    /// Returns the places of a printed part with less than two printed lines of material, the thinnest first.
+    pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
+        if self.material() != Material::Abs {
+            return Vec::new();
+        }
+        let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
+        let (known_limit_mm, places) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
+        if *known_limit_mm == limit_mm { places.clone() } else { self.solid.thin_places(limit_mm) }
+    }
+
+    /// The same part with the known thin places of a part with an equal solid.
+    #[must_use]
+    pub(crate) fn known_by(mut self, twin: &Self) -> Self {
+        self.thin = twin.thin.clone();
+        self
     }
 }

@@ -25,8 +25,7 @@ impl Side {
     }
 }
 
-/// Stage between the weight and the reading at which an effect acts. A search tries effects in this
-/// order.
+/// Stage between the weight and the reading at which an effect acts. Effects act in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// The load itself.
@@ -132,8 +131,7 @@ pub struct Description {
     /// Whether the formula is an approximation that may leave a residual of its own; a constant
     /// force or a scale is exact.
     pub bends: bool,
-    /// Whether the predicted change is proportional to the first constant, to the order of a linear
-    /// screening.
+    /// Whether the predicted change is proportional to the first constant, to first order.
     pub scales: bool,
     /// Ids of effects that may look the same.
     pub confused_with: &'static [&'static str],

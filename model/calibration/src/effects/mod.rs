@@ -23,7 +23,7 @@ pub use own::{
     DefinitionError, EffectDefinition, OwnEffect, OwnParameter, formula_variables, own_effect_blocks,
     own_effects_text, read_own_effects,
 };
-pub use structure::{Channel, Shape, Structure};
+pub use structure::{Abscissa, Channel, Shape, Structure};
 pub use vocabulary::Vocabulary;
 pub use written::{ActsOn, Combine, Written};
 
@@ -81,7 +81,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// use pinswitch_calibration::effects::{
 ///     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 /// };
-/// use pinswitch_calibration::inference::{Model, Term};
+/// use pinswitch_calibration::model::{Model, Term};
 /// use pinswitch_calibration::table::{Condition, Frame, PlateauTable, Point};
 ///
 /// /// The cell reads too much after a long pause.

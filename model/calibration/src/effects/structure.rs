@@ -4,7 +4,7 @@ use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
 use super::{ContactState, Covariate};
-use crate::table::{Condition, Frame, Point};
+use crate::table::{Condition, Frame, Point, interpolate};
 
 /// Quantity that a structure changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,6 +22,68 @@ pub enum Channel {
     Pins,
     /// Scales the friction exponent of the silicone.
     Silicone,
+    /// Scales the friction exponent, with opposite signs in the two directions.
+    #[serde(rename = "friction_by_direction")]
+    FrictionByDirection,
+}
+
+/// Covariate of a tabulated shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Abscissa {
+    /// Time over session, 0..1; a later session has the mean of the values.
+    Time,
+    /// Position over stroke, 0..1.
+    Position,
+    /// Logarithm of the repetition.
+    LogRepetition,
+    /// Readings so far in the series.
+    SeriesReadings,
+    /// +1 for odd repetitions, -1 for even ones.
+    Alternation,
+    /// Load in newtons.
+    Load,
+    /// `ln(v/v0)`.
+    LogSpeed,
+    /// `ln(dwell / 3 s)`.
+    LogDwell,
+    /// 1 when the loads descend, else 0.
+    Descending,
+    /// Index of the condition.
+    Condition,
+    /// Number of the operator, from 1.
+    Operator,
+    /// Index of the session among those of the frame; a later one has the value of the last.
+    Session,
+    /// Index of the specimen among those of the frame; -1 for an unknown one.
+    Specimen,
+}
+
+impl Abscissa {
+    /// Returns its value at a point.
+    pub fn value(self, p: &Point) -> f64 {
+        match self {
+            Self::Time => p.time,
+            Self::Position => p.position,
+            Self::LogRepetition => libm::log(p.repetition),
+            Self::SeriesReadings => p.through,
+            Self::Alternation => {
+                if p.repetition % 2.0 > 0.5 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
+            Self::Load => p.load_n,
+            Self::LogSpeed => p.log_speed,
+            Self::LogDwell => p.log_dwell,
+            Self::Descending => p.descending,
+            Self::Condition => p.condition as f64,
+            Self::Operator => p.operator,
+            Self::Session => p.session_group.map_or(f64::INFINITY, |group| group as f64),
+            Self::Specimen => p.specimen_group.map_or(-1.0, |group| group as f64),
+        }
+    }
 }
 
 /// A dimensionless function of one covariate, of order one.
@@ -143,6 +205,19 @@ pub enum Shape {
     },
     /// 1 when the loads descend.
     Descending,
+    /// A constant.
+    Constant,
+    /// A table of values, interpolated linearly between its nodes and constant outside.
+    Table {
+        /// Covariate of the nodes.
+        over: Abscissa,
+        /// Nodes, ascending.
+        at: Vec<f64>,
+        /// Values at the nodes.
+        value: Vec<f64>,
+        /// Whether the nodes are the levels of a factor: the value is zero elsewhere.
+        is_factor: bool,
+    },
     /// `d` times the load.
     DirectionLoad {
         /// Exponent of the load.
@@ -190,9 +265,28 @@ impl Shape {
             }
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
+            Shape::Constant => 1.0,
+            Shape::Table { over: Abscissa::Time, value, .. } if p.is_new_session => {
+                value.iter().sum::<f64>() / value.len().max(1) as f64
+            }
+            Shape::Table { over, at, value, is_factor } => {
+                let x = over.value(p);
+                if *over == Abscissa::Session && x.is_infinite() {
+                    value.last().copied().unwrap_or(0.0)
+                } else if *is_factor {
+                    let level = at.iter().position(|node| (node - x).abs() < LEVEL_TOLERANCE);
+                    level.and_then(|level| value.get(level)).copied().unwrap_or(0.0)
+                } else {
+                    interpolate(at, value, x)
+                }
+            }
         }
     }
 }
+
+/// Distance of a value from a level of a factor up to which it has that level; loads are levels to a
+/// hundredth of a newton.
+const LEVEL_TOLERANCE: f64 = 0.006;
 
 /// A shape of a channel, with its size as the only constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -223,6 +317,7 @@ impl Structure {
             Channel::Reading | Channel::Gain => {}
             Channel::Drag => state.drag_n += value,
             Channel::Friction => state.exponent_factor *= factor,
+            Channel::FrictionByDirection => state.exponent_factor *= (1.0 + point.sign * value).max(0.0),
             Channel::Pins => {
                 state.mu_pins *= factor;
                 state.extra_exponent_pins *= factor;
@@ -249,7 +344,11 @@ impl Structure {
     pub fn unit(&self) -> &'static str {
         match self.channel {
             Channel::Reading | Channel::Drag => "N",
-            Channel::Gain | Channel::Friction | Channel::Pins | Channel::Silicone => "1",
+            Channel::Gain
+            | Channel::Friction
+            | Channel::FrictionByDirection
+            | Channel::Pins
+            | Channel::Silicone => "1",
         }
     }
 
@@ -260,6 +359,7 @@ impl Structure {
             Channel::Gain => "the gain of the load cell",
             Channel::Drag => "the friction force",
             Channel::Friction => "the friction exponent",
+            Channel::FrictionByDirection => "the friction exponent, with opposite signs in the directions",
             Channel::Pins => "the friction of the pins",
             Channel::Silicone => "the friction of the silicone",
         };
@@ -319,10 +419,35 @@ impl Structure {
                 format!("a memory of the previous load that decays over {r0} repetitions")
             }
             Shape::Descending => "a different level for descending loads".to_owned(),
+            Shape::Constant => "a constant".to_owned(),
+            Shape::Table { over, at, value, .. } => table_words(*over, at, value, self.unit()),
             Shape::DirectionLoad { power, .. } => {
                 format!("a difference between the directions with load to the power {power}")
             }
         };
         format!("{what}, in {on}")
     }
+}
+
+/// Describes a table by its covariate and range.
+fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String {
+    let low = value.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = value.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (kind, name) = match over {
+        Abscissa::Time => ("a curve", "the session"),
+        Abscissa::Position => ("a curve", "the position"),
+        Abscissa::LogRepetition => ("a curve", "the repetition"),
+        Abscissa::SeriesReadings => ("a curve", "the readings of a series"),
+        Abscissa::Alternation => ("an alternation", "odd and even repetitions"),
+        Abscissa::Load => ("a curve", "the load"),
+        Abscissa::LogSpeed => ("a curve", "the speed"),
+        Abscissa::LogDwell => ("a curve", "the dwell"),
+        Abscissa::Descending => ("a difference", "ascending and descending loads"),
+        Abscissa::Condition => ("levels", "the conditions"),
+        Abscissa::Operator => ("levels", "the operators"),
+        Abscissa::Session => ("levels", "the sessions"),
+        Abscissa::Specimen => ("levels", "the specimens"),
+    };
+    let unit = if unit == "1" { "" } else { " N" };
+    format!("{kind} of {low:+.3} to {high:+.3}{unit} over {name} ({} values)", at.len())
 }

@@ -3,7 +3,6 @@
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::sort_by_number;
 
-use super::Contacts;
 use crate::table::{Frame, PlateauRow, Point};
 
 /// Most rows of a series in the inference, whose time grows with their square.
@@ -44,25 +43,25 @@ impl Covariates {
     ///
     /// # Errors
     /// A [`Diagnostic`] if the frame lacks the condition of a row.
-    pub(super) fn new(frame: &Frame, contacts: &Contacts, rows: &[PlateauRow]) -> Result<Self, Diagnostic> {
+    pub(super) fn new(frame: &Frame, rows: &[PlateauRow]) -> Result<Self, Diagnostic> {
         let (series_of, _) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
         let mut source: Vec<usize> = (0..rows.len()).collect();
         sort_by_number(&mut source, |i| series_of[*i] as f64);
         let missing = || Diagnostic::new("a row has a condition that the table lacks");
         let all = frame.points(rows).ok_or_else(missing)?;
-        let at = |i: &usize| Point { condition: contacts.of_row[*i], ..all[*i] };
-        let points: Vec<Point> = source.iter().map(at).collect();
+        let points: Vec<Point> = source.iter().map(|i| all[*i]).collect();
         let series: Vec<usize> = source.iter().map(|i| series_of[*i]).collect();
         let has_mounts = rows.iter().any(|row| !row.labels.mount.is_empty());
         let labels = source.iter().zip(&points).map(|(i, point)| {
             let row = &rows[*i];
+            let condition = &frame.conditions[point.condition];
             // The angle of a `plain` contact belongs to the rig: it does not make another mount.
-            let kind = &frame.conditions[all[*i].condition];
-            let condition = contacts.conditions[point.condition].name();
+            let kind = condition.substrate.map_or_else(|| "plain".to_owned(), |_| condition.name());
+            let condition = condition.name();
             let mount = if has_mounts {
                 format!("{}|{}", row.labels.session, row.labels.mount)
             } else {
-                format!("{}|{}|{}", kind.name(), row.labels.session, row.labels.specimen)
+                format!("{kind}|{}|{}", row.labels.session, row.labels.specimen)
             };
             RowLabels {
                 condition,

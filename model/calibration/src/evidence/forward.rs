@@ -6,15 +6,12 @@ use pinswitch_inference::{Constant, ForwardModel, SizedEffect};
 
 use super::priors::EffectPrior;
 use crate::effects::{ContactState, Stage};
-use crate::table::{Condition, Point};
+use crate::model::{PLAIN_MU, PRIOR_LOG_HALF_LOAD, PRIOR_LOG_PLAIN};
+use crate::table::{Condition, Frame, Point};
 
 /// Prior standard deviations of the baseline's constants, in logarithms.
 const LOG_MU_SD: f64 = 1.0;
-const LOG_PLAIN_SD: f64 = 1.5;
-const LOG_HALF_LOAD_SD: f64 = 0.5;
 const LOG_STEEPNESS_SD: f64 = 0.5;
-/// Prior mean of the friction coefficient of a `plain` contact.
-const PLAIN_MU: f64 = 0.3;
 /// Relative step of a channel for its finite difference.
 const CHANNEL_STEP: f64 = 1e-4;
 
@@ -96,7 +93,7 @@ impl Baseline {
         let coefficients = [
             (self.pins, "ln mu_p", MU_PINS, LOG_MU_SD),
             (self.silicone, "ln mu_s", MU_SILICONE, LOG_MU_SD),
-            (self.plain, "ln mu", PLAIN_MU, LOG_PLAIN_SD),
+            (self.plain, "ln mu", PLAIN_MU, PRIOR_LOG_PLAIN),
         ];
         let present = coefficients.into_iter().filter(|(index, ..)| index.is_some());
         let mut constants: Vec<Constant> = present
@@ -104,7 +101,7 @@ impl Baseline {
             .collect();
         for (i, mean) in self.device_means.iter().enumerate() {
             let (name, sd) = if i % 2 == 0 {
-                (format!("ln F_half[{}]", i / 2), LOG_HALF_LOAD_SD)
+                (format!("ln F_half[{}]", i / 2), PRIOR_LOG_HALF_LOAD)
             } else {
                 (format!("ln s[{}]", i / 2), LOG_STEEPNESS_SD)
             };
@@ -113,9 +110,25 @@ impl Baseline {
         constants
     }
 
+    /// Returns the index in a model's coordinates of each constant.
+    pub(super) fn coordinates(&self, frame: &Frame) -> Vec<usize> {
+        let devices = self.device_means.len();
+        let mut at: Vec<(usize, usize)> = Vec::new();
+        at.extend(self.pins.map(|i| (i, 0)));
+        at.extend(self.silicone.map(|i| (i, 1)));
+        at.extend(self.plain.map(|i| (i, 2 + 2 * frame.devices())));
+        at.extend((0..devices).map(|i| (self.devices + i, 2 + i)));
+        at.sort_unstable();
+        at.into_iter().map(|(_, coordinate)| coordinate).collect()
+    }
+
+    /// Returns the indices of the threshold and the steepness of a device.
+    pub(super) fn device_indices(&self, device: usize) -> [usize; 2] {
+        [self.devices + 2 * device, self.devices + 2 * device + 1]
+    }
+
     fn device(&self, constants: &[f64], device: usize) -> [f64; 2] {
-        let at = self.devices + 2 * device;
-        [constants[at], constants[at + 1]].map(libm::exp)
+        self.device_indices(device).map(|i| libm::exp(constants[i]))
     }
 }
 
@@ -159,9 +172,15 @@ impl FrictionModel {
         let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
         let states: Vec<ContactState> =
             self.conditions.iter().map(|c| self.contact(c, mu, constants, factors)).collect();
+        let moves = acting.iter().any(|(prior, _)| prior.effect.moves_along_a_series());
+        let mut last: Option<(&Point, f64)> = None;
         points
             .iter()
             .map(|point| {
+                // Repetitions at one setting have one expectation, unless an effect varies within a series.
+                if let Some((_, reading)) = last.filter(|(known, _)| !moves && known.has_setting_of(point)) {
+                    return reading;
+                }
                 let condition = &self.conditions[point.condition];
                 let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
                 for (prior, values) in &acting {
@@ -175,6 +194,7 @@ impl FrictionModel {
                 for (prior, values) in &acting {
                     reading = prior.effect.on_reading(values, point, condition, reading);
                 }
+                last = Some((point, reading));
                 reading
             })
             .collect()

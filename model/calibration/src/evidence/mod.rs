@@ -5,15 +5,20 @@
 //! covariates that the table varies. The posterior names the effects, or the covariate of structure
 //! without a name, and gives the expected error of a new session.
 
+mod access;
 mod covariates;
+mod fitted;
 mod forward;
 mod priors;
 mod structure;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
+
+pub use fitted::Fitted;
 
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Substrate;
@@ -25,14 +30,17 @@ use self::covariates::{Covariates, RowLabels};
 use self::forward::{Baseline, Channel, FrictionModel, is_of_friction};
 use self::priors::EffectPrior;
 use self::structure::{Structure, structures};
-use crate::effects::{Covariate, Vocabulary};
-use crate::inference::{CONSEQUENCE, Model};
-use crate::table::{Condition, Frame, PlateauRow, PlateauTable, Point};
+use crate::effects::Vocabulary;
+use crate::model::{DiscrepancyFactor, Largest, Model};
+use crate::table::{Condition, Frame, PlateauRow, Point};
+
+/// Smallest relevant change of friction or reading, as a share.
+pub const CONSEQUENCE: f64 = 0.05;
 
 /// Prior probability of unnamed structure.
-const STRUCTURE_PROBABILITY: f64 = 0.2;
+pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
 /// Scales of the half-normal priors of mount and specimen effects, relative.
-const MOUNT_SCALE: f64 = 0.015;
+pub(crate) const MOUNT_SCALE: f64 = 0.015;
 const SPECIMEN_SCALE: f64 = 0.06;
 /// Median load in newtons of the paper's rig, to which typical forces refer.
 const TYPICAL_LOAD_N: f64 = 25.0;
@@ -44,11 +52,17 @@ pub struct Evidence {
     problem: Problem,
     posterior: Posterior,
     setup: Setup,
+    /// Index in the table of each row of the problem.
+    source: Vec<usize>,
+    points: Vec<Point>,
+    readings: Vec<f64>,
+    /// Session and specimen of each row of the problem.
+    groups: Vec<[String; 2]>,
 }
 
 impl fmt::Debug for Evidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Evidence").field("verdict", &self.posterior.verdict).finish_non_exhaustive()
+        f.debug_struct("Evidence").field("reported", &self.posterior.reported).finish_non_exhaustive()
     }
 }
 
@@ -66,14 +80,12 @@ pub enum Session {
 struct Setup {
     frame: Frame,
     conditions: Arc<[Condition]>,
-    /// Whether `plain` contacts have a known wrap angle.
-    has_angles: bool,
+    vocabulary: Vocabulary,
     baseline: Baseline,
     priors: Arc<[EffectPrior]>,
     structures: Vec<Structure>,
     mean_time: (f64, f64),
-    /// Scales of the discrepancies: highest load, and largest logarithms of speed and dwell.
-    largest: [f64; 3],
+    largest: Largest,
     mounts: Vec<String>,
     specimens: Vec<String>,
 }
@@ -84,29 +96,39 @@ impl Evidence {
     ///
     /// # Errors
     /// A [`Diagnostic`] if the table cannot be fitted.
-    pub fn new(table: &PlateauTable, vocabulary: &Vocabulary, seed: u64) -> Result<Self, Diagnostic> {
-        Self::searched(table, vocabulary, SearchOptions::default(), seed)
+    pub fn new(rows: &[PlateauRow], vocabulary: &Vocabulary, seed: u64) -> Result<Self, Diagnostic> {
+        Self::searched(rows, vocabulary, &BTreeSet::new(), SearchOptions::default(), seed)
     }
 
     /// Fits the baseline alone, without effects and unnamed structure.
     ///
     /// # Errors
     /// As [`Evidence::new`].
-    pub fn baseline(table: &PlateauTable, seed: u64) -> Result<Self, Diagnostic> {
-        Self::searched(table, &Vocabulary::built_in(), SearchOptions::baseline(), seed)
+    pub fn baseline(rows: &[PlateauRow], seed: u64) -> Result<Self, Diagnostic> {
+        Self::of_forms(rows, &Vocabulary::built_in(), &BTreeSet::new(), seed)
+    }
+
+    /// Fits the baseline alone, with the effects of a vocabulary for later hypotheses; some of them are
+    /// `forms` of a library.
+    pub(crate) fn of_forms(
+        rows: &[PlateauRow],
+        vocabulary: &Vocabulary,
+        forms: &BTreeSet<&str>,
+        seed: u64,
+    ) -> Result<Self, Diagnostic> {
+        Self::searched(rows, vocabulary, forms, SearchOptions::baseline(), seed)
     }
 
     fn searched(
-        table: &PlateauTable,
+        rows: &[PlateauRow],
         vocabulary: &Vocabulary,
+        forms: &BTreeSet<&str>,
         options: SearchOptions,
         seed: u64,
     ) -> Result<Self, Diagnostic> {
-        let frame = Frame::new(&table.rows);
-        let has_angles = has_plain_angles(&table.rows);
-        let contacts = Contacts::new(&frame, &[], &table.rows, has_angles)?;
-        let rows = Covariates::new(&frame, &contacts, &table.rows)?;
-        let setup = Setup::new(frame, contacts.conditions, has_angles, &rows, vocabulary);
+        let frame = Frame::new(rows);
+        let rows = Covariates::new(&frame, rows)?;
+        let setup = Setup::new(frame, &rows, vocabulary, forms);
         let space = setup.space(&rows);
         let problem = Problem::new(space, setup.rows(&rows, Session::Fitted), rows.readings.clone())
             .map_err(|error| Diagnostic::new(error.to_string()))?;
@@ -114,7 +136,14 @@ impl Evidence {
             Diagnostic::new("the friction model is not finite on this table")
                 .with_help("check loads and readings for values that a rig cannot have")
         })?;
-        Ok(Self { problem, posterior, setup })
+        let groups = rows
+            .labels
+            .iter()
+            .map(|l| (l.session.clone(), l.specimen.clone()))
+            .map(|(session, specimen)| [session, specimen])
+            .collect();
+        let Covariates { source, points, readings, .. } = rows;
+        Ok(Self { problem, posterior, setup, source, points, readings, groups })
     }
 
     /// Returns the posterior over hypotheses.
@@ -150,18 +179,17 @@ impl Evidence {
     pub fn predict(&self, rows: &[PlateauRow], session: Session) -> Result<Vec<Prediction>, Diagnostic> {
         let mut frame = self.setup.frame.clone();
         rows.iter().for_each(|row| frame.extend(row));
-        let contacts = Contacts::new(&frame, &self.setup.conditions, rows, self.setup.has_angles)?;
-        let covariates = Covariates::new(&frame, &contacts, rows)?;
+        let covariates = Covariates::new(&frame, rows)?;
         let known = self.setup.frame.devices();
         let is_new = |c: &&Condition| c.device.is_some_and(|device| device >= known);
-        if let Some(new) = contacts.conditions.iter().find(is_new) {
+        if let Some(new) = frame.conditions.iter().find(is_new) {
             return Err(Diagnostic::new(format!("no series of {} in the fitted table", new.name()))
                 .with_help("measure the layout, or predict only layouts that were measured"));
         }
         let setup = Setup {
+            conditions: frame.conditions.clone().into(),
             frame,
-            conditions: contacts.conditions.into(),
-            has_angles: self.setup.has_angles,
+            vocabulary: self.setup.vocabulary.clone(),
             baseline: self.setup.baseline.clone(),
             priors: Arc::clone(&self.setup.priors),
             structures: Vec::new(),
@@ -188,53 +216,9 @@ impl Evidence {
     }
 }
 
-/// Conditions of rows, among which `plain` contacts differ in their wrap angle.
-struct Contacts {
-    conditions: Vec<Condition>,
-    /// Condition of each row.
-    of_row: Vec<usize>,
-}
-
-impl Contacts {
-    /// Finds the conditions of rows among the known ones, and adds the others. Without
-    /// `has_angles`, the exponent of a `plain` contact is free and its wrap angle is 1 rad.
-    fn new(
-        frame: &Frame,
-        known: &[Condition],
-        rows: &[PlateauRow],
-        has_angles: bool,
-    ) -> Result<Self, Diagnostic> {
-        let mut contacts = Self { conditions: known.to_vec(), of_row: Vec::new() };
-        for row in rows {
-            let kind = frame.condition_of(row).and_then(|i| frame.conditions.get(i));
-            let kind = kind.ok_or_else(|| Diagnostic::new("a row has a condition that the table lacks"))?;
-            let is_free = row.substrate.is_none() && has_angles;
-            let wrap_rad = if is_free { row.wrap_angle_deg.to_radians() } else { kind.wrap_rad };
-            let condition = Condition { wrap_rad, ..kind.clone() };
-            let index = contacts.conditions.iter().position(|c| *c == condition);
-            contacts.of_row.push(index.unwrap_or(contacts.conditions.len()));
-            if index.is_none() {
-                contacts.conditions.push(condition);
-            }
-        }
-        Ok(contacts)
-    }
-}
-
-/// Returns whether the wrap angle of `plain` contacts is known and not the published one.
-fn has_plain_angles(rows: &[PlateauRow]) -> bool {
-    let published = pinswitch_friction::published::WRAP_ANGLE_DEG;
-    rows.iter().any(|row| row.substrate.is_none() && row.wrap_angle_deg != published)
-}
-
 impl Setup {
-    fn new(
-        frame: Frame,
-        conditions: Vec<Condition>,
-        has_angles: bool,
-        rows: &Covariates,
-        vocabulary: &Vocabulary,
-    ) -> Self {
+    fn new(frame: Frame, rows: &Covariates, vocabulary: &Vocabulary, forms: &BTreeSet<&str>) -> Self {
+        let conditions = frame.conditions.clone();
         let model = Model::baseline(frame.clone());
         let first = Model::device_constants(0)[0];
         let device_means: Vec<f64> =
@@ -242,7 +226,7 @@ impl Setup {
         let baseline = Baseline::new(&conditions, device_means);
         let force_unit = Self::force_unit(rows);
         let highest = rows.readings.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit);
+        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit, forms);
         let has_silicone = conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone));
         let has_both = has_silicone && conditions.iter().any(Condition::has_pins);
         let structures = structures(rows, has_both, force_unit);
@@ -254,12 +238,16 @@ impl Setup {
         };
         Self {
             mean_time: (mean(|p| p.time), mean(|p| p.travel)),
-            largest: [most(|p| p.load_n), most(|p| p.log_speed.abs()), most(|p| p.log_dwell.abs())],
+            largest: Largest {
+                load_n: most(|p| p.load_n),
+                log_speed: most(|p| p.log_speed.abs()),
+                log_dwell: most(|p| p.log_dwell.abs()),
+            },
             mounts: factor(rows.level_names(|label| &label.mount)),
             specimens: factor(rows.level_names(|label| &label.specimen)),
             frame,
             conditions: conditions.into(),
-            has_angles,
+            vocabulary: vocabulary.clone(),
             baseline,
             priors: priors.into(),
             structures,
@@ -335,43 +323,19 @@ impl Setup {
         }
     }
 
-    /// Returns the factors of an effect's contribution where its form may be wrong.
+    /// Returns the factors of the size of an effect where its form may be wrong.
+    fn discrepancy_factors(&self, prior: &EffectPrior) -> Vec<DiscrepancyFactor> {
+        let devices = self.conditions.iter().filter(|c| c.device.is_some()).count();
+        let covariates = prior.discrepant_covariates().into_iter();
+        covariates.flat_map(|covariate| self.largest.factors(covariate, devices)).collect()
+    }
+
+    /// Returns the values of these factors at points.
     fn discrepancies(&self, prior: &EffectPrior, points: &[Point]) -> Vec<Vec<f64>> {
-        let column = |value: &dyn Fn(&Point) -> f64| -> Vec<f64> { points.iter().map(value).collect() };
-        // Legendre polynomials of degree one and two over a share 0..1.
-        let curved = |share: &dyn Fn(&Point) -> f64| -> [Vec<f64>; 2] {
-            let linear = column(&|p| 2.0 * share(p) - 1.0);
-            let square = linear.iter().map(|u| 1.5 * u * u - 0.5).collect();
-            [linear, square]
+        let value = |factor: DiscrepancyFactor| -> Vec<f64> {
+            points.iter().map(|p| factor.value(p, &self.conditions[p.condition])).collect()
         };
-        let [load, speed, dwell] = self.largest;
-        let mut columns = Vec::new();
-        for covariate in prior.discrepant_covariates() {
-            match covariate {
-                Covariate::Load => columns.extend(curved(&|p| p.load_n / load)),
-                Covariate::Time => columns.extend(curved(&|p| p.time)),
-                Covariate::Position => columns.extend(curved(&|p| p.position)),
-                Covariate::Speed => columns.push(column(&|p| p.log_speed / speed)),
-                Covariate::Dwell => columns.push(column(&|p| p.log_dwell / dwell)),
-                Covariate::Repetition => {
-                    columns.push(column(&|p| libm::exp(-(p.repetition - 1.0) / 2.0) - 0.5));
-                    columns.push(column(&|p| p.sign));
-                }
-                Covariate::Condition => {
-                    let devices: Vec<usize> = self.conditions.iter().filter_map(|c| c.device).collect();
-                    let of = |p: &Point| self.conditions[p.condition].device;
-                    if devices.len() > 1 {
-                        columns.extend(
-                            devices
-                                .iter()
-                                .map(|device| column(&|p| if of(p) == Some(*device) { 1.0 } else { 0.0 })),
-                        );
-                    }
-                }
-                Covariate::Direction | Covariate::Sweep => {}
-            }
-        }
-        columns
+        self.discrepancy_factors(prior).into_iter().map(value).collect()
     }
 }
 

@@ -1,14 +1,21 @@
 //! Priors of the effects: typical sizes, prior odds, discrete shapes, and where a form may be wrong.
 
+use std::collections::BTreeSet;
+
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
-use crate::effects::{Covariate, Effect, Vocabulary};
+use crate::effects::{Covariate, Effect, Vocabulary, effect_named};
 use crate::table::Frame;
 
 /// Prior probability of the effects that most rigs have.
 const USUAL_PROBABILITY: f64 = 0.30;
 /// Prior probability of any other effect.
 const OTHER_PROBABILITY: f64 = 0.05;
+/// Prior probability of a user-defined effect: whoever writes one expects it about as much as any
+/// structure without a name.
+const USER_PROBABILITY: f64 = 0.2;
+/// Prior probability of the shape at the start values of a user-defined effect, before its variants.
+const START_PROBABILITY: f64 = 0.5;
 /// Effects that most rigs have.
 const USUAL: [&str; 3] = ["guide_drag", "load_cell_offset", "load_cell_gain"];
 /// Share of the typical size at which an effect is scored first.
@@ -72,17 +79,19 @@ pub(super) struct EffectPrior {
     /// Discrete values of the constants after the size.
     shapes: Vec<Vec<f64>>,
     /// Reading in newtons from which the limit of the load cell is measured downwards.
-    limit_from_n: Option<f64>,
+    pub(super) limit_from_n: Option<f64>,
 }
 
 impl EffectPrior {
     /// Returns the priors of a vocabulary for a table, whose readings are at most `highest_n`.
-    /// Forces are `force_unit` times larger than on the paper's rig.
+    /// Forces are `force_unit` times larger than on the paper's rig. Effects that are `forms` of a
+    /// library have one shape, since the library has an effect for each.
     pub(super) fn of_vocabulary(
         vocabulary: &Vocabulary,
         frame: &Frame,
         highest_n: f64,
         force_unit: f64,
+        forms: &BTreeSet<&str>,
     ) -> Vec<Self> {
         vocabulary
             .effects()
@@ -103,7 +112,10 @@ impl EffectPrior {
                         (size, t.shapes.iter().map(|shape| shape.to_vec()).collect())
                     },
                 );
-                let shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                let mut shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                if forms.contains(effect.id()) {
+                    shapes.truncate(1);
+                }
                 Self { effect, typical_size: Some(size), shapes, limit_from_n: None }
             })
             .collect()
@@ -123,6 +135,11 @@ impl EffectPrior {
         }
     }
 
+    /// Returns the constants of a shape.
+    pub(super) fn shape(&self, shape: usize) -> Vec<f64> {
+        self.shapes.get(shape).cloned().unwrap_or_default()
+    }
+
     /// Returns the number of constants of a shape that a fit shifts.
     fn shape_constants(&self) -> usize {
         self.shapes.first().map_or(0, Vec::len).min(MOST_SHAPE_CONSTANTS)
@@ -139,10 +156,28 @@ impl EffectPrior {
             name: self.effect.id().to_owned(),
             typical_size: self.typical_size,
             is_one_sided: self.effect.description().one_sided || self.limit_from_n.is_some(),
-            probability: if self.is_usual() { USUAL_PROBABILITY } else { OTHER_PROBABILITY },
+            probability: match (self.is_usual(), self.is_built_in()) {
+                (true, _) => USUAL_PROBABILITY,
+                (false, true) => OTHER_PROBABILITY,
+                (false, false) => USER_PROBABILITY,
+            },
+            shape_probabilities: self.shape_probabilities(starts.len()),
             shape_constants: self.shape_constants(),
             starts,
         }
+    }
+
+    fn is_built_in(&self) -> bool {
+        effect_named(self.effect.id()).is_some()
+    }
+
+    /// Returns the prior probabilities of the shapes; empty if they are equal.
+    fn shape_probabilities(&self, count: usize) -> Vec<f64> {
+        if self.is_built_in() || count < 2 {
+            return Vec::new();
+        }
+        let other = (1.0 - START_PROBABILITY) / (count - 1) as f64;
+        (0..count).map(|shape| if shape == 0 { START_PROBABILITY } else { other }).collect()
     }
 
     /// Returns whether most rigs have it.

@@ -6,7 +6,7 @@ use pinswitch_inference::{Kernel, kernel};
 
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
-use crate::effects::REFERENCE_LOAD_N;
+use crate::effects::{Abscissa, REFERENCE_LOAD_N};
 use crate::table::Point;
 
 /// Scale of the standard deviation of structure: a force in newtons, and relative.
@@ -22,16 +22,38 @@ const FEW_SERIES: usize = 4;
 const INTERVAL_PROBABILITY: f64 = 0.5;
 /// Series up to which every interval is a variant; in a longer table, only those up to its end.
 const MOST_INTERVAL_SERIES: usize = 24;
+/// Covariate of noise.
+pub(super) const NOISE: &str = "noise";
+/// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
+const WANDERING_PROBABILITY: f64 = 0.05;
+/// Correlations of consecutive series, and the rank of their process: what is finer has little variance
+/// next to independent offsets.
+const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
+/// Fewest series for a memory of six series, which is then shorter than the table.
+const LEAST_WANDERING_SERIES: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
 /// Repetitions after which the memory of the previous load has decayed to 1/e.
-const MEMORY_REPETITIONS: f64 = 20.0;
+pub(super) const MEMORY_REPETITIONS: f64 = 20.0;
 /// Channels of structure that may be a force or friction.
 const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
 
 /// A function of the rows that returns a basis.
 type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
+
+/// How a model file keeps the function of a kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Record {
+    /// As a table over the session, of which a later session has the mean.
+    Time,
+    /// As a table over a covariate; with true, over the levels of a factor.
+    Table(Abscissa, bool),
+    /// As the memory of the previous load.
+    Memory,
+    /// Not at all: a new session draws it again, about zero.
+    Nothing,
+}
 
 /// A discrete form of a kernel.
 struct Variant {
@@ -52,6 +74,7 @@ pub(super) struct Structure {
     pub(super) covariate: &'static str,
     pub(super) name: String,
     pub(super) channel: Channel,
+    pub(super) record: Record,
     is_session_bound: bool,
     scale: f64,
     bases: std::rc::Rc<Vec<Variant>>,
@@ -69,6 +92,7 @@ impl Structure {
             scale: self.scale,
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
+            noise_probability: (self.covariate == NOISE).then_some(WANDERING_PROBABILITY),
         }
     }
 
@@ -100,6 +124,7 @@ struct Collector<'a> {
 pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
     let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
     collector.time();
+    collector.wandering();
     collector.along_a_series();
     collector.load();
     collector.protocol();
@@ -109,9 +134,16 @@ pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit
 
 impl Collector<'_> {
     /// Adds a kernel whose bases are scaled to unit variance.
-    fn add(&mut self, name: &str, covariate: &'static str, channels: &[Channel], bases: Vec<Basis>) {
+    fn add(
+        &mut self,
+        name: &str,
+        covariate: &'static str,
+        record: Record,
+        channels: &[Channel],
+        bases: Vec<Basis>,
+    ) {
         let variants = self.variants(bases, 1.0);
-        self.add_variants(name, covariate, channels, variants, false);
+        self.add_variants(name, covariate, record, channels, variants);
     }
 
     /// Returns the variants of bases that are scaled to unit variance, of this total probability.
@@ -130,10 +162,11 @@ impl Collector<'_> {
         &mut self,
         name: &str,
         covariate: &'static str,
+        record: Record,
         channels: &[Channel],
         variants: Vec<Variant>,
-        is_session_bound: bool,
     ) {
+        let is_session_bound = record == Record::Time || covariate == NOISE;
         if variants.is_empty() {
             return;
         }
@@ -154,6 +187,7 @@ impl Collector<'_> {
                 covariate,
                 name: format!("{} over {name}", channel.as_str()),
                 channel: *channel,
+                record,
                 is_session_bound,
                 scale,
                 bases: bases.clone(),
@@ -183,7 +217,28 @@ impl Collector<'_> {
         let share = if intervals.is_empty() { 0.0 } else { INTERVAL_PROBABILITY };
         let mut variants = self.variants(vec![basis], 1.0 - share);
         variants.extend(intervals);
-        self.add_variants("time", "time", &channels, variants, true);
+        self.add_variants("time", "time", Record::Time, &channels, variants);
+    }
+
+    /// Adds offsets that wander from series to series in the order of time, in both directions alike or
+    /// oppositely.
+    fn wandering(&mut self) {
+        let count = self.rows.series_count();
+        if count < LEAST_WANDERING_SERIES {
+            return;
+        }
+        let bases = WANDERING.map(|(correlation, rank)| -> Basis {
+            Box::new(move |rows| {
+                let mut starts = rows.series_start_s.clone();
+                starts.sort_by(f64::total_cmp);
+                starts.dedup();
+                let step = |start: &f64| starts.partition_point(|known| known < start);
+                let steps: Vec<usize> = rows.series_start_s.iter().map(step).collect();
+                kernel::autoregressive(&steps, starts.len(), correlation, rank.min(count))
+            })
+        });
+        let channels = [Channel::Reading, Channel::Drag];
+        self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
     }
 
     fn along_a_series(&mut self) {
@@ -193,20 +248,44 @@ impl Collector<'_> {
             let scale = Interval::of(&at);
             let waves: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
             let steps: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
-            self.add("position", "position", COMMON, vec![waves, steps]);
+            self.add(
+                "position",
+                "position",
+                Record::Table(Abscissa::Position, false),
+                COMMON,
+                vec![waves, steps],
+            );
         }
         let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
         let at = repetition(self.rows);
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
             let settling: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
-            self.add("repetition", "repetition", COMMON, vec![settling]);
+            self.add(
+                "repetition",
+                "repetition",
+                Record::Table(Abscissa::LogRepetition, false),
+                COMMON,
+                vec![settling],
+            );
             let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
             let alternation: Basis = Box::new(move |rows| kernel::single(&rows.column(sign)));
-            self.add("alternate repetitions", "repetition", COMMON, vec![alternation]);
+            self.add(
+                "alternate repetitions",
+                "repetition",
+                Record::Table(Abscissa::Alternation, true),
+                COMMON,
+                vec![alternation],
+            );
             let scale = Interval::of(&self.rows.series_time_s);
             let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
-            self.add("time in a series", "repetition", COMMON, vec![creep]);
+            self.add(
+                "time in a series",
+                "repetition",
+                Record::Table(Abscissa::SeriesReadings, false),
+                COMMON,
+                vec![creep],
+            );
         }
     }
 
@@ -225,17 +304,29 @@ impl Collector<'_> {
                 Channel::DirectionFriction,
             ];
             let curve: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
-            self.add("load", "load", &channels, vec![curve]);
+            self.add("load", "load", Record::Table(Abscissa::Load, false), &channels, vec![curve]);
         }
         if (4..=MOST_LOADS).contains(&distinct(&loads)) {
-            self.levels("weight", "load", &[Channel::Reading, Channel::Gain], load_level);
+            self.levels(
+                "weight",
+                "load",
+                Record::Table(Abscissa::Load, true),
+                &[Channel::Reading, Channel::Gain],
+                load_level,
+            );
         }
         let memory = |p: &Point| {
             let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
             (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
         };
         let memory: Basis = Box::new(move |rows| kernel::single(&rows.column(memory)));
-        self.add("previous load", "load", &[Channel::Silicone, Channel::Friction], vec![memory]);
+        self.add(
+            "previous load",
+            "load",
+            Record::Memory,
+            &[Channel::Silicone, Channel::Friction],
+            vec![memory],
+        );
     }
 
     fn protocol(&mut self) {
@@ -244,38 +335,70 @@ impl Collector<'_> {
         if distinct(&speeds) > 2 {
             let scale = Interval::of(&speeds);
             let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
-            self.add("speed", "speed", COMMON, vec![curve]);
+            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), COMMON, vec![curve]);
         } else if distinct(&speeds) == 2 {
             let sign: Basis = Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
-            self.add("speed", "speed", &[Channel::Drag], vec![sign]);
+            self.add(
+                "speed",
+                "speed",
+                Record::Table(Abscissa::LogSpeed, false),
+                &[Channel::Drag],
+                vec![sign],
+            );
         }
         let dwell = |rows: &Covariates| rows.column(|p| p.log_dwell);
         let dwells = dwell(self.rows);
         if distinct(&dwells) > 1 {
             let scale = Interval::of(&dwells);
             let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
-            self.add("dwell", "dwell", &[Channel::Reading, Channel::Friction], vec![curve]);
+            self.add(
+                "dwell",
+                "dwell",
+                Record::Table(Abscissa::LogDwell, false),
+                &[Channel::Reading, Channel::Friction],
+                vec![curve],
+            );
         }
         let descending = self.rows.column(|p| p.descending);
         if distinct(&descending) == 2 {
             let sweep: Basis = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
-            self.add("sweep", "sweep", COMMON, vec![sweep]);
+            self.add("sweep", "sweep", Record::Table(Abscissa::Descending, true), COMMON, vec![sweep]);
         }
     }
 
     fn factors(&mut self) {
-        self.levels("condition", "condition", COMMON, |_, label| label.condition.clone());
+        self.levels(
+            "condition",
+            "condition",
+            Record::Table(Abscissa::Condition, true),
+            COMMON,
+            |_, label| label.condition.clone(),
+        );
         let wraps = distinct(&self.rows.wrap_deg);
         if wraps < self.rows.level_names(|label| &label.condition).len() {
             let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
-            self.levels("wrap angle", "condition", &[Channel::Reading, Channel::Friction], wrap);
+            self.levels(
+                "wrap angle",
+                "condition",
+                Record::Table(Abscissa::Condition, true),
+                &[Channel::Reading, Channel::Friction],
+                wrap,
+            );
         }
         // The mount effect on friction is in every hypothesis.
         let forces = &[Channel::Reading, Channel::Drag];
-        self.levels("mount", "mount", forces, |_, label| label.mount.clone());
-        self.levels("specimen", "specimen", COMMON, |_, label| label.specimen.clone());
-        self.levels("operator", "operator", COMMON, |_, label| label.operator.clone());
-        self.levels("session", "session", COMMON, |_, label| label.session.clone());
+        self.levels("mount", "mount", Record::Nothing, forces, |_, label| label.mount.clone());
+        let switches =
+            &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
+        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
+            label.specimen.clone()
+        });
+        self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| {
+            label.operator.clone()
+        });
+        self.levels("session", "session", Record::Table(Abscissa::Session, true), switches, |_, label| {
+            label.session.clone()
+        });
     }
 
     /// Adds independent levels of a factor that has several.
@@ -283,6 +406,7 @@ impl Collector<'_> {
         &mut self,
         name: &str,
         covariate: &'static str,
+        record: Record,
         channels: &[Channel],
         level: impl Fn(&RowFactors, &RowLabels) -> String + 'static,
     ) {
@@ -294,12 +418,16 @@ impl Collector<'_> {
         {
             return;
         }
+        // A new session is like the last one.
+        let latest =
+            names_of(self.rows, &level).pop().filter(|_| record == Record::Table(Abscissa::Session, true));
+        let latest = latest.and_then(|name| names.binary_search(&name).ok());
         let basis: Basis = Box::new(move |rows| {
             let level_of: Vec<Option<usize>> =
-                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok()).collect();
+                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok().or(latest)).collect();
             kernel::levels(&level_of, names.len())
         });
-        self.add(name, covariate, channels, vec![basis]);
+        self.add(name, covariate, record, channels, vec![basis]);
     }
 }
 

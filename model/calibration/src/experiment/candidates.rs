@@ -1,35 +1,38 @@
 //! Candidate runs of a rig: contact, load, speed, dwell, repetitions, and, if a question depends on
 //! them, the order of the loads and the time in the session.
 
-use pinswitch_friction::{Substrate, published};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use super::question::Agenda;
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, append};
-use super::settings::{dwells_s, speeds_pct};
 use crate::effects::{Covariate, Stage};
-use crate::inference::{Model, Term};
+use crate::model::{Model, Term};
 use crate::table::{PlateauRow, Sweep};
 
 /// Numbers of eccentric and concentric repetitions to choose from.
 const REPETITIONS: [[u32; 2]; 2] = [[4, 4], [10, 10]];
+/// Repetitions of the paper's protocol.
+const PAPER_REPETITIONS: [u32; 2] = [12, 29];
+/// Most candidates, of which there is a random sample: a rig may have many contacts and weights.
+const MOST_CANDIDATES: usize = 6_000;
+/// Most elements of the information of all candidates (80 MB).
+const MOST_ELEMENTS: usize = 10_000_000;
+/// Seed of the sample.
+const SEED: u64 = 1;
+/// Factor of a predicted force that allows for errors of the model.
+const FORCE_MARGIN: f64 = 1.1;
 
-/// Number of pairs of contact and load above which only some of the loads are candidates: five
-/// times the paper's.
-const MOST_PLACES: usize = 400;
-/// Number of these loads.
-const FEW_LOADS: usize = 6;
-
-/// A candidate run, and whether it is in the second half of the session.
+/// A candidate run.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) run: PlannedRun,
+    /// Whether it is late in the session.
     pub(super) late: bool,
-    /// Previous weight in grams, if a question depends on it.
-    pub(super) after_g: Option<f64>,
-    /// For a run with descending loads, the next heavier weight in grams, which must precede it in
-    /// its mount.
-    pub(super) down_from_g: Option<f64>,
+    /// Weight in grams before it: the next lighter one for ascending loads, the next heavier one for
+    /// descending loads, which must precede it in its mount.
+    pub(super) after_g: f64,
 }
 
 impl Candidate {
@@ -45,13 +48,17 @@ impl Candidate {
             && self.run.load_mass_g == other.run.load_mass_g
     }
 
-    /// Returns the shortest run with a heavier load to precede descending loads.
-    pub(super) fn lift(&self) -> Option<PlannedRun> {
-        Some(PlannedRun {
-            sweep: Sweep::Up,
-            load_mass_g: self.down_from_g?,
-            repetitions: REPETITIONS[0],
-            ..self.run.clone()
+    /// Returns the shortest run with a heavier load that must precede descending loads, if none of the
+    /// others does.
+    pub(super) fn lift<'a>(&self, mut others: impl Iterator<Item = &'a Self>) -> Option<Self> {
+        let is_heavier =
+            |other: &Self| other.shares_mount(self) && other.run.load_mass_g > self.run.load_mass_g;
+        let needs_one = self.run.sweep == Sweep::Down && !others.any(is_heavier);
+        needs_one.then(|| {
+            let mut lift = self.clone();
+            (lift.run.sweep, lift.run.load_mass_g) = (Sweep::Up, self.after_g);
+            lift.run.repetitions = REPETITIONS[0];
+            lift
         })
     }
 
@@ -63,12 +70,10 @@ impl Candidate {
         rig: &RigLimits,
     ) -> f64 {
         let is_loaded = others.clone().any(|other| other.shares_load(self));
-        let is_heavier = |other: &Self| other.run.load_mass_g > self.run.load_mass_g;
-        let can_descend = others.clone().any(|other| other.shares_mount(self) && is_heavier(other));
+        let lift = self.lift(others.clone());
         let is_mounted = is_loaded || others.any(|other| other.shares_mount(self));
-        let lift = self.lift().filter(|_| !can_descend);
         self.run.recording_minutes(rig)
-            + lift.map_or(0.0, |lift| lift.recording_minutes(rig) + rig.minutes_per_load_change)
+            + lift.map_or(0.0, |lift| lift.run.recording_minutes(rig) + rig.minutes_per_load_change)
             + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
             + if is_mounted { 0.0 } else { rig.minutes_per_mount_change }
     }
@@ -76,61 +81,69 @@ impl Candidate {
 
 /// Returns all candidates within the range of the load cell.
 pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<Candidate> {
-    let sweeps: &[Sweep] = if agenda.asks_along(Covariate::Sweep) || agenda.asks_of_the_load_before() {
-        &[Sweep::Up, Sweep::Down]
-    } else {
-        &[Sweep::Up]
-    };
+    let asks_of_order = agenda.asks_along(Covariate::Sweep) || agenda.asks_of_previous_loads();
+    let sweeps: &[Sweep] = if asks_of_order { &[Sweep::Up, Sweep::Down] } else { &[Sweep::Up] };
     let times: &[bool] = if agenda.asks_along(Covariate::Time) { &[false, true] } else { &[false] };
-    let loads_g = if rig.contacts().len() * rig.loads_g.len() > MOST_PLACES {
-        spread(&rig.loads_g, FEW_LOADS)
-    } else {
-        rig.loads_g.clone()
-    };
-    let speeds = speeds_pct(model, rig, agenda);
-    let dwells = dwells_s(model, rig, agenda);
+    let speeds = rig.speeds(agenda.asks_of_formulas_along(Covariate::Speed));
+    let dwells = rig.dwells(agenda.asks_of_formulas_along(Covariate::Dwell));
+    let mut loads_g = rig.loads_g.clone();
+    loads_g.sort_by(f64::total_cmp);
     let mut all = Vec::new();
     for (substrate, pins) in rig.contacts() {
-        for load_mass_g in &loads_g {
-            for speed_pct in &speeds {
-                for dwell_s in &dwells {
-                    for repetitions in REPETITIONS {
-                        for sweep in sweeps {
-                            for late in times {
-                                let run = PlannedRun {
-                                    substrate,
-                                    pins: pins.clone(),
-                                    sweep: *sweep,
-                                    load_mass_g: *load_mass_g,
-                                    speed_pct: *speed_pct,
-                                    dwell_s: *dwell_s,
-                                    repetitions,
-                                    mount: 1,
-                                    minutes: 0.0,
-                                    asks: String::new(),
-                                    wrap_angle_deg: rig.other_wrap_deg(),
-                                };
-                                let after_g = agenda
-                                    .asks_of_the_load_before()
-                                    .then(|| neighbour_g(&loads_g, *load_mass_g, *sweep));
-                                all.push(Candidate { run, late: *late, after_g, down_from_g: None });
-                            }
-                        }
-                    }
-                }
-            }
+        let runs = loads_g.iter().map(|load_g| PlannedRun::usual(substrate, &pins, *load_g, rig));
+        let of_contact = runs.map(|run| Candidate { run, late: false, after_g: 0.0 }).collect();
+        let mut of_contact = within_cell_only(of_contact, model, rig);
+        let loads: Vec<f64> = of_contact.iter().map(|c| c.run.load_mass_g).collect();
+        of_contact = with_each(of_contact, &speeds, |c, speed| c.run.speed_pct = *speed);
+        of_contact = with_each(of_contact, &dwells, |c, dwell| c.run.dwell_s = *dwell);
+        of_contact = with_each(of_contact, &REPETITIONS, |c, repetitions| c.run.repetitions = *repetitions);
+        of_contact = with_each(of_contact, sweeps, |c, sweep| c.run.sweep = *sweep);
+        of_contact = with_each(of_contact, times, |c, late| c.late = *late);
+        for candidate in &mut of_contact {
+            let load_g = candidate.run.load_mass_g;
+            let neighbour = match candidate.run.sweep {
+                Sweep::Up => loads.iter().rev().find(|g| **g < load_g).or(loads.last()),
+                Sweep::Down => loads.iter().find(|g| **g > load_g),
+            };
+            candidate.after_g = neighbour.copied().unwrap_or(load_g);
         }
+        // No heavier weight precedes the heaviest one.
+        of_contact.retain(|c| c.run.sweep == Sweep::Up || c.after_g > c.run.load_mass_g);
+        all.extend(of_contact);
     }
-    let rows: Vec<PlateauRow> = all.iter().filter_map(|c| alone(c, "1", rig, 0.0).pop()).collect();
-    let fits: Vec<bool> = within_cell(model, &rows, rig);
-    let all: Vec<Candidate> =
-        all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect();
-    descending_from_somewhere(all)
+    let columns = model.values().len() + agenda.contributions.len();
+    let most = (MOST_ELEMENTS / columns / columns).min(MOST_CANDIDATES).min(all.len());
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    for place in 0..most {
+        let other = random.random_range(place..all.len());
+        order.swap(place, other);
+    }
+    order.truncate(most);
+    order.sort_unstable();
+    within_cell_only(order.into_iter().map(|i| all[i].clone()).collect(), model, rig)
+}
+
+/// Returns each candidate with each of some values.
+fn with_each<T>(all: Vec<Candidate>, values: &[T], set: impl Fn(&mut Candidate, &T)) -> Vec<Candidate> {
+    let of = |candidate: &Candidate, value: &T| {
+        let mut candidate = candidate.clone();
+        set(&mut candidate, value);
+        candidate
+    };
+    all.iter()
+        .flat_map(|candidate| values.iter().map(|value| of(candidate, value)).collect::<Vec<_>>())
+        .collect()
+}
+
+fn within_cell_only(all: Vec<Candidate>, model: &Model, rig: &RigLimits) -> Vec<Candidate> {
+    let rows: Vec<PlateauRow> = all.iter().filter_map(|c| alone(c, "1", rig, 0.0, false).pop()).collect();
+    let fits = within_cell(model, &rows, rig);
+    all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect()
 }
 
 /// Returns whether each row is within the range of the load cell: the tension and the predicted
-/// reading. The force is largest while the load is pulled; a margin of 10 % allows for errors of
-/// the model.
+/// reading. The force is largest while the load is pulled.
 pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -> Vec<bool> {
     let is_of_the_cell = |term: &Term| match term {
         Term::Named(effect) => {
@@ -140,64 +153,24 @@ pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -
     };
     // A saturated load cell reads less than the tension.
     let pulled = model.without_terms(is_of_the_cell);
-    let Ok(points) = model.frame.points(rows).ok_or(()) else { return Vec::new() };
-    let bears = |force_n: f64| force_n * 1.1 <= rig.cell_limit_n;
-    pulled
-        .predict(&points)
-        .into_iter()
-        .zip(model.predict(&points))
-        .map(|(a, b)| bears(a) && bears(b))
-        .collect()
+    let Some(points) = model.frame.points(rows) else { return Vec::new() };
+    let fits = |force_n: f64| force_n * FORCE_MARGIN <= rig.cell_limit_n;
+    let readings_n = model.predict(&points);
+    pulled.predict(&points).into_iter().zip(readings_n).map(|(a, b)| fits(a) && fits(b)).collect()
 }
 
-/// Removes candidates with descending loads that no heavier weight can precede.
-fn descending_from_somewhere(all: Vec<Candidate>) -> Vec<Candidate> {
-    let mut loads: Vec<(Substrate, Vec<usize>, Vec<f64>)> = Vec::new();
-    for run in all.iter().map(|c| &c.run) {
-        match loads.iter_mut().find(|(substrate, pins, _)| *substrate == run.substrate && *pins == run.pins) {
-            Some((.., of_contact)) => of_contact.push(run.load_mass_g),
-            None => loads.push((run.substrate, run.pins.clone(), vec![run.load_mass_g])),
-        }
-    }
-    let heavier_g = |run: &PlannedRun| {
-        let (.., of_contact) = loads.iter().find(|(s, pins, _)| *s == run.substrate && *pins == run.pins)?;
-        of_contact.iter().copied().filter(|g| *g > run.load_mass_g).min_by(f64::total_cmp)
-    };
-    all.into_iter()
-        .filter_map(|candidate| match candidate.run.sweep {
-            Sweep::Up => Some(candidate),
-            Sweep::Down => heavier_g(&candidate.run).map(|g| Candidate { down_from_g: Some(g), ..candidate }),
-        })
-        .collect()
-}
-
-/// Returns the previous weight in the order of the runs of a mount: the next lighter one for
-/// ascending loads; for the lightest, the heaviest of the previous contact.
-fn neighbour_g(loads_g: &[f64], load_g: f64, sweep: Sweep) -> f64 {
-    let lighter = loads_g.iter().copied().filter(|g| *g < load_g).fold(f64::NEG_INFINITY, f64::max);
-    let heavier = loads_g.iter().copied().filter(|g| *g > load_g).fold(f64::INFINITY, f64::min);
-    let most = loads_g.iter().copied().fold(load_g, f64::max);
-    let found = if sweep == Sweep::Down { heavier } else { lighter };
-    if found.is_finite() { found } else { most }
-}
-
-/// Returns `most` of the values, evenly spaced by rank, including the extremes.
-fn spread(values: &[f64], most: usize) -> Vec<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    let last = sorted.len().saturating_sub(1);
-    let steps = most.min(sorted.len()).saturating_sub(1).max(1);
-    let mut kept: Vec<f64> = (0..=steps).filter_map(|i| sorted.get(i * last / steps).copied()).collect();
-    kept.dedup();
-    kept
-}
-
-/// Returns the rows of a candidate in its own session, which began `begins_s` seconds before; if
-/// the previous load matters, after one reading at that load.
-pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins_s: f64) -> Vec<PlateauRow> {
+/// Returns the rows of a candidate in its own session, which began `begins_s` seconds before; with
+/// memory, after one reading at the weight before it.
+pub(super) fn alone(
+    candidate: &Candidate,
+    series: &str,
+    rig: &RigLimits,
+    begins_s: f64,
+    has_memory: bool,
+) -> Vec<PlateauRow> {
     let (mut rows, mut time_s) = (Vec::new(), begins_s);
-    if let Some(load_mass_g) = candidate.after_g {
+    if has_memory {
+        let load_mass_g = candidate.after_g;
         let before = PlannedRun { load_mass_g, repetitions: [1, 0], ..candidate.run.clone() };
         append(&before, &format!("before {series}"), series, rig, &mut time_s, &mut rows);
     }
@@ -205,28 +178,21 @@ pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins
     rows
 }
 
-/// Returns the paper's protocol, up to a duration in minutes: contact by contact, ascending loads,
+/// Returns the paper's protocol from its beginning, up to a duration in minutes: contact by contact, ascending loads,
 /// speed following load, one dwell.
-pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
+pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
     let (mut runs, mut spent): (Vec<PlannedRun>, f64) = (Vec::new(), 0.0);
     let mut loads = rig.loads_g.clone();
     loads.sort_by(f64::total_cmp);
     for (mount, (substrate, pins)) in rig.contacts().into_iter().enumerate() {
         for (i, load_mass_g) in loads.iter().enumerate() {
+            // 47 to 57 %, as in the paper.
+            let speed_pct = 47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64;
             let mut run = PlannedRun {
-                substrate,
-                pins: pins.clone(),
-                sweep: Sweep::Up,
-                load_mass_g: *load_mass_g,
-                // 47 to 57 %, as in the paper.
-                speed_pct: (47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64)
-                    .clamp(rig.speeds_pct[0], rig.speeds_pct[1]),
-                dwell_s: published::DWELL_S.clamp(rig.dwells_s[0], rig.dwells_s[1]),
-                repetitions: [12, 29],
+                speed_pct: speed_pct.clamp(rig.speeds_pct[0], rig.speeds_pct[1]),
+                repetitions: PAPER_REPETITIONS,
                 mount: mount + 1,
-                minutes: 0.0,
-                asks: String::new(),
-                wrap_angle_deg: rig.other_wrap_deg(),
+                ..PlannedRun::usual(substrate, &pins, *load_mass_g, rig)
             };
             let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
             let takes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;
@@ -258,7 +224,7 @@ mod tests {
             let all = candidates(model, &rig, &Agenda::default());
             all.iter().map(|c| c.run.load_mass_g).fold(0.0, f64::max)
         };
-        let rows: Vec<PlateauRow> = paper_protocol(&rig, f64::INFINITY)
+        let rows: Vec<PlateauRow> = paper_runs(&rig, f64::INFINITY)
             .iter()
             .filter(|run| run.pins.is_empty())
             .flat_map(|run| super::super::runs::rows_of(std::slice::from_ref(run), &rig, ""))
@@ -268,15 +234,5 @@ mod tests {
         assert_eq!(within_cell(&model, &rows, &rig), within_cell(&saturated, &rows, &rig));
         assert!(within_cell(&model, &rows, &rig).contains(&false));
         assert!(heaviest(&saturated) <= heaviest(&model));
-    }
-
-    #[test]
-    fn few_loads_include_the_extremes() {
-        let many: Vec<f64> = (0..40).rev().map(|i| 50.0 + 100.0 * f64::from(i)).collect();
-        let few = spread(&many, FEW_LOADS);
-        assert_eq!(few.len(), FEW_LOADS);
-        assert_eq!((few[0], few[FEW_LOADS - 1]), (50.0, 3950.0));
-        assert!(few.is_sorted());
-        assert_eq!(spread(&[7.0, 7.0], FEW_LOADS), [7.0]);
     }
 }

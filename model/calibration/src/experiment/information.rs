@@ -1,36 +1,41 @@
 //! Fisher information of rows, recorded or planned, about the constants of a model and the sizes of
-//! further effects.
+//! further contributions to the readings.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::whitening::{Series, separate, together, white_series};
 use crate::effects::Effect;
-use crate::inference::{CONSEQUENCE, Model, Noise, Observations, Term, Weighed, jacobian};
-use crate::table::PlateauRow;
+use crate::evidence::CONSEQUENCE;
+use crate::model::{Model, Noise, Term, jacobian};
+use crate::table::{PlateauRow, Point};
 
-/// A column in addition to the model's constants: the change of the readings by an effect of a
-/// given size.
+/// Relative standard deviation of the change of a friction coefficient between sessions.
+const SESSION_SD: f64 = 0.05;
+
+/// A contribution to the readings, as a column in addition to those of the model's constants.
 #[derive(Clone, Debug)]
-pub(super) enum Trace {
-    /// Contribution of a term of the model.
-    Found {
+pub(super) enum Contribution {
+    /// That of a term of the model.
+    Term {
         /// Index of the term.
         term: usize,
     },
-    /// Contribution of an effect that is not in the model.
-    Absent {
+    /// That of an effect that is not in the model.
+    Added {
         /// The effect.
         effect: &'static dyn Effect,
         /// Constants of the effect.
         values: Vec<f64>,
     },
-    /// Change of a constant of the model in a new session, since a newly mounted switch may differ.
-    Renewed {
+    /// Change of a constant of the model in the planned session, since a newly mounted switch may
+    /// differ.
+    NewSession {
         /// Index of the constant.
         constant: usize,
     },
     /// Error of friction above the recorded loads: zero at the first load, and increasing linearly
     /// to [`CONSEQUENCE`] of the friction at the second.
-    Beyond {
+    AboveLoads {
         /// Highest recorded load in newtons.
         from_n: f64,
         /// Highest load of interest in newtons.
@@ -38,91 +43,68 @@ pub(super) enum Trace {
     },
 }
 
-/// A model with additional columns, and the noise of rows.
+impl Contribution {
+    fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
+        let (with, without) = match self {
+            Self::Term { term } => (model.predict(points), model.without_term(*term).predict(points)),
+            Self::Added { effect, values } => {
+                (model.with_term(Term::Named(*effect), values).predict(points), model.predict(points))
+            }
+            Self::NewSession { constant } => return constants[*constant].clone(),
+            Self::AboveLoads { from_n, to_n } => {
+                let share = |p: &Point| CONSEQUENCE * ((p.load_n - from_n) / (to_n - from_n)).max(0.0);
+                let friction = model.friction_n(points);
+                return points.iter().zip(friction).map(|(p, friction)| share(p) * friction).collect();
+            }
+        };
+        with.iter().zip(&without).map(|(with, without)| with - without).collect()
+    }
+}
+
+/// A model with contributions, and the noise of rows.
 #[derive(Debug)]
 pub(super) struct Design<'a> {
     pub(super) model: &'a Model,
     pub(super) noise: Noise,
-    pub(super) traces: &'a [Trace],
+    pub(super) contributions: &'a [Contribution],
 }
 
 impl Design<'_> {
-    /// Returns the number of the model's constants, whose columns come first.
-    pub(super) fn own(&self) -> usize {
-        self.model.values().len()
+    /// Returns the information of planned rows; `None` if the model lacks a condition.
+    pub(super) fn planned(&self, rows: &[PlateauRow]) -> Option<DMatrix<f64>> {
+        Some(together(&self.series(rows)?, self.noise))
     }
 
-    /// Returns the number of all columns.
-    pub(super) fn columns(&self) -> usize {
-        self.own() + self.traces.len()
+    /// Returns the information of each planned series in a mount of its own, in the order of their
+    /// first rows.
+    pub(super) fn planned_series(&self, rows: &[PlateauRow]) -> Option<Vec<DMatrix<f64>>> {
+        Some(separate(&self.series(rows)?, self.noise))
     }
 
-    /// Returns the information of the priors.
-    pub(super) fn priors(&self) -> DMatrix<f64> {
-        let mut known = DMatrix::zeros(self.columns(), self.columns());
-        for (i, prior) in self.model.priors().iter().enumerate() {
-            known[(i, i)] = prior.sd.powi(-2);
+    /// Returns the information of the recorded rows and the priors.
+    pub(super) fn recorded(&self, rows: &[PlateauRow]) -> Option<DMatrix<f64>> {
+        let mut information = self.planned(rows)?;
+        let priors = self.model.priors();
+        priors.iter().enumerate().for_each(|(i, prior)| information[(i, i)] += prior.sd.powi(-2));
+        for (at, contribution) in self.contributions.iter().enumerate() {
+            if matches!(contribution, Contribution::NewSession { .. }) {
+                let at = priors.len() + at;
+                information.row_mut(at).fill(0.0);
+                information.column_mut(at).fill(0.0);
+                information[(at, at)] = SESSION_SD.powi(-2);
+            }
         }
-        known
+        Some(information)
     }
 
-    /// Returns the information of a table; its readings are irrelevant. `None` if the model lacks a
-    /// condition.
-    pub(super) fn of(&self, rows: &[PlateauRow]) -> Option<DMatrix<f64>> {
-        let whole = Observations::new(&self.model.frame, rows)?.compacted();
-        let (data, columns) = self.whitened(whole);
-        let all: Vec<usize> = (0..data.points.len()).collect();
-        Some(gram(&columns, &all))
+    fn series(&self, rows: &[PlateauRow]) -> Option<Vec<Series>> {
+        let points = self.model.frame.points(rows)?;
+        let constants = jacobian(self.model, &points);
+        let contributions = self.contributions.iter().map(|c| c.column(self.model, &points, &constants));
+        let contributions: Vec<Vec<f64>> = contributions.collect();
+        let columns = [constants, contributions].concat();
+        white_series(self.model, self.noise, rows, &points, &columns)
     }
-
-    /// Returns the information of each series of a table, in the order of their first rows.
-    pub(super) fn by_series(&self, rows: &[PlateauRow]) -> Option<Vec<DMatrix<f64>>> {
-        let (data, columns) = self.whitened(Observations::new(&self.model.frame, rows)?);
-        Some(data.series_rows.iter().map(|rows| gram(&columns, rows)).collect())
-    }
-
-    fn whitened(&self, mut data: Observations) -> (Observations, Vec<Vec<f64>>) {
-        let model = self.model;
-        let predicted = model.predict(&data.points);
-        data.friction_n = model.friction_n(&data.points);
-        let mut columns = jacobian(model, &data, &predicted);
-        for trace in self.traces {
-            let (with, without) = match trace {
-                Trace::Found { term } => (predicted.clone(), model.without_term(*term).predict(&data.points)),
-                Trace::Absent { effect, values } => {
-                    (model.with_term(Term::Named(*effect), values).predict(&data.points), predicted.clone())
-                }
-                Trace::Renewed { constant } => {
-                    columns.push(columns[*constant].clone());
-                    continue;
-                }
-                Trace::Beyond { from_n, to_n } => {
-                    let share = |load_n: f64| CONSEQUENCE * ((load_n - from_n) / (to_n - from_n)).max(0.0);
-                    let off = data.points.iter().zip(&data.friction_n).map(|(p, f)| share(p.load_n) * f);
-                    columns.push(off.collect());
-                    continue;
-                }
-            };
-            columns.push(with.iter().zip(&without).map(|(w, o)| w - o).collect());
-        }
-        let weighed = Weighed::new(&data, self.noise);
-        weighed.whiten_all(&mut columns);
-        (data, columns)
-    }
-}
-
-/// Returns the products of all pairs of columns over some rows.
-fn gram(columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
-    let n = columns.len();
-    let mut products = DMatrix::zeros(n, n);
-    for i in 0..n {
-        for j in 0..=i {
-            let sum: f64 = rows.iter().map(|r| columns[i][*r] * columns[j][*r]).sum();
-            products[(i, j)] = sum;
-            products[(j, i)] = sum;
-        }
-    }
-    products
 }
 
 /// Information with the columns `nuisance` projected out of all others.
@@ -155,17 +137,22 @@ impl<'a> Projected<'a> {
     /// Returns the product of the projected parts of two columns.
     pub(super) fn covariance(&self, a: usize, b: usize) -> f64 {
         let Some(factor) = &self.factor else { return 0.0 };
-        let side = |c: usize| {
-            DVector::from_fn(self.nuisance.len(), |i, _| {
-                self.information[(self.nuisance[i], c)] * self.scale[i]
-            })
-        };
-        self.information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+        let fitted = self.fitted(factor, a);
+        let product = if a == b { fitted.norm_squared() } else { fitted.dot(&self.fitted(factor, b)) };
+        self.information[(a, b)] - product
     }
 
-    /// Returns the squared norm, in standard deviations, of the projected part of a column.
-    pub(super) fn squares(&self, signal: usize) -> f64 {
-        self.covariance(signal, signal).max(0.0)
+    /// Returns the squared length, in standard deviations, of the projected part of a column.
+    pub(super) fn squares(&self, column: usize) -> f64 {
+        self.covariance(column, column).max(0.0)
+    }
+
+    /// Returns the coordinates of the part of a column that the nuisance absorbs.
+    fn fitted(&self, factor: &Cholesky<f64, Dyn>, column: usize) -> DVector<f64> {
+        let side = |i: usize| self.information[(self.nuisance[i], column)] * self.scale[i];
+        let mut side = DVector::from_fn(self.nuisance.len(), |i, _| side(i));
+        factor.l_dirty().solve_lower_triangular_mut(&mut side);
+        side
     }
 }
 
@@ -176,8 +163,9 @@ mod tests {
     #[test]
     fn projection_removes_confounded_parts() {
         // Columns x, y and x + y + e over four rows.
-        let columns = [vec![1.0, 0.0, 0.0, 0.0], vec![0.0, 2.0, 0.0, 0.0], vec![1.0, 2.0, 0.0, 0.5]];
-        let information = gram(&columns, &[0, 1, 2, 3]);
+        let columns =
+            DMatrix::from_row_slice(4, 3, &[1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5]);
+        let information = columns.tr_mul(&columns);
         assert!((Projected::new(&information, &[]).squares(2) - 5.25).abs() < 1e-12);
         assert!((Projected::new(&information, &[0, 1]).squares(2) - 0.25).abs() < 1e-6);
         assert!((Projected::new(&information, &[1]).covariance(0, 2) - 1.0).abs() < 1e-6);

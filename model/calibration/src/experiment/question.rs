@@ -1,39 +1,47 @@
-//! Open questions of a calibration, and the probability that given information answers them.
-
-use std::collections::BTreeMap;
+//! Open questions of a calibration: two explanations, the probability of the first one, and the log
+//! odds that runs are expected to add.
+//!
+//! With the squared length `S` of the difference between the predictions of both explanations, in
+//! standard deviations and without the part that the fitted constants absorb, the log odds of the
+//! correct explanation increase by a normal variable with mean `S/2` and variance `S`. The recorded
+//! data are in the reported probabilities; runs add `S(data and runs) - S(data)`.
 
 use nalgebra::DMatrix;
 use pinswitch_friction::published;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::information::{Projected, Trace};
+use super::information::{Contribution, Projected};
+use crate::confirmation::TrialOutcome;
 use crate::effects::{Covariate, Effect, Side};
-use crate::inference::{Levels, Model, Term};
-use crate::report::{Estimate, LimitReport, Report};
+use crate::evidence::STRUCTURE_PROBABILITY;
+use crate::model::{Model, Term};
+use crate::report::{Fate, LimitReport, Report};
+use crate::session_plan::{COVERED, FRICTION_ABOVE, NONE};
 
-/// Word for the absence of an effect.
-pub(crate) const NONE: &str = "none";
-
-/// Prefix of the question for loads above those recorded.
-pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
-
-/// Reduction of the deviance at which an effect is detected: four standard deviations, as for
-/// identifiable effects.
-const SEEN: f64 = 16.0;
-/// Half width of a 95 % interval in standard deviations.
-const EXCLUDED: f64 = 1.96;
-/// Prior probability that an effect that is not excluded is present: most are not.
-const THERE: f64 = 0.2;
-/// Weight of an effect without evidence.
-const UNSUSPECTED: f64 = 0.3;
-/// Weight of a derived form, for which there is evidence.
-const DRAWN: f64 = 3.0;
-/// Share of the loads of a curve that data must cover so that no extrapolation is needed.
-pub(crate) const COVERED: f64 = 0.9;
-/// Relative standard deviation of the change of a friction coefficient between sessions.
-const RENEWED: f64 = 0.05;
+/// Probability from which an effect is reported.
+const REPORTED: f64 = 0.9;
+/// Probability up to which an explanation is not a rival of another one.
+const NO_RIVAL: f64 = 0.05;
+/// Probability of an effect that only new readings can confirm.
+const UNDECIDED: f64 = 0.5;
+/// Probability from which the data suggest an effect: twice the prior one.
+const SUSPECTED: f64 = 0.1;
+/// Smallest probability of an explanation that is not excluded, and largest one of an explanation
+/// that is not established.
+const OPEN: (f64, f64) = (0.01, 0.9);
 /// Largest size of a rival, in units of its start value.
 const LARGEST_SHARE: f64 = 30.0;
+/// Nonnegative nodes for means over a standard normal variable, with their weights.
+const NODES: [(f64, f64); 6] = [
+    (0.0, 0.299_214),
+    (0.75, 0.225_859),
+    (1.5, 0.097_140_5),
+    (2.25, 0.023_805_3),
+    (3.0, 0.003_323_97),
+    (3.75, 0.000_264_453),
+];
+/// Variable of formulas for the load of the previous series.
+const LOAD_BEFORE: &str = "previous_load_n";
 
 /// Two explanations that the data do not separate.
 #[derive(Clone, Debug)]
@@ -42,92 +50,116 @@ pub(super) struct Question {
     pub(super) between: [String; 2],
     /// Size in question in the unit of the effect's first constant; `None` for other questions.
     pub(super) size: Option<f64>,
-    /// Whether the size cannot be negative.
-    is_one_sided: bool,
-    /// Cases: either explanation is true, and the other is fitted.
-    ways: Vec<Way>,
-    /// Deviance by which the wrong explanation must be worse.
-    pub(super) needed: f64,
-    /// Weight of an answer.
-    pub(super) weight: f64,
+    /// Probability of the first explanation.
+    probability: f64,
+    /// Log odds that each explanation lacks for an answer, if it is correct.
+    needed: [f64; 2],
+    /// Cases: either explanation is correct, and the other is fitted.
+    cases: Vec<Case>,
 }
 
-/// A case: one explanation is true at a size, and the other is fitted.
+/// A case: one explanation is correct at a size, and the other is fitted.
 #[derive(Clone, Debug)]
-struct Way {
-    /// Column of the true explanation.
-    truth: usize,
+struct Case {
+    /// Column of the correct explanation.
+    column: usize,
     /// Its size in units of the column.
     size: f64,
     /// Columns that are fitted.
     nuisance: Vec<usize>,
+    /// Squared length `S` in the recorded data.
+    recorded: f64,
 }
 
 impl Question {
-    /// Returns the expected increase of the deviance of the wrong explanation, in the less
+    fn pair(between: [&str; 2], probabilities: [f64; 2], cases: [Case; 2]) -> Self {
+        let share = (probabilities[0] / (probabilities[0] + probabilities[1])).clamp(1.0 - OPEN.1, OPEN.1);
+        let (known, needed) = (log_odds(share), log_odds(1.0 - NO_RIVAL));
+        Self {
+            between: between.map(str::to_owned),
+            size: None,
+            probability: share,
+            needed: [needed - known, needed + known],
+            cases: cases.to_vec(),
+        }
+    }
+
+    /// Returns the question whether an effect acts. It is found at the probability of a reported
+    /// effect. Its absence is shown by readings, not by its small prior odds, so even odds precede
+    /// them.
+    fn presence(id: &str, probability: f64, size: Option<f64>, column: usize, nuisance: Vec<usize>) -> Self {
+        let probability = if probability.is_finite() { probability.clamp(OPEN.0, OPEN.1) } else { UNDECIDED };
+        Self {
+            between: [id.to_owned(), NONE.to_owned()],
+            size,
+            probability,
+            needed: [(log_odds(REPORTED) - log_odds(probability)).max(0.0), log_odds(REPORTED)],
+            cases: vec![Case { column, size: 1.0, nuisance, recorded: 0.0 }],
+        }
+    }
+
+    /// Returns the increase of `S` by this information over the recorded data, in the less
     /// favourable case.
-    pub(super) fn squares(&self, information: &DMatrix<f64>) -> f64 {
-        self.squares_of(&mut Projections::of(information))
+    pub(super) fn squares<'a>(&'a self, projections: &mut Projections<'a>) -> f64 {
+        let of = |case: &'a Case| (case.squares(projections) - case.recorded).max(0.0);
+        let least = self.cases.iter().map(of).fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
     }
 
-    /// The same, with projections shared between questions.
-    pub(super) fn squares_of<'a>(&'a self, projections: &mut Projections<'a>) -> f64 {
-        let of = |way: &'a Way| way.size * way.size * projections.without(&way.nuisance).squares(way.truth);
-        self.ways.iter().map(of).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Returns the probability that data with this information show which explanation is true; runs
-    /// are chosen by it. The difference of deviance of two models scatters about its expectation
-    /// `d^2` with a standard deviation of `2 d`, and an estimate about its size with 1 where that
-    /// size is `d` (`model/doc/next-experiment.md`).
-    pub(super) fn probability(&self, information: &DMatrix<f64>) -> f64 {
-        let squares = self.squares(information);
-        if !(squares > 1e-12 && squares.is_finite()) {
+    /// Returns the probability that data with this information, which contains the recorded data,
+    /// answer the question: that the log odds of the correct explanation reach the required ones.
+    pub(super) fn answer_probability(&self, information: &DMatrix<f64>) -> f64 {
+        let squares = self.squares(&mut Projections::new(information));
+        if squares <= 1e-9 {
             return 0.0;
         }
-        let normal = Normal::standard();
-        if self.between[1] == NONE {
-            normal.cdf(squares.sqrt() - self.needed.sqrt())
-        } else {
-            normal.cdf((squares - self.needed) / (2.0 * squares.sqrt()))
-        }
+        let reached = |needed: f64| Normal::standard().cdf((0.5 * squares - needed) / squares.sqrt());
+        self.probability * reached(self.needed[0]) + (1.0 - self.probability) * reached(self.needed[1])
     }
 
-    /// Returns the probability of an answer, including that the effect is absent: its limits are
-    /// then within the size in question (for a one-sided effect, the upper limit).
-    pub(super) fn answer_probability(&self, information: &DMatrix<f64>) -> f64 {
-        let seen = self.probability(information);
-        let squares = self.squares(information);
-        if self.size.is_none() || !squares.is_finite() {
-            return seen;
-        }
-        let within = Normal::standard().cdf(squares.max(0.0).sqrt() - EXCLUDED);
-        let excluded = if self.is_one_sided { within } else { (2.0 * within - 1.0).max(0.0) };
-        THERE * seen + (1.0 - THERE) * excluded
-    }
-
-    /// Returns the question without fitting these columns.
-    pub(super) fn beside_no(&self, columns: &[usize]) -> Self {
-        let mut question = self.clone();
-        for way in &mut question.ways {
-            way.nuisance.retain(|column| !columns.contains(column));
-        }
-        question
-    }
-
-    /// Returns the loss of an answer without part of the information.
-    pub(super) fn loss(&self, all: &DMatrix<f64>, without: &DMatrix<f64>) -> f64 {
-        let of = |information| libm::log(1.0 + self.squares(information) / self.needed);
-        of(all) - of(without)
+    /// Returns the expected decrease of the entropy of the question, in nats, by an increase of `S`
+    /// (Lindley 1956). It is concave in `S`, and at most the entropy of the reported probability.
+    pub(super) fn expected_information(&self, squares: f64) -> f64 {
+        let (known, root) = (log_odds(self.probability), squares.sqrt());
+        let expected = |known: f64| -> f64 {
+            let loss = |z: f64| softplus(-(known + 0.5 * squares + root * z));
+            NODES
+                .iter()
+                .map(|(z, weight)| weight * if *z > 0.0 { loss(*z) + loss(-z) } else { loss(0.0) })
+                .sum()
+        };
+        let of = |probability: f64, known: f64| probability * (softplus(-known) - expected(known));
+        of(self.probability, known) + of(1.0 - self.probability, -known)
     }
 
     /// Returns the question in words, for a run sheet.
     pub(super) fn words(&self) -> String {
-        match self.between[1].as_str() {
-            NONE => format!("{} or none", self.between[0]),
-            other => format!("{} or {other}", self.between[0]),
+        format!("{} or {}", self.between[0], self.between[1])
+    }
+
+    /// Counts the information of the recorded data.
+    fn after(&mut self, recorded: &DMatrix<f64>) {
+        for case in &mut self.cases {
+            let squares = case.squares(&mut Projections::new(recorded));
+            case.recorded = squares;
         }
     }
+}
+
+impl Case {
+    fn squares<'a>(&'a self, projections: &mut Projections<'a>) -> f64 {
+        self.size * self.size * projections.without(&self.nuisance).squares(self.column)
+    }
+}
+
+/// Returns the logarithm of the odds of a probability.
+fn log_odds(probability: f64) -> f64 {
+    libm::log(probability / (1.0 - probability))
+}
+
+/// Returns `ln(1 + exp(x))`.
+fn softplus(x: f64) -> f64 {
+    x.max(0.0) + libm::log1p(libm::exp(-x.abs()))
 }
 
 /// Projections shared between questions, since most fit the same columns.
@@ -138,7 +170,7 @@ pub(super) struct Projections<'a> {
 }
 
 impl<'a> Projections<'a> {
-    pub(super) fn of(information: &'a DMatrix<f64>) -> Self {
+    pub(super) fn new(information: &'a DMatrix<f64>) -> Self {
         Self { information, made: Vec::new() }
     }
 
@@ -151,319 +183,333 @@ impl<'a> Projections<'a> {
     }
 }
 
-/// Questions of a report, with their columns and effects.
+/// Returns the information in nats that data are expected to give about questions.
+pub(super) fn value(questions: &[Question], information: &DMatrix<f64>) -> f64 {
+    values(questions, information).into_iter().sum()
+}
+
+/// Returns the same question by question.
+pub(super) fn values(questions: &[Question], information: &DMatrix<f64>) -> Vec<f64> {
+    let mut projections = Projections::new(information);
+    questions.iter().map(|q| q.expected_information(q.squares(&mut projections))).collect()
+}
+
+/// Questions of a report, with the contributions and effects that they compare.
 #[derive(Debug, Default)]
 pub(super) struct Agenda {
-    pub(super) questions: Vec<Question>,
-    pub(super) traces: Vec<Trace>,
-    pub(super) effects: Vec<&'static dyn Effect>,
-    /// Columns that only future data determine, since a derived form is not confirmed by the data
-    /// it was derived from.
-    ahead: Vec<usize>,
-    /// Columns of friction constants that may differ in future data.
-    renewed: Vec<usize>,
-    /// Ids of forms of unattributed structure.
-    forms: Vec<String>,
+    pub(super) contributions: Vec<Contribution>,
+    questions: Vec<Question>,
+    effects: Vec<&'static dyn Effect>,
+    /// Constants of the model, whose columns come first.
+    own: usize,
+    /// Columns of effects that only new readings can confirm.
+    unconfirmed: Vec<usize>,
+    /// Ids of the user-defined effects in question.
+    formulas: Vec<String>,
     /// Whether one of the effects depends on the previous load.
     remembers: bool,
 }
 
 impl Agenda {
-    /// Adds the column of an effect that is not in the model, with these constants.
-    fn absent(&mut self, effect: &'static dyn Effect, values: Vec<f64>, model: &Model) -> usize {
-        let known = self.traces.iter().position(|trace| {
-            matches!(trace, Trace::Absent { effect: e, values: v } if e.id() == effect.id() && *v == values)
-        });
-        let at = known.unwrap_or_else(|| {
-            self.traces.push(Trace::Absent { effect, values });
-            self.effects.push(effect);
-            self.traces.len() - 1
-        });
-        model.values().len() + at
-    }
-
     /// Returns all open questions of a report, whose rows have loads up to `highest_n` in newtons.
-    /// `known` returns the information of the recorded data for the columns.
-    pub(super) fn of(
-        report: &Report,
-        model: &Model,
-        highest_n: f64,
-        levels: Levels,
-        known: impl Fn(&[Trace]) -> DMatrix<f64>,
-    ) -> Self {
-        let mut agenda = Self::default();
-        agenda.may_change(model);
-        let own: Vec<usize> = (0..model.values().len()).chain(agenda.renewed.iter().copied()).collect();
-        let first = model.values().len();
-        let mut pairs = Vec::new();
-        for found in &report.effects {
-            let Some(term) =
-                model.terms.iter().position(|t| matches!(t, Term::Named(e) if e.id() == found.id))
-            else {
-                continue;
-            };
-            if found.rivals.is_empty() {
-                continue;
-            }
-            agenda.traces.push(Trace::Found { term });
-            let column = first + agenda.traces.len() - 1;
-            if let Term::Named(effect) = &model.terms[term] {
-                agenda.effects.push(*effect);
-            }
-            for rival in &found.rivals {
-                if let Some(effect) = model.vocabulary.named(&rival.id)
-                    && let Some(values) = start(effect, model)
-                {
-                    let other = agenda.absent(effect, values, model);
-                    pairs.push((found, term, column, other));
-                }
+    pub(super) fn new(report: &Report, model: &Model, highest_n: f64) -> Self {
+        let mut agenda = Self { own: model.values().len(), ..Self::default() };
+        // A change of friction between sessions, with which an effect that only varies between
+        // sessions is confounded.
+        for (constant, (name, _)) in model.names().iter().enumerate() {
+            if name == "mu_p" || name == "mu_s" {
+                agenda.contributions.push(Contribution::NewSession { constant });
             }
         }
-        for limit in report.limits.iter().filter(|limit| !limit.excluded) {
-            let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
-            let Some(values) = of_consequence(effect, limit, model) else { continue };
-            let column = agenda.absent(effect, values, model);
-            agenda.ask_whether(effect.id(), column, 1.0, &own, 1.0);
-            agenda.of_size(effect, limit.typical);
-        }
-        for invisible in &report.invisible {
-            let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
-            // Effects of the rig do not change the curve of a part.
-            let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
-            if effect.description().side == Side::Switch && !asked {
-                let Some(values) = start(effect, model) else { continue };
-                let size = values.first().copied().unwrap_or(1.0);
-                let column = agenda.absent(effect, values, model);
-                agenda.ask_whether(effect.id(), column, 1.0, &own, UNSUSPECTED);
-                agenda.of_size(effect, size);
+        // Unnamed structure of the best hypothesis may be the effect in question.
+        let is_structure = |t: &usize| matches!(model.terms[*t], Term::Structure(_));
+        let structures: Vec<usize> =
+            (0..model.terms.len()).filter(is_structure).map(|t| model.term_offset(t)).collect();
+        let all = 0..agenda.own + agenda.contributions.len();
+        let fitted: Vec<usize> = all.filter(|column| !structures.contains(column)).collect();
+        agenda.add_pairs(report, model, &fitted);
+        agenda.add_unconfirmed(report, model, &fitted);
+        agenda.add_candidates(report, model, &fitted);
+        for own in model.vocabulary.own().map(|own| own.definition()) {
+            if agenda.effects.iter().any(|effect| effect.id() == own.id) {
+                agenda.formulas.push(own.id.clone());
+                agenda.remembers |= own.formula.contains(LOAD_BEFORE);
             }
         }
-        agenda.ask_again(report, model);
-        let remembers = |id: &str| {
-            let mut own = model.vocabulary.own().map(|own| own.definition());
-            own.any(|own| own.id == id && own.formula.contains(LOAD_BEFORE))
-        };
-        agenda.remembers = agenda.effects.iter().any(|effect| remembers(effect.id()));
-        agenda.ask_beyond(highest_n, first, &own);
-        if pairs.is_empty() {
-            return agenda;
-        }
-        let information = agenda.before(known(&agenda.traces));
-        for (found, term, column, other) in pairs {
-            let at = model.term_offset(term);
-            let constants: Vec<usize> = (at..at + model.terms[term].constants()).collect();
-            let base: Vec<usize> = own.iter().copied().filter(|i| !constants.contains(i)).collect();
-            // Size of the rival that is closest to the effect in the model.
-            let left = Projected::new(&information, &base);
-            let share = left.covariance(other, column) / left.covariance(other, other).max(1e-12);
-            let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
-            let sure = match &model.terms[term] {
-                Term::Named(effect) => surely(*effect, &found.parameters),
-                Term::Structure(_) => 1.0,
-            };
-            let ways = vec![
-                Way { truth: column, size: sure, nuisance: with_other },
-                Way {
-                    truth: other,
-                    size: sure * share.clamp(-LARGEST_SHARE, LARGEST_SHARE),
-                    nuisance: own.clone(),
-                },
-            ];
-            let Trace::Absent { effect, .. } = &agenda.traces[other - first] else { continue };
-            agenda.questions.push(Question {
-                between: [found.id.clone(), effect.id().to_owned()],
-                size: None,
-                is_one_sided: false,
-                ways,
-                needed: levels.rival,
-                weight: 1.0,
-            });
+        // Curves and designs extend beyond the recorded loads.
+        let to_n = published::heaviest_load_n();
+        if highest_n <= COVERED * to_n {
+            let column = agenda.add(Contribution::AboveLoads { from_n: highest_n, to_n });
+            let id = format!("{FRICTION_ABOVE}{highest_n:.0}_N");
+            agenda.questions.push(Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted));
         }
         agenda
     }
 
-    /// Adds a possible change of the friction on pins and silicone in the next session, with which
-    /// an effect that only varies between sessions is confounded.
-    fn may_change(&mut self, model: &Model) {
-        let names = model.names();
-        for constant in (0..names.len()).filter(|i| matches!(names[*i].0.as_str(), "mu_p" | "mu_s")) {
-            self.renewed.push(names.len() + self.traces.len());
-            self.traces.push(Trace::Renewed { constant });
+    /// Removes what the recorded data show of effects that were derived from them, and that only new
+    /// readings can confirm.
+    pub(super) fn without_unconfirmed(&self, mut recorded: DMatrix<f64>) -> DMatrix<f64> {
+        for column in &self.unconfirmed {
+            recorded.column_mut(*column).fill(0.0);
+            recorded.row_mut(*column).fill(0.0);
+        }
+        recorded
+    }
+
+    /// Returns the questions, given the information of the recorded data.
+    pub(super) fn questions(&self, recorded: &DMatrix<f64>) -> Vec<Question> {
+        let mut questions = self.questions.clone();
+        for question in &mut questions {
+            if let [first, second] = &mut question.cases[..] {
+                // Size of the second effect that is closest to the first.
+                let is_fitted = |column: &usize| *column != second.column;
+                let base: Vec<usize> = first.nuisance.iter().copied().filter(is_fitted).collect();
+                let left = Projected::new(recorded, &base);
+                let share = left.covariance(second.column, first.column);
+                let share = share / left.covariance(second.column, second.column).max(1e-12);
+                second.size = share.clamp(-LARGEST_SHARE, LARGEST_SHARE);
+            }
+            question.after(recorded);
+        }
+        questions
+    }
+
+    fn add(&mut self, contribution: Contribution) -> usize {
+        self.contributions.push(contribution);
+        self.own + self.contributions.len() - 1
+    }
+
+    /// Adds each pair of a reported effect and a rival.
+    fn add_pairs(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
+        for found in &report.effects {
+            for rival in &found.rivals {
+                let effects = [&found.id, &rival.id].map(|id| model.vocabulary.named(id));
+                let [Some(effect), Some(other)] = effects else { continue };
+                self.add_pair([effect, other], [found.probability, rival.probability], model, fitted);
+            }
         }
     }
 
-    /// Adds the question whether the form of unattributed structure will be seen again.
-    fn ask_again(&mut self, report: &Report, model: &Model) {
-        for form in report.effects.iter().filter_map(|found| found.form.as_ref()) {
-            let Some(effect) = model.vocabulary.named(&form.id) else { continue };
-            let term = model.terms.iter().position(|t| matches!(t, Term::Named(e) if e.id() == effect.id()));
-            let trace = match term {
-                Some(term) => Trace::Found { term },
-                None => {
-                    let Some(values) = start(effect, model) else { continue };
-                    Trace::Absent { effect, values }
-                }
-            };
-            // The form in the model, or the shapes from which it was derived, would absorb it.
-            let stands_for_it = |t: usize| Some(t) == term || matches!(model.terms[t], Term::Structure(_));
-            let for_it: Vec<usize> = (0..model.terms.len())
-                .filter(|t| stands_for_it(*t))
-                .flat_map(|t| (0..model.terms[t].constants()).map(move |i| model.term_offset(t) + i))
-                .collect();
-            let own = (0..model.values().len()).filter(|i| !for_it.contains(i));
-            let base: Vec<usize> = own.chain(self.renewed.iter().copied()).collect();
-            let column = model.values().len() + self.traces.len();
-            self.traces.push(trace);
-            self.effects.push(effect);
-            self.ahead.push(column);
-            self.ask_whether(effect.id(), column, surely(effect, &form.parameters), &base, DRAWN);
-            self.forms.push(effect.id().to_owned());
-        }
-    }
-
-    /// Adds the question whether friction above the recorded loads is as predicted, since curves
-    /// and designs extend beyond them.
-    fn ask_beyond(&mut self, highest_n: f64, first: usize, own: &[usize]) {
-        let to_n = published::heaviest_load_n();
-        if highest_n > COVERED * to_n {
-            return;
-        }
-        let column = first + self.traces.len();
-        self.traces.push(Trace::Beyond { from_n: highest_n, to_n });
-        self.ask_whether(&format!("{FRICTION_ABOVE}{highest_n:.0}_N"), column, 1.0, own, 1.0);
-    }
-
-    /// Returns the information before any future data.
-    pub(super) fn before(&self, mut information: DMatrix<f64>) -> DMatrix<f64> {
-        for column in self.ahead.iter().chain(&self.renewed) {
-            information.row_mut(*column).fill(0.0);
-            information.column_mut(*column).fill(0.0);
-        }
-        for column in &self.renewed {
-            information[(*column, *column)] = RENEWED.powi(-2);
-        }
-        information
-    }
-
-    /// Sets the size of the effect of the last question.
-    fn of_size(&mut self, effect: &dyn Effect, size: f64) {
-        if let Some(question) = self.questions.last_mut() {
-            question.size = Some(size.abs());
-            question.is_one_sided = effect.description().one_sided;
-        }
-    }
-
-    fn ask_whether(&mut self, id: &str, column: usize, size: f64, own: &[usize], weight: f64) {
-        self.questions.push(Question {
-            between: [id.to_owned(), NONE.to_owned()],
-            size: None,
-            is_one_sided: false,
-            ways: vec![Way { truth: column, size, nuisance: own.to_vec() }],
-            needed: SEEN,
-            weight,
+    /// Adds user-defined effects whose trial is open, and formulas of unattributed structure, which
+    /// only new readings confirm.
+    fn add_unconfirmed(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
+        let forms = report.effects.iter().filter_map(|found| found.form.as_ref());
+        let forms = forms.map(|form| (form.id.as_str(), UNDECIDED));
+        let trials = report.trials.iter().filter_map(|trial| match trial.outcome {
+            TrialOutcome::Drawn | TrialOutcome::Suggested => Some((trial.id.as_str(), UNDECIDED)),
+            TrialOutcome::Open => Some((trial.id.as_str(), trial.probability.unwrap_or(UNDECIDED))),
+            TrialOutcome::Confirmed | TrialOutcome::Refuted => None,
         });
+        for (id, probability) in forms.chain(trials) {
+            let Some(effect) = model.vocabulary.named(id) else { continue };
+            self.add_presence(effect, None, probability, model, fitted);
+            if let Some(question) = self.questions.last_mut().filter(|q| q.between[0] == id) {
+                question.size = None;
+                self.unconfirmed.extend(question.cases.iter().map(|case| case.column));
+            }
+        }
+    }
+
+    /// Adds effects that are neither reported nor excluded, and pairs of them that the data suggest
+    /// and that are similar.
+    fn add_candidates(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
+        let is_reported = |id: &str| report.effects.iter().any(|found| found.id == id);
+        let open = report.candidates.iter().filter(|c| c.fate != Fate::Excluded && !is_reported(&c.id));
+        let mut suspects: Vec<(&'static dyn Effect, f64)> = Vec::new();
+        for candidate in open {
+            let Some(effect) = model.vocabulary.named(&candidate.id) else { continue };
+            if self.asks_about(effect.id()) {
+                continue;
+            }
+            let limit = report.limits.iter().find(|limit| limit.id == candidate.id);
+            let hidden = report.invisible.iter().find(|hidden| hidden.id == candidate.id);
+            let is_suspected = candidate.probability >= SUSPECTED;
+            // Effects of the rig that readings cannot contain do not change the curve of a part.
+            let is_relevant = is_suspected
+                || limit.is_some()
+                || effect.description().side == Side::Switch
+                || hidden.is_some_and(|hidden| hidden.possible.is_some());
+            if is_relevant {
+                self.add_presence(effect, limit, candidate.probability, model, fitted);
+            }
+            if is_suspected {
+                suspects.push((effect, candidate.probability));
+            }
+        }
+        for (i, (effect, probability)) in suspects.iter().enumerate() {
+            for (other, of_other) in &suspects[i + 1..] {
+                let are_similar =
+                    |a: &dyn Effect, b: &dyn Effect| a.description().confused_with.contains(&b.id());
+                if are_similar(*effect, *other) || are_similar(*other, *effect) {
+                    self.add_pair([*effect, *other], [*probability, *of_other], model, fitted);
+                }
+            }
+        }
+    }
+
+    /// Adds the question whether the first or the second effect acts.
+    fn add_pair(
+        &mut self,
+        effects: [&'static dyn Effect; 2],
+        probabilities: [f64; 2],
+        model: &Model,
+        fitted: &[usize],
+    ) {
+        let columns = effects.map(|effect| self.column_of(effect, None, model));
+        let [Some(first), Some(second)] = columns else { return };
+        let others = effects.map(|effect| without_term_of(effect, model, fitted));
+        let case = |column: usize, nuisance: &[usize], other: usize| Case {
+            column,
+            size: 1.0,
+            nuisance: nuisance.iter().copied().chain([other]).collect(),
+            recorded: 0.0,
+        };
+        let cases = [case(first, &others[0], second), case(second, &others[1], first)];
+        self.questions.push(Question::pair(effects.map(Effect::id), probabilities, cases));
+    }
+
+    /// Adds the question whether an effect acts, at the size of a limit, in the model, or typical.
+    fn add_presence(
+        &mut self,
+        effect: &'static dyn Effect,
+        limit: Option<&LimitReport>,
+        probability: f64,
+        model: &Model,
+        fitted: &[usize],
+    ) {
+        let column = self.column_of(effect, limit, model).filter(|_| !self.asks_about(effect.id()));
+        let Some(column) = column else { return };
+        let size = match &self.contributions[column - self.own] {
+            Contribution::Added { values, .. } => values.first().copied(),
+            _ => term_of(model, effect).map(|term| model.value(model.term_offset(term)).0),
+        };
+        let nuisance = without_term_of(effect, model, fitted);
+        let size = Some(size.unwrap_or(1.0).abs());
+        self.questions.push(Question::presence(effect.id(), probability, size, column, nuisance));
+    }
+
+    /// Returns the column of the contribution of an effect, and adds it if it is new.
+    fn column_of(
+        &mut self,
+        effect: &'static dyn Effect,
+        limit: Option<&LimitReport>,
+        model: &Model,
+    ) -> Option<usize> {
+        let contribution = match term_of(model, effect) {
+            Some(term) => Contribution::Term { term },
+            None => Contribution::Added { effect, values: typical(effect, limit, model)? },
+        };
+        self.effects.push(effect);
+        Some(self.add(contribution))
+    }
+
+    fn asks_about(&self, id: &str) -> bool {
+        self.questions.iter().any(|question| question.between.iter().any(|other| other == id))
     }
 
     /// Returns whether an effect in question is one of this covariate.
-    pub(super) fn lies_along(&self, id: &str, covariate: Covariate) -> bool {
+    pub(super) fn is_along(&self, id: &str, covariate: Covariate) -> bool {
         self.effects.iter().any(|e| e.id() == id && e.description().covariate == covariate)
     }
 
-    /// Returns the constants of the model that describe unattributed structure.
-    pub(super) fn shapes_of(&self, model: &Model) -> Vec<usize> {
-        let is_nameless = |term: &Term| match term {
-            Term::Structure(_) => true,
-            Term::Named(effect) => self.forms.iter().any(|id| id == effect.id()),
-        };
-        (0..model.terms.len())
-            .filter(|t| is_nameless(&model.terms[*t]))
-            .flat_map(|t| (0..model.terms[t].constants()).map(move |i| model.term_offset(t) + i))
-            .collect()
-    }
-
     /// Returns whether an effect in question depends on the previous load.
-    pub(super) fn asks_of_the_load_before(&self) -> bool {
+    pub(super) fn asks_of_previous_loads(&self) -> bool {
         self.remembers
     }
 
-    /// Returns whether an effect in question is one of this covariate.
+    /// Returns whether a user-defined effect in question, whose form may be any, is one of this
+    /// covariate.
+    pub(super) fn asks_of_formulas_along(&self, covariate: Covariate) -> bool {
+        self.formulas.iter().any(|id| self.is_along(id, covariate))
+    }
+
+    /// Returns whether any effect in question is one of this covariate.
     pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
         self.effects.iter().any(|effect| effect.description().covariate == covariate)
     }
 }
 
-/// Variable of formulas for the load of the previous series.
-const LOAD_BEFORE: &str = "previous_load_n";
-
-/// Returns the start values of an effect.
-fn start(effect: &dyn Effect, model: &Model) -> Option<Vec<f64>> {
-    effect.starts(&model.frame).into_iter().next()
+/// Returns the index of the term of an effect.
+fn term_of(model: &Model, effect: &dyn Effect) -> Option<usize> {
+    model.terms.iter().position(|term| matches!(term, Term::Named(_)) && term.id() == effect.id())
 }
 
-/// Returns the constants of an effect that a report does not exclude: the typical size, with the
-/// shape for which it was reported. Reports of earlier versions contain no shape; the start values
-/// are used instead.
-fn of_consequence(effect: &dyn Effect, limit: &LimitReport, model: &Model) -> Option<Vec<f64>> {
-    let mut values = start(effect, model)?;
-    for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
-        if let Some(told) = limit.shape.get(parameter.name) {
-            *value = *told;
+/// Returns the columns without those of the constants of an effect.
+fn without_term_of(effect: &dyn Effect, model: &Model, columns: &[usize]) -> Vec<usize> {
+    let own = term_of(model, effect).map_or(0..0, |t| model.term_offset(t)..model.term_offset(t + 1));
+    columns.iter().copied().filter(|column| !own.contains(column)).collect()
+}
+
+/// Returns the start values of an effect; with a limit, its typical size and the shape for which it
+/// was reported.
+fn typical(effect: &dyn Effect, limit: Option<&LimitReport>, model: &Model) -> Option<Vec<f64>> {
+    let mut values = effect.starts(&model.frame).into_iter().next()?;
+    if let Some(limit) = limit {
+        for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
+            *value = limit.shape.get(parameter.name).copied().unwrap_or(*value);
         }
-    }
-    if let Some(size) = values.first_mut() {
-        *size = limit.typical;
+        values.iter_mut().take(1).for_each(|size| *size = limit.typical);
     }
     Some(values)
-}
-
-/// Returns the share of an effect's estimated size that it exceeds with a probability of 5/6, so
-/// that a plan does not rely on an overestimated size.
-fn surely(effect: &dyn Effect, parameters: &BTreeMap<String, Estimate>) -> f64 {
-    let size = effect.parameters().first().and_then(|size| parameters.get(size.name));
-    size.filter(|p| p.value.abs() > 0.0).map_or(1.0, |p| {
-        let sd = (p.ci95[1] - p.ci95[0]).abs() / (2.0 * 1.96);
-        (1.0 - sd / p.value.abs()).clamp(0.5, 1.0)
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::effect_named;
 
-    /// Excluding an absent effect needs less information than detecting a present one.
-    #[test]
-    fn exclusion_counts_as_an_answer() {
-        let asked = |size, is_one_sided| Question {
-            between: ["adhesion".to_owned(), NONE.to_owned()],
-            size,
-            is_one_sided,
-            ways: vec![Way { truth: 0, size: 1.0, nuisance: Vec::new() }],
-            needed: SEEN,
-            weight: 1.0,
-        };
-        let of =
-            |question: Question, d: f64| question.answer_probability(&DMatrix::from_element(1, 1, d * d));
-        let told = |size, d| of(asked(size, false), d);
-        assert!((told(None, 4.0) - 0.5).abs() < 1e-6);
-        assert!((told(Some(0.2), 4.0) - (0.1 + 0.8 * 0.9586)).abs() < 1e-3, "{}", told(Some(0.2), 4.0));
-        assert!(told(Some(0.2), 1.9) < 0.02 && told(Some(0.2), 8.0) > 0.999);
-        // By noise alone, the upper limit of a one-sided effect is below the size once in six
-        // cases.
-        let above = of(asked(Some(0.2), true), 1.0);
-        assert!((above - 0.8 * 0.1685).abs() < 1e-3, "{above}");
+    fn asked(probability: f64) -> Question {
+        Question::presence("adhesion", probability, Some(0.2), 0, Vec::new())
     }
 
+    fn after(question: &Question, squares: f64) -> f64 {
+        question.answer_probability(&DMatrix::from_element(1, 1, squares))
+    }
+
+    /// At even odds, half of the answers are given where the expected log odds are those of a
+    /// reported probability.
     #[test]
-    fn only_the_size_must_be_certain() {
-        let of = |value: f64, half: f64| Estimate {
-            value,
-            ci95: [value - half, value + half],
-            unit: "1".to_owned(),
-        };
-        let saturation = effect_named("substrate_saturation").unwrap();
-        let told = |k, h| surely(saturation, &BTreeMap::from([("k".to_owned(), k), ("h".to_owned(), h)]));
-        assert!(told(of(0.15, 0.015), of(0.5, 5.0)) > 0.94);
-        assert!(told(of(0.15, 0.3), of(0.5, 0.01)) <= 0.5);
+    fn expected_log_odds_answer_half_the_time() {
+        let squares = 2.0 * libm::log(9.0);
+        assert!((after(&asked(0.5), squares) - 0.5).abs() < 1e-9);
+        assert_eq!(after(&asked(0.5), 0.0), 0.0);
+        assert!(after(&asked(0.5), 40.0) > 0.99);
+    }
+
+    /// Finding an improbable effect takes more readings than showing its absence.
+    #[test]
+    fn improbable_effects_need_more_information() {
+        let question = asked(0.02);
+        assert!(question.needed[0] > 2.5 * question.needed[1], "{:?}", question.needed);
+        let absent = Normal::standard().cdf((4.0 - libm::log(9.0)) / libm::sqrt(8.0));
+        assert!((after(&question, 8.0) - 0.98 * absent).abs() < 0.01);
+    }
+
+    /// The expected information starts at zero, increases with decreasing slope, and approaches the
+    /// entropy.
+    #[test]
+    fn expected_information_is_concave_up_to_the_entropy() {
+        for probability in [0.02, 0.2, 0.5, 0.9] {
+            let question = asked(probability);
+            let of = |squares: f64| question.expected_information(squares);
+            let entropy =
+                -probability * libm::log(probability) - (1.0 - probability) * libm::log(1.0 - probability);
+            assert!(
+                of(0.0).abs() < 1e-6 && (of(100.0) / entropy - 1.0).abs() < 1e-3,
+                "{} {entropy}",
+                of(100.0)
+            );
+            let steps: Vec<f64> = (0..30).map(|i| of(f64::from(i) + 1.0) - of(f64::from(i))).collect();
+            assert!(steps.iter().all(|step| *step > -1e-3 * entropy), "{steps:?}");
+            assert!(steps.windows(2).all(|w| w[1] < w[0] + 2e-3 * entropy), "{steps:?}");
+        }
+    }
+
+    /// Readings count in addition to the recorded ones, which are in the probability already.
+    #[test]
+    fn recorded_data_count_once() {
+        let mut question = asked(0.5);
+        question.after(&DMatrix::from_element(1, 1, 6.0));
+        assert_eq!(after(&question, 6.0), 0.0);
+        assert!((after(&question, 16.0) - after(&asked(0.5), 10.0)).abs() < 1e-12);
     }
 }

@@ -73,6 +73,10 @@ pub(super) const MAX_SPEED_PCT: f64 = 100.0;
 /// Most weights, and most layouts, of a rig: the search grows with both.
 const MOST: usize = 40;
 
+/// Number of steps of the fine grid of speeds, and the fine grid of dwells in seconds.
+const FINE_STEPS: usize = 6;
+const FINE_DWELLS_S: [f64; 6] = [0.3, 1.0, 2.0, published::DWELL_S, 5.0, 10.0];
+
 /// An invalid field with its value and the problem.
 type Invalid = (&'static str, String, &'static str);
 
@@ -179,16 +183,22 @@ impl RigLimits {
         self.wrap_angle_deg.filter(|degrees| *degrees != published::WRAP_ANGLE_DEG)
     }
 
-    /// Returns the speeds to choose from: both ends, and the middle.
-    pub(super) fn speeds(&self) -> Vec<f64> {
-        distinct([self.speeds_pct[0], self.speeds_pct[0].midpoint(self.speeds_pct[1]), self.speeds_pct[1]])
+    /// Returns the speeds to choose from: both ends and the middle, or a finer grid for effects of an
+    /// unknown form.
+    pub(super) fn speeds(&self, is_fine: bool) -> Vec<f64> {
+        let [low, high] = self.speeds_pct;
+        let steps = if is_fine { FINE_STEPS } else { 2 };
+        let speed = |i: usize| low + (high - low) * i as f64 / steps as f64;
+        distinct((0..=steps).map(|i| (10.0 * speed(i)).round() / 10.0).map(|s| s.clamp(low, high)))
     }
 
-    /// Returns the dwells to choose from: the paper's, a shorter and a longer one, clamped to the
-    /// rig's range. A dwell above ten seconds costs more time than its information is worth.
-    pub(super) fn dwells(&self) -> Vec<f64> {
+    /// Returns the dwells to choose from: the paper's, a shorter and a longer one, or a finer grid,
+    /// clamped to the rig's range. A dwell above ten seconds costs more time than its information is
+    /// worth.
+    pub(super) fn dwells(&self, is_fine: bool) -> Vec<f64> {
         let [low, high] = self.dwells_s;
-        distinct([1.0, published::DWELL_S, 10.0].map(|s: f64| s.clamp(low, high)))
+        let all: &[f64] = if is_fine { &FINE_DWELLS_S } else { &[1.0, published::DWELL_S, 10.0] };
+        distinct(all.iter().map(|s| s.clamp(low, high)))
     }
 }
 
@@ -203,8 +213,8 @@ fn repeated<T: PartialEq>(all: &[T]) -> Option<&T> {
     all.iter().enumerate().find(|(i, entry)| all[..*i].contains(entry)).map(|(_, entry)| entry)
 }
 
-fn distinct(values: [f64; 3]) -> Vec<f64> {
-    let mut all = values.to_vec();
+fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = values.collect();
     all.dedup();
     all
 }
@@ -253,10 +263,10 @@ mod tests {
     fn the_papers_rig_has_seven_contacts() {
         let rig = RigLimits::default();
         assert_eq!(
-            (rig.contacts().len(), rig.speeds(), rig.dwells()),
+            (rig.contacts().len(), rig.speeds(false), rig.dwells(false)),
             (7, vec![40.0, 55.0, 70.0], vec![1.0, 3.0, 10.0])
         );
         let fixed = RigLimits { speeds_pct: [50.0, 50.0], dwells_s: [3.0, 3.0], ..rig };
-        assert_eq!((fixed.speeds(), fixed.dwells()), (vec![50.0], vec![3.0]));
+        assert_eq!((fixed.speeds(true), fixed.dwells(true)), (vec![50.0], vec![3.0]));
     }
 }

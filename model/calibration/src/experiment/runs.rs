@@ -37,6 +37,23 @@ pub struct PlannedRun {
 }
 
 impl PlannedRun {
+    /// Returns a run with one repetition at the middle speed and the paper's dwell.
+    pub(super) fn usual(substrate: Substrate, pins: &[usize], load_mass_g: f64, rig: &RigLimits) -> Self {
+        Self {
+            substrate,
+            pins: pins.to_vec(),
+            sweep: Sweep::Up,
+            load_mass_g,
+            speed_pct: rig.speeds_pct[0].midpoint(rig.speeds_pct[1]),
+            dwell_s: published::DWELL_S.clamp(rig.dwells_s[0], rig.dwells_s[1]),
+            repetitions: [0, 1],
+            mount: 1,
+            minutes: 0.0,
+            asks: String::new(),
+            wrap_angle_deg: rig.other_wrap_deg(),
+        }
+    }
+
     /// Returns the duration of the repetitions in minutes.
     pub(super) fn recording_minutes(&self, rig: &RigLimits) -> f64 {
         f64::from(self.repetitions[0] + self.repetitions[1]) * (rig.seconds_per_repetition + self.dwell_s)
@@ -124,14 +141,17 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
     let (mut runs, mut series) = (Vec::new(), HashMap::new());
     for record in reader.records() {
         let record = record.map_err(|e| malformed(e.to_string()))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let line = usize::try_from(line).unwrap_or(usize::MAX);
+        let byte = record.position().map_or(0, csv::Position::byte);
+        let byte = usize::try_from(byte).unwrap_or(usize::MAX);
+        let line = Location::in_csv(file, text, byte, None).line.unwrap_or(1);
         let cell = |column: usize| record.get(at[column]).unwrap_or_default();
-        let refuse_cell = |column: &str, value: &str, problem: &str| {
-            let location = Location::line(file, line).with_field(column, value);
+        let refuse_cell = |column: &str, index: Option<usize>, value: &str, problem: &str| {
+            let location = Location::in_csv(file, text, byte, index).with_field(column, value);
             Diagnostic::new(problem).with_location(location).with_help(HELP)
         };
-        let refuse = |column: usize, problem: &str| refuse_cell(COLUMNS[column], cell(column), problem);
+        let refuse = |column: usize, problem: &str| {
+            refuse_cell(COLUMNS[column], Some(at[column]), cell(column), problem)
+        };
         let number = |column: usize, low: f64, high: f64, problem: &str| {
             let value: Option<f64> = cell(column).parse().ok();
             value.filter(|x| (low..=high).contains(x)).ok_or_else(|| refuse(column, problem))
@@ -142,11 +162,11 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
         };
         let wrap_angle_deg = match wrap.and_then(|at| record.get(at)).unwrap_or_default() {
             "" => None,
-            text => {
-                let degrees: Option<f64> = text.parse().ok();
+            degrees_text => {
+                let degrees: Option<f64> = degrees_text.parse().ok();
                 let wraps = MIN_WRAP_DEG..=MAX_WRAP_DEG;
                 let degrees = degrees.filter(|x| wraps.contains(x));
-                Some(degrees.ok_or_else(|| refuse_cell(WRAP, text, WRAPS))?)
+                Some(degrees.ok_or_else(|| refuse_cell(WRAP, wrap, degrees_text, WRAPS))?)
             }
         };
         let pins: Option<Vec<usize>> =
@@ -352,28 +372,31 @@ mod tests {
         assert_eq!(of(&[run(251.2)], &rig), published::WRAP_ANGLE_DEG);
         assert_eq!(of(&[run(251.2)], &rig.wrapped_by(70.0)), 70.0);
         let error = read_runs(&text.replace(",120", ",0"), "r.csv").unwrap_err().to_string();
-        assert!(error.starts_with("r.csv:2: wrap_angle_deg = 0: outside 1 to 720 degrees"), "{error}");
+        assert!(error.starts_with("r.csv:2:84: wrap_angle_deg = 0: outside 1 to 720 degrees"), "{error}");
     }
 
     #[test]
     fn invalid_cells_are_located() {
         let good = write_runs(&[run(251.2)]);
         for (from, to, words) in [
-            ("silicone", "glass", "r.csv:2: substrate = glass: expected silicone or abs"),
-            ("5;8;11", "5;16", "r.csv:2: pins = 5;16: expected ascending grooves 1..15"),
-            ("251.2", "nan", "r.csv:2: load_mass_g = nan: outside 0 to 1000000 g"),
-            (",4,5,", ",0,0,", "r.csv:2: repetitions_eccentric = 0: zero repetitions"),
-            (",4,5,", ",4,5000,", "r.csv:2: repetitions_concentric = 5000: outside 0 to 1000"),
+            ("silicone", "glass", "r.csv:2:3: substrate = glass: expected silicone or abs"),
+            ("5;8;11", "5;16", "r.csv:2:12: pins = 5;16: expected ascending grooves 1..15"),
+            ("251.2", "nan", "r.csv:2:24: load_mass_g = nan: outside 0 to 1000000 g"),
+            (",4,5,", ",0,0,", "r.csv:2:35: repetitions_eccentric = 0: zero repetitions"),
+            (",4,5,", ",4,5000,", "r.csv:2:37: repetitions_concentric = 5000: outside 0 to 1000"),
             ("dwell_s", "dwell", "r.csv: column 'dwell_s' is missing"),
-            ("down", "sideways", "r.csv:2: sweep = sideways: expected up or down"),
-            (",40,", ",400,", "r.csv:2: speed_pct = 400: outside 0.1 to 100 % of full speed"),
+            ("down", "sideways", "r.csv:2:19: sweep = sideways: expected up or down"),
+            (",40,", ",400,", "r.csv:2:30: speed_pct = 400: outside 0.1 to 100 % of full speed"),
         ] {
             let error = read_runs(&good.replacen(from, to, 1), "r.csv").unwrap_err().to_string();
             assert!(error.starts_with(words), "{error}");
         }
         let twice = write_runs(&[run(251.2), run(503.6)]).replace("\n2,", "\n1,");
         let error = read_runs(&twice, "r.csv").unwrap_err().to_string();
-        assert_eq!(error, "r.csv:3: series = 1: the series is also in line 2; give each run its own number");
+        assert_eq!(
+            error,
+            "r.csv:3:1: series = 1: the series is also in line 2; give each run its own number"
+        );
         assert!(read_runs(&good[..good.find('\n').unwrap() + 1], "r.csv").is_err());
     }
 }

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
-use crate::forms::FormReport;
-use crate::inference::Noise;
-use crate::trial::TrialReport;
+use crate::confirmation::TrialReport;
+use crate::discovery::FormReport;
+use crate::model::Noise;
 
 mod sessions;
 mod verdict;
 
-pub use sessions::{ChangeReport, SessionReport, SizeInSession, UnequalReport};
+pub use sessions::{ChangeReport, SessionReport};
 pub use verdict::Verdict;
 
 /// A constant with its confidence interval.
@@ -35,14 +35,14 @@ pub struct DataSummary {
     pub series: usize,
     /// Number of conditions.
     pub conditions: usize,
-    /// Number of rows with reduced weight (outliers).
+    /// Number of rows with a gross error, or in a series that has one.
     pub outliers: usize,
 }
 
 /// A fitted model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelReport {
-    /// In-sample RMSE in newtons, without outliers.
+    /// In-sample RMSE in newtons, without gross errors; predictions do not contain mount effects.
     #[serde(rename = "rmse_N")]
     pub rmse_n: f64,
     /// Held-out RMSE in newtons, over series and loads.
@@ -65,8 +65,10 @@ pub struct ModelReport {
 /// An effect that explains the data equally well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RivalReport {
-    /// Id.
+    /// Id; the name of the structure, if it is not an effect.
     pub id: String,
+    /// Posterior probability.
+    pub probability: f64,
     /// Why the data cannot separate the two.
     pub why: String,
     /// Experiment that separates them.
@@ -85,10 +87,10 @@ pub struct EffectReport {
     pub side: Option<String>,
     /// Formula with its source, or the shape of a structure in words.
     pub formula: String,
-    /// Probability of such a gain by chance, over all candidates: Student's t with the number of
-    /// series, Sidak's correction. `model/doc/calibration.md` compares it with simulated rigs
-    /// without effect.
-    pub p_value: f64,
+    /// Posterior probability that it acts.
+    pub probability: f64,
+    /// Posterior odds of the best hypothesis against the same without it; at most 1e12.
+    pub odds: f64,
     /// Constants.
     pub parameters: BTreeMap<String, Estimate>,
     /// Held-out error of the model without it, in newtons.
@@ -110,17 +112,14 @@ pub struct EffectReport {
 pub enum Fate {
     /// In the model.
     Kept,
-    /// Explains the data as well as an effect of the model.
+    /// May take the place of an effect of the model.
     Rival,
+    /// Its limits exclude every relevant size.
+    Excluded,
+    /// Neither reported nor excluded.
+    Open,
     /// Not identifiable with this table.
     Invisible,
-    /// Gain explained by chance.
-    Chance,
-    /// Gain explained by the effects of the model.
-    Superfluous,
-    /// Gain not explained by chance, but no effect is in the model: scatter explains the table
-    /// equally well, or the held-out error did not decrease.
-    Unsettled,
 }
 
 /// An effect of the vocabulary as a candidate.
@@ -128,15 +127,30 @@ pub enum Fate {
 pub struct CandidateReport {
     /// Id.
     pub id: String,
-    /// Gain over the baseline if added alone, to first order: reduction of the deviance.
-    pub gain: f64,
-    /// Probability of such a gain by chance over the vocabulary.
-    pub p_value: f64,
-    /// Gain on top of the final model; absent for effects of the model.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gain_left: Option<f64>,
+    /// Posterior probability that it acts.
+    pub probability: f64,
     /// Outcome.
     pub fate: Fate,
+}
+
+/// Structure without a name that may act.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StructureReport {
+    /// Quantity and covariate, such as `friction over position`.
+    pub name: String,
+    /// Covariate.
+    pub covariate: String,
+    /// Posterior probability that it acts.
+    pub probability: f64,
+}
+
+/// An expected error with its interval, in newtons.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExpectedErrorReport {
+    /// Expected root mean square error.
+    pub value: f64,
+    /// 90 % interval of the error of one new session.
+    pub ci90: [f64; 2],
 }
 
 /// An effect that is not identifiable with this table.
@@ -165,6 +179,9 @@ pub struct BadSeries {
     pub offset_n: f64,
     /// Residual in standard deviations.
     pub standard_deviations: f64,
+    /// Probability of a gross error of the whole series; absent if single readings are wrong.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
     /// Repetition of the worst reading; absent if the whole series is wrong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repetition: Option<u32>,
@@ -190,16 +207,12 @@ impl BadSeries {
 /// A component of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoisePart {
-    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or
-    /// `specimen`.
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount` or `specimen`.
     pub part: String,
     /// Description.
     pub what: String,
     /// Standard deviation, in newtons at a load of 20 N or relative to friction.
     pub size: f64,
-    /// 95 % interval; absent if not estimated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ci95: Option<[f64; 2]>,
     /// `N`, or `1` for a share of the friction.
     pub unit: String,
 }
@@ -242,43 +255,45 @@ pub struct Report {
     pub data: DataSummary,
     /// The verdict.
     pub verdict: Verdict,
-    /// Whether the error on held-out series is within the noise and its scatter. If not, structure
-    /// is left.
+    /// Whether repeated readings are as close to the model as to each other: an F test of the lack of
+    /// fit at 1 %. True if no readings are repeated.
     pub adequate: bool,
-    /// Expected error of a new session of the same rig, in newtons: the whole procedure is repeated
-    /// without each quarter of the series and evaluated on it. Absent if too few series are left.
+    /// Expected error of a new session of the same rig in newtons: `expected_error_N` without its
+    /// interval.
     #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
     pub promise_n: Option<f64>,
     /// The same for the refitted model of the paper.
     #[serde(rename = "promise_baseline_N", default, skip_serializing_if = "Option::is_none")]
     pub promise_baseline_n: Option<f64>,
+    /// Expected error of a new session with its interval; absent if there are too few series.
+    #[serde(rename = "expected_error_N", default, skip_serializing_if = "Option::is_none")]
+    pub expected_error_n: Option<ExpectedErrorReport>,
+    /// Held-out error in newtons of robust least squares of the paper's model with drag, offset and
+    /// gain, on the same parts as `heldout_series_rmse_N`.
+    #[serde(rename = "least_squares_N", default, skip_serializing_if = "Option::is_none")]
+    pub least_squares_n: Option<f64>,
     /// Standard deviation of a reading around the best model, in newtons.
     #[serde(rename = "noise_floor_N")]
     pub noise_floor_n: f64,
     /// Noise, as in the model file.
     pub noise: Noise,
-    /// Components of the noise, with intervals.
+    /// Components of the noise.
     pub noise_parts: Vec<NoisePart>,
     /// Constants of the switch that differ between sessions or specimens.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<ChangeReport>,
-    /// Effects whose sizes differ between sessions.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub unequal: Vec<UnequalReport>,
     /// The refitted model of the paper.
     pub baseline: ModelReport,
-    /// The model with all effects.
+    /// The best hypothesis.
     pub augmented: ModelReport,
     /// Effects of the model.
     pub effects: Vec<EffectReport>,
-    /// All effects of the vocabulary as candidates, the strongest first.
+    /// All effects of the vocabulary, the most probable first.
     pub candidates: Vec<CandidateReport>,
-    /// Probability of the largest gain without any effect, from sign flips of whole series.
-    pub family_probability: f64,
+    /// Structure without a name with a probability of at least 1 %.
+    pub structures: Vec<StructureReport>,
     /// Sizes that the data do not exclude, of identifiable effects that are not in the model.
     pub limits: Vec<LimitReport>,
-    /// Classes of effects that this design cannot separate.
-    pub classes: Vec<Vec<String>>,
     /// Confounded covariates.
     pub aliasing: Vec<Aliasing>,
     /// Columns of the table that no calibration reads.
@@ -303,23 +318,11 @@ pub struct Report {
 impl Report {
     /// Returns why an inconclusive verdict remains although every limit is below the typical size.
     pub fn reservations(&self) -> Vec<String> {
-        let unsettled = self.candidates.iter().filter(|c| c.fate == Fate::Unsettled).take(3);
-        let ids: Vec<&str> = unsettled.map(|c| c.id.as_str()).collect();
+        let hidden: Vec<&str> =
+            self.invisible.iter().filter(|i| i.possible.is_some()).map(|i| i.id.as_str()).take(3).collect();
         let mut reasons = Vec::new();
-        if !ids.is_empty() {
-            reasons.push(format!(
-                "the gain of {} is not explained by chance, but changes nothing by 5 %",
-                ids.join(" or ")
-            ));
-        }
-        if self.noise.mounts_hide() {
-            let percent = 100.0 * self.noise.mount_scale;
-            reasons.push(format!(
-                "the mount effect of {percent:.1} % could hide a step of friction between two mounts, or an effect of a layout"
-            ));
-        }
-        if !self.adequate {
-            reasons.push("the held-out error remains above the noise".to_owned());
+        if !hidden.is_empty() {
+            reasons.push(format!("the data are too few to exclude {}", hidden.join(" or ")));
         }
         reasons
     }

@@ -1,97 +1,34 @@
 //! Comparison of several sessions: changes between them, differing sizes, and the state after each.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
-use super::{EffectReport, Estimate, Report, Verdict};
+use super::{EffectReport, Report, Verdict};
 use crate::session_plan::SessionPlan;
 
-/// A constant of the switch that differs in some sessions or specimens from the latest one, which
-/// the model predicts.
+/// A constant of the switch that differs between sessions or specimens.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChangeReport {
-    /// `mu_p`, `mu_s`, or `F_half` for the thresholds of all layouts.
+    /// `mu_p`, `mu_s`, or `mu` for all friction coefficients.
     pub constant: String,
     /// `session` or `specimen`.
     pub by: String,
-    /// Names of the groups with the other value.
-    pub groups: Vec<String>,
-    /// Names of the remaining groups, including the latest.
-    pub others: Vec<String>,
-    /// Ratio of their constant to that of the remaining groups.
-    pub factor: Estimate,
-    /// The constant of the remaining groups; absent for thresholds.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub latest: Option<f64>,
+    /// Posterior probability of the change.
+    pub probability: f64,
+    /// Factor of the constant in each session or specimen.
+    pub factors: BTreeMap<String, f64>,
 }
 
 impl ChangeReport {
     /// Describes the change in words.
     pub fn words(&self) -> String {
-        let Estimate { value, ci95, .. } = &self.factor;
-        let percent = |factor: f64| format!("{:+.1}", 100.0 * (factor - 1.0));
-        let than = self
-            .latest
-            .map_or_else(String::new, |latest| format!(" ({:.3} instead of {latest:.3})", value * latest));
-        let name = if self.constant == "F_half" { "the half load of every layout" } else { &self.constant };
-        format!(
-            "{name} differs by {} % [{}, {}] in {} {}{than} from that in {}",
-            percent(*value),
-            percent(ci95[0]),
-            percent(ci95[1]),
-            self.by,
-            self.groups.join(", "),
-            self.others.join(", "),
-        )
-    }
-}
-
-/// An effect whose size differs between sessions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct UnequalReport {
-    /// Id.
-    pub id: String,
-    /// Name of the size.
-    pub parameter: String,
-    /// Size in the model, which applies to no session; 0 for an effect that single sessions show
-    /// but all together do not.
-    pub in_the_model: f64,
-    /// Probability of such a difference by chance.
-    pub p_value: f64,
-    /// Size in each session that determines it.
-    pub sizes: Vec<SizeInSession>,
-}
-
-/// A size in one session.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SizeInSession {
-    /// Session.
-    pub session: String,
-    /// Size in that session, with the shapes fixed at the common fit.
-    pub size: Estimate,
-}
-
-impl UnequalReport {
-    /// Describes the sizes in words.
-    pub fn words(&self) -> String {
         let each: Vec<String> = self
-            .sizes
+            .factors
             .iter()
-            .map(|SizeInSession { session, size }| {
-                let [low, high] = size.ci95;
-                format!("{:.4} [{low:.4}, {high:.4}] {} in {session}", size.value, size.unit)
-            })
+            .map(|(group, factor)| format!("{:+.1} % in {} {group}", 100.0 * (factor - 1.0), self.by))
             .collect();
-        let in_the_model = if self.in_the_model == 0.0 {
-            "the sessions together do not show it, and the model excludes it".to_owned()
-        } else {
-            format!("the model's value {:.4} applies to none of them", self.in_the_model)
-        };
-        format!(
-            "{} differs between sessions: {} = {}; {in_the_model}",
-            self.id,
-            self.parameter,
-            each.join(", ")
-        )
+        format!("{} differs between {}s: {}", self.constant, self.by, each.join(", "))
     }
 }
 

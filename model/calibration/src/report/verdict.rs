@@ -2,15 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::inference::Selection;
-use crate::trial::{TrialOutcome, TrialReport};
+use crate::confirmation::{TrialOutcome, TrialReport};
 
 /// Verdict on the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The paper's model explains the data down to its noise, and every identifiable relevant
-    /// effect is excluded.
+    /// No effect is probable, and every relevant size of every effect that acts on this table is
+    /// excluded.
     None,
     /// No effect is attributed, and a relevant effect is not excluded.
     Inconclusive,
@@ -34,24 +33,10 @@ impl Verdict {
         }
     }
 
-    /// Returns the verdict of a selection.
-    pub fn of(selection: &Selection) -> Self {
-        if selection.structure.is_some() {
-            Verdict::Unattributed
-        } else if selection.effects.is_empty() {
-            let hidden = selection.limits.iter().any(|limit| !limit.is_excluded());
-            if hidden { Verdict::Inconclusive } else { Verdict::None }
-        } else if selection.effects.iter().any(|e| !e.rivals.is_empty()) {
-            Verdict::Ambiguous
-        } else {
-            Verdict::Attributed
-        }
-    }
-
     /// Returns the verdict in view of the tests of user-defined effects: a confirmed effect is not
     /// excluded.
     #[must_use]
-    pub fn beside(self, trials: &[TrialReport]) -> Self {
+    pub fn in_view_of(self, trials: &[TrialReport]) -> Self {
         match self {
             Verdict::None if trials.iter().any(|t| t.outcome == TrialOutcome::Confirmed) => {
                 Verdict::Inconclusive

@@ -49,7 +49,7 @@ impl Log {
         for (slot, column) in at.iter_mut().zip(COLUMNS) {
             *slot = names.iter().position(|n| *n == column).ok_or_else(|| {
                 Diagnostic::new(format!("column '{column}' is missing"))
-                    .with_location(Location::line(file, 1))
+                    .with_location(Location::in_csv(file, &header, 0, None))
                     .with_help(format!("name the columns {}", COLUMNS.join(", ")))
             })?;
         }
@@ -117,7 +117,9 @@ mod tests {
     fn incomplete_logs_are_refused() {
         let error = Log::parse(b"time_s,force_N\n", "a").unwrap_err();
         assert_eq!(error.problem(), "column 'position_mm' is missing");
-        assert_eq!(error.location(), Some(&Location::line("a", 1)));
+        assert!(
+            error.render("error").contains("a:1: column 'position_mm' is missing\n  1 | time_s,force_N\n")
+        );
         let empty = Log::parse(b"time_s,force_N,position_mm,power_W\n", "a").unwrap_err();
         assert_eq!(empty.problem(), "0 usable samples, at least 100 are needed");
     }

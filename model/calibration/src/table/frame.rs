@@ -45,7 +45,10 @@ impl Condition {
         wrap_angle_deg: f64,
         device: Option<usize>,
     ) -> Self {
-        let wrap = wrap_rad(substrate, wrap_angle_deg);
+        Self::with_wrap_rad(substrate, pins, wrap_rad(substrate, wrap_angle_deg), device)
+    }
+
+    fn with_wrap_rad(substrate: Option<Substrate>, pins: &[usize], wrap: f64, device: Option<usize>) -> Self {
         let n = pins.len() as f64;
         let ploughing = Self::ploughing_sum(pins, wrap);
         Self {
@@ -92,11 +95,6 @@ impl Condition {
         }
     }
 
-    /// Returns whether the tendon touches silicone or an unknown material.
-    pub(crate) fn is_silicone_or_plain(&self) -> bool {
-        self.substrate != Some(Substrate::Abs)
-    }
-
     /// Returns whether pins touch the tendon (on `abs` or in a device).
     pub fn has_pins(&self) -> bool {
         !self.pins.is_empty() && self.substrate.is_some()
@@ -141,6 +139,14 @@ pub struct Frame {
     /// Constants that differ in some sessions or specimens from the last one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+    /// Whether the wrap angle of `plain` contacts is known, so that they have a friction coefficient in
+    /// place of an exponent.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_plain_angles: bool,
+    /// Mean time and mean travel of the fitted rows, at which a drift acts on a later session: another
+    /// session may drift differently.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_time: Option<[f64; 2]>,
 }
 
 /// Covariates of a row for the friction model.
@@ -187,6 +193,8 @@ pub struct Point {
     /// Number of the operator, from 1 in the order of [`Frame::operators`]; 1 if there is only one
     /// operator, 0 for an unknown one.
     pub operator: f64,
+    /// Whether it belongs to a later session than the fitted one.
+    pub is_new_session: bool,
     /// Index of its session in [`Frame::sessions`], if listed.
     pub session_group: Option<usize>,
     /// Index of its specimen in [`Frame::specimens`], if listed.
@@ -194,14 +202,22 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns whether two rows differ at most in repetition, position and time.
-    pub(crate) fn is_of_one_setting(&self, other: &Point) -> bool {
-        self.condition == other.condition
+    /// Returns whether two rows differ at most in repetition, position, time and order.
+    pub(crate) fn has_setting_of(&self, other: &Point) -> bool {
+        self.has_contact_of(other)
             && self.load_n == other.load_n
             && self.sign == other.sign
             && self.descending == other.descending
             && self.log_speed == other.log_speed
             && self.log_dwell == other.log_dwell
+            && self.session == other.session
+            && self.mount == other.mount
+            && self.operator == other.operator
+    }
+
+    /// Returns whether two rows have the same contact before any effect.
+    pub(crate) fn has_contact_of(&self, other: &Point) -> bool {
+        self.condition == other.condition
             && self.session_group == other.session_group
             && self.specimen_group == other.specimen_group
     }
@@ -242,10 +258,17 @@ impl Frame {
             specimens: several(rows, |labels| &labels.specimen),
             operators: sorted(several(rows, |labels| &labels.operator)),
             changes: Vec::new(),
+            has_plain_angles: rows
+                .iter()
+                .any(|row| row.substrate.is_none() && row.wrap_angle_deg != published::WRAP_ANGLE_DEG),
+            mean_time: None,
         };
         for row in rows {
             frame.extend(row);
         }
+        let points = frame.points(rows).unwrap_or_default();
+        let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len().max(1) as f64;
+        frame.mean_time = Some([mean(|p| p.time), mean(|p| p.travel)]);
         frame
     }
 
@@ -254,7 +277,8 @@ impl Frame {
         if self.condition_of(row).is_none() {
             let device =
                 (row.substrate == Some(Substrate::Silicone) && !row.pins.is_empty()).then(|| self.devices());
-            self.conditions.push(Condition::new(row.substrate, &row.pins, row.wrap_angle_deg, device));
+            let wrap = self.wrap_rad(row);
+            self.conditions.push(Condition::with_wrap_rad(row.substrate, &row.pins, wrap, device));
         }
     }
 
@@ -265,10 +289,27 @@ impl Frame {
 
     /// Returns the index of the condition of a row, if the frame has it.
     pub fn condition_of(&self, row: &PlateauRow) -> Option<usize> {
-        let wrap = wrap_rad(row.substrate, row.wrap_angle_deg);
+        let wrap = self.wrap_rad(row);
         self.conditions.iter().position(|c| {
             c.substrate == row.substrate && c.pins == row.pins && (c.wrap_rad - wrap).abs() < SAME_WRAP_RAD
         })
+    }
+
+    /// Returns the wrap angle of a row in radians; 1 for `plain` contacts with a free exponent.
+    fn wrap_rad(&self, row: &PlateauRow) -> f64 {
+        let is_free = row.substrate.is_none() && !self.has_plain_angles;
+        if is_free { 1.0 } else { row.wrap_angle_deg.to_radians() }
+    }
+
+    /// Returns the rows of a later session as points: drifts have their mean over the fitted session.
+    pub(crate) fn points_of_new_session(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
+        let mut points = self.points(rows)?;
+        if let Some([time, travel]) = self.mean_time {
+            for point in &mut points {
+                (point.time, point.travel, point.is_new_session) = (time, travel, true);
+            }
+        }
+        Some(points)
     }
 
     /// Returns the rows as points; `None` if the frame lacks the condition of a row.
@@ -340,6 +381,7 @@ impl Frame {
             session: 1.0,
             mount: 1.0,
             operator: self.operator_of(row),
+            is_new_session: false,
             session_group: self.sessions.iter().position(|name| *name == row.labels.session),
             specimen_group: self.specimens.iter().position(|name| *name == row.labels.specimen),
         })
@@ -409,7 +451,7 @@ fn place_of<'a>(seen: &mut Vec<&'a str>, name: &'a str) -> f64 {
 }
 
 /// Interpolates linearly, with constant ends; `x` ascending.
-fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+pub(crate) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let i = x.partition_point(|v| *v <= at);
     match (i.checked_sub(1).and_then(|j| x.get(j).zip(y.get(j))), x.get(i).zip(y.get(i))) {
         (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (at - x0) / (x1 - x0),
@@ -422,18 +464,12 @@ fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
 /// Groups rows by a key, in order of first appearance. Returns the group of each row, and the
 /// number of groups.
 pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K) -> (Vec<usize>, usize) {
-    groups_of(rows.len(), |i| key(&rows[i]))
-}
-
-/// Groups the numbers below `count` by a key.
-pub(crate) fn groups_of<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> (Vec<usize>, usize) {
     let mut seen = BTreeMap::new();
-    let of = (0..count)
-        .map(|i| {
-            let next = seen.len();
-            *seen.entry(key(i)).or_insert(next)
-        })
-        .collect();
+    let number = |row: &PlateauRow| {
+        let next = seen.len();
+        *seen.entry(key(row)).or_insert(next)
+    };
+    let of = rows.iter().map(number).collect();
     (of, seen.len())
 }
 

@@ -19,7 +19,7 @@ mod whole_series;
 
 pub use change::{Change, Changing, Grouping};
 pub use frame::{Condition, Frame, Point};
-pub(crate) use frame::{groups, groups_of};
+pub(crate) use frame::{groups, interpolate};
 pub use plateau_table::PlateauTable;
 pub(crate) use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use readings::readings_by_session;

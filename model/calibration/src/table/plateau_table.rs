@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::io::Read;
 
+use pinswitch_diagnostic::Location;
 use pinswitch_friction::published::{self, GROOVES};
 use pinswitch_friction::{Direction, Substrate};
 
@@ -34,7 +35,7 @@ pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 /// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
 /// assert_eq!(table.rows[0].pins, [5, 8, 11]);
 /// let error = PlateauTable::read(csv.replace("10.451", "-1").as_bytes(), "plateaus.csv").unwrap_err();
-/// assert_eq!(error.to_string(), "plateaus.csv:2: load_N = -1: below 0; give a value of at least 0");
+/// assert_eq!(error.to_string(), "plateaus.csv:2:28: load_N = -1: below 0; give a value of at least 0");
 /// # Ok::<(), TableError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -72,11 +73,14 @@ impl PlateauTable {
     fn parse(mut source: impl Read, file: &str, force: Force) -> Result<Self, TableError> {
         let mut text = Vec::new();
         source.read_to_end(&mut text).map_err(|e| TableError::Malformed {
-            file: file.to_owned(),
-            line: None,
+            location: Box::new(Location::file(file)),
             problem: e.to_string(),
             help: "",
         })?;
+        let record_at = |byte: u64| {
+            let byte = usize::try_from(byte).unwrap_or(usize::MAX);
+            Location::in_csv(file, &String::from_utf8_lossy(&text), byte, None)
+        };
         let malformed = |error: csv::Error| {
             let (problem, help) = match error.kind() {
                 csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
@@ -88,8 +92,8 @@ impl PlateauTable {
                 }
                 _ => (error.to_string(), ""),
             };
-            let line = error.position().map(|p| line_at(&text, p.byte()));
-            TableError::Malformed { file: file.to_owned(), line, problem, help }
+            let location = error.position().map_or_else(|| Location::file(file), |p| record_at(p.byte()));
+            TableError::Malformed { location: Box::new(location), problem, help }
         };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_slice());
         let header: Vec<String> = reader
@@ -105,7 +109,7 @@ impl PlateauTable {
         for (slot, &column) in at.iter_mut().zip(&COLUMNS) {
             *slot = header.iter().position(|name| name == column);
             if slot.is_none() && !(force == Force::Ignored && column == "force_N") {
-                return Err(TableError::MissingColumn { file: file.to_owned(), column });
+                return Err(TableError::MissingColumn { location: Box::new(record_at(0)), column });
             }
         }
         let wrap_at = header.iter().position(|name| name == WRAP_ANGLE);
@@ -117,7 +121,7 @@ impl PlateauTable {
             let byte = record.position().map_or(0, csv::Position::byte);
             let place = |index: usize| at.get(index).copied().unwrap_or(wrap_at);
             let cell = |index: usize| place(index).and_then(|i| record.get(i)).unwrap_or("");
-            let line = Cells { file, text: &text, byte, cell: &cell, force };
+            let line = Cells { file, text: &text, byte, place: &place, cell: &cell, force };
             let [session, mount, operator, specimen] =
                 labels_at.map(|at| at.and_then(|i| record.get(i)).unwrap_or("").to_owned());
             let row =
@@ -240,20 +244,24 @@ struct Cells<'a> {
     file: &'a str,
     text: &'a [u8],
     byte: u64,
+    /// Index of a column in the file.
+    place: &'a dyn Fn(usize) -> Option<usize>,
     cell: &'a dyn Fn(usize) -> &'a str,
     force: Force,
 }
 
 impl Cells<'_> {
     fn refuse(&self, column: usize, problem: impl Into<String>, help: impl Into<String>) -> TableError {
-        TableError::Cell {
-            file: self.file.to_owned(),
-            line: line_at(self.text, self.byte),
-            column: column_name(column),
-            value: (self.cell)(column).to_owned(),
-            problem: problem.into(),
-            help: help.into(),
-        }
+        let byte = usize::try_from(self.byte).unwrap_or(usize::MAX);
+        // The records up to this one are UTF-8.
+        let text = String::from_utf8_lossy(self.text);
+        let value = Some((self.cell)(column).to_owned()).filter(|value| !value.is_empty());
+        let location = Location {
+            field: Some(column_name(column).to_owned()),
+            value,
+            ..Location::in_csv(self.file, &text, byte, (self.place)(column))
+        };
+        TableError::Cell { location: Box::new(location), problem: problem.into(), help: help.into() }
     }
 
     /// Parses a number within bounds.
@@ -353,7 +361,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
 
 #[cfg(test)]
 mod tests {
-    use pinswitch_diagnostic::{Diagnostic, Location};
+    use pinswitch_diagnostic::Diagnostic;
 
     use super::*;
 
@@ -398,9 +406,15 @@ mod tests {
             let error = read(&format!("{HEADER}\n{}\n", LINE.replacen(from, to, 1))).unwrap_err();
             let diagnostic = Diagnostic::from(error);
             assert_eq!(diagnostic.problem(), problem, "{to}");
-            let location = Location::line("t.csv", 2).with_field(column, value);
-            let value = location.value.clone().filter(|value| !value.is_empty());
-            assert_eq!(diagnostic.location(), Some(&Location { value, ..location }), "{to}");
+            let location = diagnostic.location().unwrap();
+            assert_eq!((location.file.as_deref(), location.line), (Some("t.csv"), Some(2)), "{to}");
+            assert_eq!(location.field.as_deref(), Some(column), "{to}");
+            assert_eq!(location.value.as_deref().unwrap_or_default(), value, "{to}");
+            // The caret marks the cell, or the place of an empty one.
+            let snippet = location.snippet.clone().unwrap();
+            let marked: String =
+                snippet.text.chars().skip(snippet.marked.start).take(snippet.marked.len()).collect();
+            assert_eq!(marked, if value.is_empty() { "," } else { value }, "{to}");
             assert!(diagnostic.help().is_some(), "{to}");
         }
     }
@@ -418,7 +432,7 @@ mod tests {
         }
         assert!(!PlateauTable::write(&table.rows).contains("wrap_angle_deg"));
         let error = read(&format!("{HEADER},wrap_angle_deg\n{LINE},-5\n")).unwrap_err().to_string();
-        assert!(error.starts_with("t.csv:2: wrap_angle_deg = -5: below 1"), "{error}");
+        assert!(error.starts_with("t.csv:2:62: wrap_angle_deg = -5: below 1"), "{error}");
     }
 
     #[test]
@@ -427,7 +441,7 @@ mod tests {
         let error = read(&text).unwrap_err().to_string();
         assert!(
             error.starts_with(
-                "t.csv:3: repetition = 1: the row repeats the series, direction and time of line 2"
+                "t.csv:3:44: repetition = 1: the row repeats the series, direction and time of line 2"
             ),
             "{error}"
         );
@@ -440,6 +454,8 @@ mod tests {
         assert!(matches!(read(&format!("{HEADER}\n")), Err(TableError::Empty { .. })));
         let error = read(&HEADER.replace("dwell_s,", "")).unwrap_err();
         assert!(matches!(error, TableError::MissingColumn { column: "dwell_s", .. }));
+        let shown = Diagnostic::from(error).render("error");
+        assert!(shown.contains("t.csv:1: column 'dwell_s' is missing\n  1 | series,substrate,"), "{shown}");
         let short = read(&format!("{HEADER}\n0,silicone\n")).unwrap_err().to_string();
         assert!(short.starts_with("t.csv:2: 2 cells, but the header has 13"), "{short}");
     }

@@ -39,21 +39,15 @@ pub enum TableError {
     },
     /// The header lacks a column.
     MissingColumn {
-        /// File name as given.
-        file: String,
+        /// The header.
+        location: Box<Location>,
         /// The missing column.
         column: &'static str,
     },
     /// A cell cannot be read.
     Cell {
-        /// File name as given.
-        file: String,
-        /// Line in the file, from 1.
-        line: usize,
-        /// Name of the column.
-        column: &'static str,
-        /// Text of the cell.
-        value: String,
+        /// The cell, with its column and its text.
+        location: Box<Location>,
         /// What is wrong with it.
         problem: String,
         /// How to correct it.
@@ -61,10 +55,8 @@ pub enum TableError {
     },
     /// The file cannot be read, or a line is not CSV of the header's width in UTF-8.
     Malformed {
-        /// File name as given.
-        file: String,
-        /// Line in the file, from 1.
-        line: Option<usize>,
+        /// The file, and the line if it is known.
+        location: Box<Location>,
         /// What is wrong.
         problem: String,
         /// How to correct it; empty where the problem does not suggest a way.
@@ -228,12 +220,9 @@ impl TableError {
             Self::Empty { file } | Self::Session { file, .. } | Self::Copied { file, .. } => {
                 Location::file(file)
             }
-            Self::MissingColumn { file, .. } => Location::line(file, 1),
-            Self::Cell { file, line, column, value, .. } => {
-                let value = Some(value.clone()).filter(|value| !value.is_empty());
-                Location { field: Some((*column).to_owned()), value, ..Location::line(file, *line) }
-            }
-            Self::Malformed { file, line, .. } => Location { line: *line, ..Location::file(file) },
+            Self::MissingColumn { location, .. }
+            | Self::Cell { location, .. }
+            | Self::Malformed { location, .. } => Location::clone(location),
             Self::SwappedColumns { file, first, .. } => column(file, first),
             Self::MixedSeries { file, column: name, .. } => column(file, name),
             Self::SwappedDirections { file, .. }

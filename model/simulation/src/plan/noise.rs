@@ -1,6 +1,6 @@
 //! Noise of a synthetic rig.
 
-use pinswitch_calibration::inference::Noise;
+use pinswitch_calibration::model::Noise;
 use serde::{Deserialize, Serialize};
 
 /// Noise of the synthetic rig.

@@ -1,31 +1,69 @@
 //! Comparison of the calibrator's answer with the truth.
 
-use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::Covariate;
-use pinswitch_calibration::inference::UNATTRIBUTED;
+use pinswitch_calibration::model::UNATTRIBUTED;
+use pinswitch_calibration::{EffectReport, Report, Verdict};
 
 use super::case::{Case, Truth};
 use crate::plan::Plan;
 
-/// Answer of the calibrator for a rig.
-pub(super) struct CalibratorAnswer<'a> {
-    /// Reported effects, each with its rivals.
-    pub(super) sets: &'a [Vec<&'a str>],
+/// Reported effect with its rivals, or unattributed structure.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Answer {
+    /// Id, followed by those of its rivals.
+    pub(super) names: Vec<String>,
     /// Covariate of unattributed structure.
-    pub(super) covariate: Option<Covariate>,
+    pub(super) structure: Option<Covariate>,
+}
+
+impl Answer {
+    fn new(effect: &EffectReport) -> Self {
+        let names = std::iter::once(&effect.id).chain(effect.rivals.iter().map(|rival| &rival.id));
+        // Structure over a factor of the protocol, such as the mount, counts as one over the condition.
+        let covariate = || Covariate::ALL.into_iter().find(|c| c.as_str() == effect.covariate);
+        let structure = (effect.id == UNATTRIBUTED).then(|| covariate().unwrap_or(Covariate::Condition));
+        Self { names: names.cloned().collect(), structure }
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
+    /// Returns the names as text: `a|b` for rivals, `unattributed:covariate` for structure.
+    pub(super) fn text(&self) -> String {
+        match self.structure {
+            Some(covariate) => {
+                let rivals = self.names.iter().skip(1).map(|name| format!("|{name}"));
+                format!("{UNATTRIBUTED}:{}{}", covariate.as_str(), rivals.collect::<String>())
+            }
+            None => self.names.join("|"),
+        }
+    }
+}
+
+/// Answer of the calibrator for a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CalibratorAnswer {
+    /// Reported effects and structure.
+    pub(super) parts: Vec<Answer>,
     /// Verdict.
     pub(super) verdict: Verdict,
 }
 
-impl CalibratorAnswer<'_> {
+impl CalibratorAnswer {
+    pub(super) fn new(report: &Report) -> Self {
+        Self { parts: report.effects.iter().map(Answer::new).collect(), verdict: report.verdict }
+    }
+
     /// Returns whether the answer is exact, and whether it is consistent with the truth.
     pub(super) fn grade(&self, case: &Case, plan: &Plan) -> (bool, bool) {
         match &case.truth {
             Truth::Nothing => {
-                let is_empty = self.sets.is_empty() && self.covariate.is_none();
                 // Mount effects are noise, but they are structure over the condition.
-                let mounts = plan.noise.mount_scale > 0.0 && self.covariate == Some(Covariate::Condition);
-                (is_empty, is_empty || mounts && self.sets.is_empty())
+                let is_mount = |part: &Answer| {
+                    plan.noise.mount_scale > 0.0 && part.structure == Some(Covariate::Condition)
+                };
+                (self.parts.is_empty(), self.parts.iter().all(is_mount))
             }
             Truth::Effects(ids) => {
                 let matches = self.matches(ids);
@@ -36,47 +74,42 @@ impl CalibratorAnswer<'_> {
                 (matches && self.verdict == Verdict::Ambiguous, matches)
             }
             Truth::SmallConfounded([id, rival]) => {
-                let both = self.sets.iter().any(|s| s.contains(id) && s.contains(rival));
-                let right = self.matches(&[id]) && both || self.is_inconclusive();
+                let both = self.parts.iter().any(|part| part.has(id) && part.has(rival));
+                let right = self.matches(&[id]) && both || self.verdict == Verdict::Inconclusive;
                 (right, right)
             }
             Truth::Outside { covariates, or_named } => {
-                let right = self.covariate.is_some_and(|covariate| covariates.contains(&covariate));
+                let is_right = |part: &Answer| part.structure.is_some_and(|c| covariates.contains(&c));
+                let right = self.parts.iter().any(is_right);
                 let named = or_named.is_some_and(|name| self.matches(&[name]));
-                (right && self.sets.is_empty() || named, right || named)
+                (right && self.parts.iter().all(is_right) || named, right || named)
             }
         }
     }
 
     /// Returns the false parts of the answer.
     pub(super) fn extras(&self, case: &Case) -> Vec<String> {
-        let (true_names, true_covariates): (Vec<&str>, &[Covariate]) = match &case.truth {
-            Truth::Nothing => (Vec::new(), &[]),
-            Truth::Effects(ids) | Truth::Confounded(ids) => (ids.clone(), &[]),
-            Truth::SmallConfounded(both) => (both.to_vec(), &[]),
-            Truth::Outside { covariates, or_named } => (or_named.iter().copied().collect(), covariates),
-        };
-        let false_sets = self.sets.iter().filter(|set| !true_names.iter().any(|t| set.contains(t)));
-        let mut extras: Vec<String> = false_sets.map(|set| set.join("|")).collect();
-        let covariate = self.covariate.filter(|covariate| !true_covariates.contains(covariate));
-        extras.extend(covariate.map(|covariate| format!("{UNATTRIBUTED}:{}", covariate.as_str())));
-        extras
+        self.parts.iter().filter(|part| !is_true(part, &case.truth)).map(Answer::text).collect()
     }
 
-    /// Whether every true effect is reported or a rival, and every reported set contains a true
+    /// Whether every true effect is reported or a rival, and every part of the answer contains a true
     /// effect.
     fn matches(&self, truth: &[&str]) -> bool {
-        self.covariate.is_none()
-            && self.sets.iter().all(|s| truth.iter().any(|t| s.contains(t)))
-            && truth.iter().all(|t| self.sets.iter().any(|s| s.contains(t)))
+        self.parts.iter().all(|part| truth.iter().any(|t| part.has(t)))
+            && truth.iter().all(|t| self.parts.iter().any(|part| part.has(t)))
     }
+}
 
-    /// Whether the verdict reports no effect and excludes none.
-    fn is_inconclusive(&self) -> bool {
-        !matches!(
-            self.verdict,
-            Verdict::None | Verdict::Attributed | Verdict::Ambiguous | Verdict::Unattributed
-        )
+/// Whether a part of the answer contains a true effect, or is structure over a true covariate.
+fn is_true(part: &Answer, truth: &Truth) -> bool {
+    match truth {
+        Truth::Nothing => false,
+        Truth::Effects(ids) | Truth::Confounded(ids) => ids.iter().any(|id| part.has(id)),
+        Truth::SmallConfounded(both) => both.iter().any(|id| part.has(id)),
+        Truth::Outside { covariates, or_named } => {
+            or_named.is_some_and(|name| part.has(name))
+                || part.structure.is_some_and(|c| covariates.contains(&c))
+        }
     }
 }
 
@@ -100,7 +133,13 @@ mod tests {
             (sets, None) if sets.iter().any(|s| s.len() > 1) => Verdict::Ambiguous,
             _ => Verdict::Attributed,
         };
-        let answer = CalibratorAnswer { sets, covariate, verdict };
+        let part = |names: &[&str], structure| Answer {
+            names: names.iter().map(|name| (*name).to_owned()).collect(),
+            structure,
+        };
+        let mut parts: Vec<Answer> = sets.iter().map(|set| part(set, None)).collect();
+        parts.extend(covariate.map(|covariate| part(&[UNATTRIBUTED], Some(covariate))));
+        let answer = CalibratorAnswer { parts, verdict };
         let mut plan = Plan::default();
         plan.noise.mount_scale = 0.02;
         (answer.grade(&case, &plan), answer.extras(&case))

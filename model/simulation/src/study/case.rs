@@ -43,11 +43,19 @@ pub enum Group {
     Confounded,
     /// A disturbance outside the vocabulary.
     Outside,
+    /// The small bench without effect.
+    BenchNulls,
+    /// The small bench with one effect.
+    BenchSingles,
+    /// The small bench with two effects.
+    BenchPairs,
+    /// The small bench with a disturbance outside the vocabulary.
+    BenchOutside,
 }
 
 impl Group {
     /// All groups.
-    pub const ALL: [Group; 7] = [
+    pub const ALL: [Group; 11] = [
         Group::Nulls,
         Group::Singles,
         Group::Scattered,
@@ -55,6 +63,10 @@ impl Group {
         Group::Masks,
         Group::Confounded,
         Group::Outside,
+        Group::BenchNulls,
+        Group::BenchSingles,
+        Group::BenchPairs,
+        Group::BenchOutside,
     ];
 
     /// Returns the name on the command line, such as `nulls`.
@@ -67,6 +79,10 @@ impl Group {
             Group::Masks => "masks",
             Group::Confounded => "confounded",
             Group::Outside => "outside",
+            Group::BenchNulls => "bench-nulls",
+            Group::BenchSingles => "bench-singles",
+            Group::BenchPairs => "bench-pairs",
+            Group::BenchOutside => "bench-outside",
         }
     }
 }

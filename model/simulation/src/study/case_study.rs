@@ -9,11 +9,10 @@ use super::outcome::CaseOutcome;
 /// Results by kind of rig.
 ///
 /// ```
-/// use pinswitch_calibration::inference::Levels;
 /// use pinswitch_simulation::{Study, run_case, study_cases};
 ///
 /// let case = study_cases().into_iter().find(|c| c.name == "load_cell_gain").ok_or("not a case")?;
-/// let outcome = run_case(&case, 1, Levels::default(), false).ok_or("the table reads back")?;
+/// let outcome = run_case(&case, 1).ok_or("the table reads back")?;
 /// assert!(outcome.consistent, "{:?}", outcome.named);
 /// let mut study = Study::default();
 /// study.add(case, vec![outcome]);

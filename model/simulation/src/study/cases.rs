@@ -4,6 +4,7 @@ use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::bench::{bench_cases, bench_plan};
 use super::case::{Case, Group, Truth};
 use super::masks::{drag_n, masked, sizes};
 use super::nulls::{self, NULLS};
@@ -28,7 +29,7 @@ pub fn study_cases() -> Vec<Case> {
     let protocols = || [Protocol::Paper, Protocol::Randomised].into_iter();
     let later = protocols()
         .flat_map(|protocol| LATER.map(|(name, covariates)| outside_case(name, covariates, protocol)));
-    protocols().flat_map(cases_of).chain(later).collect()
+    protocols().flat_map(cases_of).chain(later).chain(bench_cases()).collect()
 }
 
 fn outside_case(name: &str, covariates: &'static [Covariate], protocol: Protocol) -> Case {
@@ -76,6 +77,9 @@ fn cases_of(protocol: Protocol) -> Vec<Case> {
 
 /// Returns the plan of a kind and a seed, with random constants, sizes, forms and noise.
 pub fn plan_of(case: &Case, seed: u64) -> Plan {
+    if let Some(plan) = bench_plan(case, seed) {
+        return plan;
+    }
     let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
     let mut plan = match case.protocol {
         Protocol::Paper => Plan::default(),
@@ -135,7 +139,11 @@ fn is_shuffled(case: &Case, seed: u64) -> bool {
 
 /// Draws size, shape and form of an effect; the range of the size is that of the study, unless
 /// `sizes` is given.
-fn draw_effect(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
+pub(super) fn draw_effect(
+    id: &str,
+    sizes: Option<(f64, f64)>,
+    random: &mut ChaCha8Rng,
+) -> Option<EffectPlan> {
     let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
     if let Some((least, most)) = sizes.or(range.size) {
@@ -169,6 +177,7 @@ mod tests {
             Group::Nulls => NULLS[..4].iter().any(|k| k.0 == case.name),
             Group::Outside => OUTSIDE[..8].iter().any(|k| k.0 == case.name),
             Group::Scattered | Group::Masks => false,
+            Group::BenchNulls | Group::BenchSingles | Group::BenchPairs | Group::BenchOutside => false,
             Group::Confounded => !case.name.starts_with("small"),
             Group::Singles | Group::Pairs => true,
         };

@@ -5,14 +5,14 @@ use pinswitch_calibration::effects::{Vocabulary, effect_named};
 use pinswitch_calibration::experiment::{
     Known, PlannedRun, Proposal, QuestionOutlook, RigLimits, paper_runs, propose, rows_of,
 };
-use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_calibration::{Answer, Calibration, ModelFile, PlanQuestion, SessionPlan, Verdict, calibrate};
 
-use super::answer_forecasts::{AnswerForecast, table_of};
+use super::answer::CalibratorAnswer;
 use super::case::{Case, Group, Truth};
 use super::cases::plan_of;
 use super::figures::median_text;
+use super::forecast::{Forecast, reliability_table};
 use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
 use crate::simulate::{simulate, simulate_rows};
@@ -56,9 +56,9 @@ pub struct ExperimentOutcome {
     /// Duration of the proposed session in minutes.
     pub minutes: f64,
     /// Forecasts for the questions of the proposed session.
-    pub forecasts: Vec<AnswerForecast>,
+    pub forecasts: Vec<Forecast>,
     /// Forecasts for the same questions with the paper's protocol.
-    pub repetition_forecasts: Vec<AnswerForecast>,
+    pub repetition_forecasts: Vec<Forecast>,
 }
 
 /// Returns the kinds of rig of this study.
@@ -89,10 +89,10 @@ fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
 /// Calibrates a rig whose effect is larger by `factor` than usual in this study. If the result is
 /// open, proposes a session, simulates it, and calibrates both tables together. Returns `None` if a
 /// table is not usable.
-pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) -> Option<ExperimentOutcome> {
+pub fn run_experiment_case(case: &Case, seed: u64, factor: f64) -> Option<ExperimentOutcome> {
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
-    let calibration = calibrate(&rows, levels).ok()?;
+    let calibration = calibrate(&rows, &Vocabulary::built_in(), seed).ok()?;
     let first = attribution(case, &calibration);
     if first != Attribution::Open {
         return Some(ExperimentOutcome {
@@ -105,7 +105,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
         });
     }
     let rig = RigLimits::default();
-    let proposal = proposed(&calibration, &rows, &rig, levels)?;
+    let proposal = proposed(&calibration, &rows, &rig)?;
     let after = |runs: &[PlannedRun], probability: fn(&QuestionOutlook) -> f64| {
         let asked = SessionPlan {
             minutes: proposal.minutes,
@@ -114,13 +114,12 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
         };
         let Some(session) = session(&plan, runs, &rig) else { return (None, Vec::new()) };
         let Some(rows) = joined(&rows, session) else { return (None, Vec::new()) };
-        let Ok(both) = calibrate(&rows, levels) else { return (None, Vec::new()) };
+        let Ok(both) = calibrate(&rows, &Vocabulary::built_in(), seed) else { return (None, Vec::new()) };
         let highest_n = rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
         let answers = asked.answered(&both.report, highest_n).questions;
-        let forecasts = answers.iter().map(|q| AnswerForecast {
-            probability: q.resolved_probability,
-            is_answered: q.answer != Answer::Open,
-        });
+        let forecasts = answers
+            .iter()
+            .map(|q| Forecast { probability: q.resolved_probability, is_true: q.answer != Answer::Open });
         (Some(attribution(case, &both)), forecasts.collect())
     };
     let (proposed, forecasts) = after(&proposal.runs, |q| q.resolved_probability);
@@ -148,27 +147,23 @@ fn asked(question: &QuestionOutlook, resolved_probability: f64) -> PlanQuestion 
 
 /// Returns the state of the attribution of a calibration.
 fn attribution(case: &Case, calibration: &Calibration) -> Attribution {
-    let named: Vec<Vec<&str>> = calibration.selection.effects.iter().map(FoundEffect::ids).collect();
+    let parts = CalibratorAnswer::new(&calibration.report).parts;
     match calibration.report.verdict {
-        Verdict::Attributed if named == [vec![case.name.as_str()]] => Attribution::Alone,
+        Verdict::Attributed if parts.len() == 1 && parts[0].names == [case.name.as_str()] => {
+            Attribution::Alone
+        }
         Verdict::Ambiguous | Verdict::Inconclusive => Attribution::Open,
         _ => Attribution::Other,
     }
 }
 
 /// Proposes a session after a calibration.
-fn proposed(
-    calibration: &Calibration,
-    rows: &[PlateauRow],
-    rig: &RigLimits,
-    levels: Levels,
-) -> Option<Proposal> {
-    let model =
-        ModelFile::new(&calibration.selection.augmented, &calibration.data, calibration.selection.noise);
+fn proposed(calibration: &Calibration, rows: &[PlateauRow], rig: &RigLimits) -> Option<Proposal> {
+    let model = ModelFile::new(&calibration.augmented);
     let vocabulary = Vocabulary::built_in();
     let known =
         Known { report: &calibration.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
-    propose(known, rig, MINUTES, levels).ok()
+    propose(known, rig, MINUTES).ok()
 }
 
 /// Simulates the runs as a later session of the rig of a plan.
@@ -211,10 +206,13 @@ impl ExperimentStudy {
         }
         let all: Vec<&ExperimentOutcome> = self.outcomes.iter().flat_map(|(_, o)| o).collect();
         text.push_str(&row("all", &all));
-        let forecasts = |of: fn(&ExperimentOutcome) -> &Vec<AnswerForecast>| -> Vec<AnswerForecast> {
+        let forecasts = |of: fn(&ExperimentOutcome) -> &Vec<Forecast>| -> Vec<Forecast> {
             all.iter().flat_map(|outcome| of(outcome)).copied().collect()
         };
-        format!("{text}\n{}", table_of(&forecasts(|o| &o.forecasts), &forecasts(|o| &o.repetition_forecasts)))
+        let kinds = ["questions of proposed sessions", "questions of repeated protocols"];
+        let (proposed, repeated) = (forecasts(|o| &o.forecasts), forecasts(|o| &o.repetition_forecasts));
+        let forecasts = reliability_table("forecast probability of an answer", kinds, [&proposed, &repeated]);
+        format!("{text}\n{forecasts}")
     }
 }
 
@@ -239,9 +237,8 @@ mod tests {
     #[test]
     fn proposed_sessions_resolve_more_than_repetitions() {
         let case = experiment_cases().remove(0);
-        let outcomes: Vec<_> = (900_001..900_004)
-            .filter_map(|seed| run_experiment_case(&case, seed, 1.0, Levels::default()))
-            .collect();
+        let outcomes: Vec<_> =
+            (900_001..900_004).filter_map(|seed| run_experiment_case(&case, seed, 1.0)).collect();
         assert_eq!(outcomes.len(), 3);
         let open: Vec<_> = outcomes.iter().filter(|o| o.first == Attribution::Open).collect();
         assert!(!open.is_empty(), "{outcomes:?}");

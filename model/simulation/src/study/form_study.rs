@@ -2,10 +2,10 @@
 //! session as well as the true form, and are they confirmed or refuted by other sessions?
 
 use pinswitch_calibration::effects::{OwnEffect, Vocabulary};
-use pinswitch_calibration::inference::{Levels, Model, Observations, Term, Weighed, fit, select};
-use pinswitch_calibration::table::{Frame, PlateauRow};
-use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport, calibrate, trials};
+use pinswitch_calibration::table::PlateauRow;
+use pinswitch_calibration::{Calibration, TrialOutcome, TrialReport, calibrate};
 
+use super::answer::CalibratorAnswer;
 use super::case::{Case, Truth};
 use super::cases::plan_of;
 use super::figures::median_text;
@@ -19,6 +19,8 @@ use crate::simulate::simulate;
 
 /// Offset of the seed for a rig without the disturbance.
 const OTHER_RIG: u64 = 500_000_000;
+/// Probability above which a trial finds an effect present.
+const PRESENT: f64 = 0.9;
 
 /// Outcome of a rig with a disturbance outside the vocabulary.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +36,8 @@ pub struct FormOutcome {
     /// Root mean square errors on a later session, in newtons: of the refitted baseline, of the
     /// calibration's model, and of that model with the estimated form in place of the structure.
     pub next_n: [Option<f64>; 3],
-    /// The same error of the true form with fitted sizes; `None` if no formula describes it.
+    /// The same error of a calibration whose vocabulary has the true form; `None` if no formula
+    /// describes it.
     pub truth_n: Option<f64>,
     /// Test of the estimated form on a later session of the same rig.
     pub later_trial: Option<TrialReport>,
@@ -51,35 +54,36 @@ impl FormOutcome {
 
 /// Estimates the form of the disturbance of a rig, and tests it on two other sessions. Returns
 /// `None` if a table is not usable, or the kind of rig has no disturbance.
-pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutcome> {
+pub fn run_form_case(case: &Case, seed: u64) -> Option<FormOutcome> {
     let Truth::Outside { covariates, .. } = case.truth else { return None };
     let plan = plan_of(case, seed);
     let disturbance = plan.disturbances.first()?;
     let simulated = simulate(&plan);
     let rows = simulated.rows;
-    let Calibration { selection, data, form, .. } = calibrate(&rows, levels).ok()?;
-    let frame = selection.baseline.model.frame.clone();
+    let Calibration { report, baseline, augmented, form, .. } =
+        calibrate(&rows, &Vocabulary::built_in(), seed).ok()?;
     let next = next_session(&plan).rows;
-    let error = |model: &Model| error_n(model, &frame, &next);
-    let place = selection.structure.map(|s| s.covariate);
+    let mut structures = CalibratorAnswer::new(&report).parts.into_iter().filter_map(|part| part.structure);
     let trial = |rows: &[PlateauRow]| {
-        let form = form.as_ref()?;
-        let own = OwnEffect::new(form.definition.clone()).ok()?;
-        let vocabulary = Vocabulary::built_in().with(vec![own]).ok()?;
-        trial_on(rows, &vocabulary, levels)
+        let own = OwnEffect::new(form.as_ref()?.definition.clone()).ok()?;
+        trial_on(rows, &Vocabulary::built_in().with(vec![own]).ok()?, seed)
+    };
+    let truth_n = || {
+        let (vocabulary, _) = true_forms(disturbance, &baseline.model.frame)?;
+        error_n(&calibrate(&rows, &vocabulary, seed).ok()?.augmented, &next)
     };
     let without = Plan { disturbances: Vec::new(), seed: seed + OTHER_RIG, ..plan.clone() };
     Some(FormOutcome {
-        is_covariate_right: place.is_some_and(|place| covariates.contains(&place)),
-        visible: is_visible(&plan, &simulated.traits, levels)?,
+        is_covariate_right: structures.any(|covariate| covariates.contains(&covariate)),
+        visible: is_visible(&plan, &simulated.traits)?,
         shape: form.as_ref().map(|f| f.report.shape.clone()),
         is_shape_right: is_shape_right(disturbance, form.as_ref().map(|f| &f.report)),
         next_n: [
-            error(&selection.baseline.model),
-            error(&selection.augmented.model),
-            form.as_ref().and_then(|f| error(&f.fitted.model)),
+            error_n(&baseline, &next),
+            error_n(&augmented, &next),
+            form.as_ref().and_then(|f| error_n(&f.fitted, &next)),
         ],
-        truth_n: with_truth(disturbance, &frame, &data, &selection).and_then(|model| error(&model)),
+        truth_n: truth_n(),
         later_trial: trial(&next),
         absent_trial: trial(&simulate(&without).rows),
     })
@@ -101,29 +105,9 @@ fn is_shape_right(
     }))
 }
 
-/// Fits the baseline with the true form.
-fn with_truth(
-    disturbance: &Disturbance,
-    frame: &Frame,
-    data: &Observations,
-    selection: &pinswitch_calibration::inference::Selection,
-) -> Option<Model> {
-    let (vocabulary, ids) = true_forms(disturbance, frame)?;
-    let mut model = selection.baseline.model.clone().among(&vocabulary);
-    for id in &ids {
-        let effect = vocabulary.named(id)?;
-        let start = effect.starts(&model.frame).into_iter().next()?;
-        model = model.with_term(Term::Named(effect), &start);
-    }
-    Some(fit(&model, &Weighed::new(data, selection.noise)).model)
-}
-
 /// Tests the only user-defined effect of a vocabulary on a table.
-fn trial_on(rows: &[PlateauRow], vocabulary: &Vocabulary, levels: Levels) -> Option<TrialReport> {
-    let frame = Frame::new(rows);
-    let mut data = Observations::new(&frame, rows)?;
-    let selection = select(&Model::baseline(frame).among(vocabulary), &mut data, levels);
-    trials(rows, &selection, &data).pop()
+fn trial_on(rows: &[PlateauRow], vocabulary: &Vocabulary, seed: u64) -> Option<TrialReport> {
+    calibrate(rows, vocabulary, seed).ok()?.report.trials.pop()
 }
 
 /// Outcomes by kind of rig.
@@ -141,7 +125,7 @@ impl FormStudy {
     /// Returns a row for each kind, and one for all, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | rig | rigs | right covariate | right covariate of the visible | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted if absent | p >= 0.01 if absent |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | rig | rigs | right covariate | right covariate of the visible | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted if absent | probability below 0.9 if absent |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let protocol = format!("{:?}", case.protocol).to_lowercase();
@@ -174,7 +158,7 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
         median_text(outcomes.iter().filter_map(form_over_truth), 2),
         of(later.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
         of(absent().map(|t| t.outcome == TrialOutcome::Refuted).collect()),
-        of(absent().map(|t| t.p_value.is_none_or(|p| p >= CONFIRMED_P)).collect()),
+        of(absent().map(|t| t.probability.is_none_or(|p| p < PRESENT)).collect()),
     )
 }
 
@@ -185,12 +169,12 @@ mod tests {
     use crate::study::cases::study_cases;
 
     #[test]
-    fn step_form_is_confirmed_and_refuted() {
+    fn memory_form_is_confirmed_and_refuted() {
         let case = study_cases()
             .into_iter()
-            .find(|c| c.name == "step of the reading in mid-session" && c.protocol == Protocol::Randomised)
+            .find(|c| c.name == "memory of the load before" && c.protocol == Protocol::Randomised)
             .unwrap();
-        let outcome = run_form_case(&case, 2, Levels::default()).unwrap();
+        let outcome = run_form_case(&case, 2).unwrap();
         assert!(outcome.is_covariate_right && outcome.is_shape_right == Some(true), "{outcome:?}");
         assert!(outcome.over_truth().unwrap() < 1.3, "{outcome:?}");
         assert_eq!(outcome.later_trial.as_ref().unwrap().outcome, TrialOutcome::Confirmed);

@@ -2,12 +2,13 @@
 //! compared with the truth.
 
 mod answer;
-mod answer_forecasts;
+mod bench;
 mod case;
 mod case_study;
 mod cases;
 mod experiment_study;
 mod figures;
+mod forecast;
 mod form_study;
 mod masks;
 mod nulls;
@@ -17,12 +18,12 @@ mod summary;
 mod true_form;
 mod visibility;
 
-pub use answer_forecasts::AnswerForecast;
 pub use case::{Case, Group, Truth};
 pub use case_study::Study;
 pub use cases::{plan_of, study_cases};
 pub use experiment_study::{
     Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,
 };
+pub use forecast::Forecast;
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};

@@ -5,11 +5,8 @@ use std::collections::BTreeMap;
 use super::case::{Case, Group};
 use super::case_study::Study;
 use super::figures::median_of;
+use super::forecast::{Forecast, reliability_table};
 use super::outcome::CaseOutcome;
-
-/// Ratio of expected to actual error of a new session below which the expectation is too
-/// optimistic.
-const LEAST_RATIO: f64 = 0.8;
 
 impl Study {
     /// Returns a row for each group, and one for each kind of rig without effect, in Markdown.
@@ -41,36 +38,38 @@ impl Study {
                 lines.extend(group_lines(group, &outcomes));
             }
         }
-        let all: Vec<bool> = self.of(|_| true).iter().flat_map(|o| o.covered.iter().copied()).collect();
-        if !all.is_empty() {
-            let covered = all.iter().filter(|c| **c).count();
-            let percent = 100.0 * covered as f64 / all.len() as f64;
-            lines.push(format!(
-                "95 % intervals that contain the true size: {covered} of {} ({percent:.1} %)",
-                all.len()
-            ));
-        }
-        let attributed: Vec<bool> =
-            self.of(|_| true).iter().flat_map(|o| o.across_zero.iter().copied()).collect();
-        if !attributed.is_empty() {
-            let across = attributed.iter().filter(|a| **a).count();
-            lines.push(format!(
-                "attributed effects whose interval contains zero: {across} of {}",
-                attributed.len()
-            ));
-        }
-        let mut ratios: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.expected_error_ratio).collect();
+        let all = self.of(|_| true);
+        let mut shares = |what: &str, of: &dyn Fn(&CaseOutcome) -> Vec<bool>| {
+            let flags: Vec<bool> = all.iter().flat_map(|outcome| of(outcome)).collect();
+            if !flags.is_empty() {
+                lines.push(format!("{what}: {}", share(&flags, |flag| *flag)));
+            }
+        };
+        shares("95 % intervals that contain the true size", &|o| o.covered.clone());
+        shares("90 % intervals that contain the error on the next session", &|o| {
+            o.is_error_covered.into_iter().collect()
+        });
+        let mut ratios: Vec<f64> = all.iter().filter_map(|o| o.expected_error_ratio).collect();
         ratios.sort_by(f64::total_cmp);
-        if let (Some(least), Some(most)) = (ratios.first(), ratios.last()) {
-            let below = ratios.iter().filter(|r| **r < LEAST_RATIO).count();
+        if !ratios.is_empty() {
+            let quantile = |percent: usize| ratios[percent * (ratios.len() - 1) / 100];
             lines.push(format!(
-                "expected error of a new session over the actual one: median {:.3}, {least:.3} to {most:.3}; \
-                 below {LEAST_RATIO} in {below} of {}",
+                "expected error of a new session over the actual one: median {:.3}, 10 to 90 % {:.3} to {:.3}",
                 median_of(ratios.iter().copied()),
-                ratios.len()
+                quantile(10),
+                quantile(90)
             ));
         }
         lines.iter().map(|l| format!("- {l}\n")).collect()
+    }
+
+    /// Returns the reliability of the probabilities of effects, in Markdown.
+    pub fn reliability(&self) -> String {
+        let all = self.of(|_| true);
+        let reported: Vec<Forecast> = all.iter().flat_map(|o| o.reported.iter().copied()).collect();
+        let candidates: Vec<Forecast> = all.iter().flat_map(|o| o.candidates.iter().copied()).collect();
+        let kinds = ["reported effects and structure", "all effects of the vocabulary"];
+        reliability_table("posterior probability", kinds, [&reported, &candidates])
     }
 
     /// Returns the outcomes of the selected kinds.
@@ -95,11 +94,21 @@ fn group_lines(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
             ),
         ]
     };
+    let without_effect =
+        |what: &str| vec![format!("{what}, false alarms: {}", share(outcomes, |o| !o.exact))];
+    let outside = |what: &str| {
+        vec![
+            format!("{what}, unattributed with the right covariate: {consistent}"),
+            format!(
+                "... of those that are visible despite mount effects: {}",
+                share(&visible, |o| o.exact || o.consistent)
+            ),
+            format!("{what}, and no effect reported: {exact}"),
+        ]
+    };
     match group {
-        Group::Nulls => vec![
-            format!("rigs without effect, false alarms: {}", share(outcomes, |o| !o.exact)),
-            format!("rigs without effect, p-value: {}", calibration_of_p(outcomes)),
-        ],
+        Group::Nulls => without_effect("rigs without effect"),
+        Group::BenchNulls => without_effect("small bench without effect"),
         Group::Singles => {
             let mut lines = attributed("single effects");
             let ratio = median_of(outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)));
@@ -107,20 +116,16 @@ fn group_lines(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
             lines
         }
         Group::Scattered => attributed("single effects with scatter"),
+        Group::BenchSingles => attributed("single effects on the small bench"),
         Group::Pairs => attributed("pairs"),
+        Group::BenchPairs => attributed("pairs on the small bench"),
         Group::Masks => attributed("effects with a drag that may mask them"),
         Group::Confounded => vec![
             format!("confounded effects, ambiguous (or inconclusive if small): {exact}"),
             format!("confounded effects, attributed or among the rivals: {consistent}"),
         ],
-        Group::Outside => vec![
-            format!("outside the vocabulary, unattributed with the right covariate: {consistent}"),
-            format!(
-                "... of those that are visible despite mount effects: {}",
-                share(&visible, |o| o.exact || o.consistent)
-            ),
-            format!("outside the vocabulary, and no effect reported: {exact}"),
-        ],
+        Group::Outside => outside("outside the vocabulary"),
+        Group::BenchOutside => outside("outside the vocabulary on the small bench"),
     }
 }
 
@@ -154,19 +159,9 @@ fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
 }
 
 /// Returns number and percentage of the outcomes that satisfy a predicate, as text.
-fn share(outcomes: &[&CaseOutcome], predicate: impl Fn(&CaseOutcome) -> bool) -> String {
+fn share<T>(outcomes: &[T], predicate: impl Fn(&T) -> bool) -> String {
     let count = outcomes.iter().filter(|o| predicate(o)).count();
     format!("{count} of {} ({:.1} %)", outcomes.len(), 100.0 * count as f64 / outcomes.len().max(1) as f64)
-}
-
-/// Returns the share of rigs whose p-value is below some levels, as text; without effects it should
-/// equal the level.
-fn calibration_of_p(nulls: &[&CaseOutcome]) -> String {
-    let below = |level: f64| {
-        let count = nulls.iter().filter(|o| o.p_value < level).count();
-        format!("below {level} in {:.1} %", 100.0 * count as f64 / nulls.len().max(1) as f64)
-    };
-    [0.5, 0.2, 0.1, 0.05, 0.02].map(below).join(", ")
 }
 
 #[cfg(test)]
@@ -188,11 +183,10 @@ mod tests {
             visible: exact,
             extras: extras.iter().map(|e| (*e).to_owned()).collect(),
             covered: vec![exact],
-            largest_gain: 0.0,
-            p_value: 1.0,
-            structure_gain: 0.0,
-            across_zero: Vec::new(),
-            excluded: 0,
+            is_error_covered: None,
+            reported: Vec::new(),
+            candidates: Vec::new(),
+            bad_series: 0,
         }
     }
 

@@ -10,7 +10,7 @@ mod contact;
 use std::collections::BTreeMap;
 
 use contact::{F0_N, TwinContact};
-use pinswitch_calibration::inference::{Model, Term};
+use pinswitch_calibration::model::{Model, Term};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
 

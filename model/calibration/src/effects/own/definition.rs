@@ -12,7 +12,7 @@ use super::unit::Unit;
 use super::unit_check::{check_units, located};
 use super::variable::{VARIABLES, variable};
 use crate::effects::{ActsOn, Combine, Covariate, Effect, Parameter, Side, Written, effect_named};
-use crate::inference::UNATTRIBUTED;
+use crate::model::UNATTRIBUTED;
 use crate::table::{Frame, is_fingerprint};
 
 /// Most constants of an effect.
@@ -65,8 +65,9 @@ pub struct EffectDefinition {
     /// Experiment that identifies the effect; empty for one that varies the covariate.
     pub experiment: String,
     /// Fingerprints ([`crate::table::readings_by_session`]) of the sessions from which `calibrate`
-    /// derived the formula; empty for an effect that a person wrote.
-    pub drawn_from: Vec<String>,
+    /// derived the formula; empty for an effect that was derived from no readings, and `None` if its
+    /// origin is not declared.
+    pub drawn_from: Option<Vec<String>>,
     /// Constants.
     pub parameters: Vec<OwnParameter>,
 }
@@ -143,7 +144,7 @@ impl EffectDefinition {
             one_sided: description.one_sided,
             confused_with: description.confused_with.iter().map(|id| (*id).to_owned()).collect(),
             experiment: description.experiment.to_owned(),
-            drawn_from: Vec::new(),
+            drawn_from: None,
             parameters: description.parameters.iter().zip(start).map(parameter).collect(),
         })
     }
@@ -216,15 +217,16 @@ impl EffectDefinition {
             let count = self.confused_with.len();
             Diagnostic::new(format!("confused_with has {count} ids, at most {MAX_RIVALS} are possible"))
         })?;
-        require(self.drawn_from.len() <= MAX_SESSIONS, Part::DrawnFrom, || {
-            let count = self.drawn_from.len();
+        let drawn_from = self.drawn_from.as_deref().unwrap_or_default();
+        require(drawn_from.len() <= MAX_SESSIONS, Part::DrawnFrom, || {
+            let count = drawn_from.len();
             Diagnostic::new(format!("drawn_from has {count} sessions, at most {MAX_SESSIONS} are possible"))
         })?;
-        for fingerprint in &self.drawn_from {
+        for fingerprint in drawn_from {
             require(is_fingerprint(fingerprint), Part::DrawnFrom, || {
                 advised(
                     format!("'{}' in drawn_from is not a fingerprint", excerpt(fingerprint, LONGEST_NAME)),
-                    "keep drawn_from as `calibrate` wrote it, or remove it if the effect is your own hypothesis",
+                    "keep drawn_from as `calibrate` wrote it, or write `drawn_from = []` if the effect was derived from no readings",
                 )
             })?;
         }

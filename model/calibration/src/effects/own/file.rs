@@ -270,6 +270,7 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, Diagnostic> 
     let (parameters, parameters_at) = parameters(&table)?;
     let (confused_with, rivals_at) =
         words(&table, "confused_with", "a list of ids, such as [\"rate_dependence\"]")?;
+    let is_declared = table.table.contains_key("drawn_from");
     let (drawn_from, _) = words(&table, "drawn_from", "a list of strings, as `calibrate` writes it")?;
     let experiment = match table.table.contains_key("experiment") {
         true => table.string("experiment", "")?.0,
@@ -285,7 +286,7 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, Diagnostic> 
         one_sided: table.boolean("one_sided")?,
         confused_with,
         experiment: experiment.to_owned(),
-        drawn_from,
+        drawn_from: is_declared.then_some(drawn_from),
         parameters,
     };
     let own = OwnEffect::new(definition).map_err(|DefinitionError { part, diagnostic }| {

@@ -57,7 +57,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 ///     one_sided: true,
 ///     confused_with: vec!["dwell_relaxation".to_owned()],
 ///     experiment: "dead weights with two pauses".to_owned(),
-///     drawn_from: Vec::new(),
+///     drawn_from: None,
 ///     parameters: vec![OwnParameter { name: "k".into(), unit: "1".into(), start: 0.02, bounds: None }],
 /// };
 /// let error = OwnEffect::new(EffectDefinition { formula: "k*ln(dwel_s/3)".into(), ..dip.clone() }).unwrap_err();

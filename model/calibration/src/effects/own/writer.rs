@@ -39,8 +39,8 @@ pub fn own_effect_blocks<'a>(effects: impl IntoIterator<Item = &'a EffectDefinit
             rivals.join(", "),
             quoted(&effect.experiment),
         );
-        if !effect.drawn_from.is_empty() {
-            let readings: Vec<String> = effect.drawn_from.iter().map(|of| quoted(of)).collect();
+        if let Some(drawn_from) = &effect.drawn_from {
+            let readings: Vec<String> = drawn_from.iter().map(|of| quoted(of)).collect();
             let _ = writeln!(text, "drawn_from = [{}]", readings.join(", "));
         }
         for p in &effect.parameters {

@@ -1,0 +1,138 @@
+//! Conversion of a posterior to its report.
+
+mod bad_series;
+mod changes;
+mod effects;
+mod errors;
+mod limits;
+mod noise;
+
+use pinswitch_inference::Member;
+
+use crate::adequacy::{Residual, is_adequate};
+use crate::aliasing::aliasing;
+use crate::confirmation::TrialReport;
+use crate::evidence::{Evidence, Fitted};
+use crate::report::{DataSummary, ExpectedErrorReport, Report, StructureReport, Verdict};
+use crate::table::PlateauRow;
+
+use bad_series::bad_series;
+use changes::changes;
+use effects::effects;
+pub(crate) use errors::{HeldOut, held_out, parameters};
+use errors::{least_squares_n, model_report};
+use limits::{NEVER_VISIBLE, candidates, invisible, limits};
+use noise::{floor_n, noise_parts};
+
+/// Name and version of the format.
+pub(crate) const SCHEMA: &str = "pinswitch.calibration/2";
+/// Smallest probability of a structure in the report.
+const LEAST_PROBABILITY: f64 = 0.01;
+/// Fewest series for an expected error of a new session.
+const LEAST_SERIES: usize = 4;
+
+/// A posterior with its models, from which a report follows.
+pub(crate) struct Findings<'a> {
+    pub(crate) rows: &'a [PlateauRow],
+    pub(crate) evidence: &'a Evidence,
+    pub(crate) baseline: &'a Fitted,
+    pub(crate) augmented: &'a Fitted,
+    pub(crate) trials: Vec<TrialReport>,
+}
+
+impl Findings<'_> {
+    /// Returns reading minus prediction of each row of the table, in newtons.
+    fn residuals_n(&self, fitted: &Fitted) -> Vec<f64> {
+        self.rows.iter().zip(&fitted.predicted_n).map(|(row, p)| row.force_n - p).collect()
+    }
+}
+
+/// Returns the report of findings.
+pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
+    let Findings { rows, evidence, baseline, augmented, .. } = &findings;
+    let posterior = evidence.posterior();
+    let best = posterior.window.first()?;
+    let held = held_out(evidence, best)?;
+    let held_baseline = held_out(evidence, &posterior.baseline)?;
+    let augmented_report = model_report(evidence, best, augmented, held);
+    let effects = effects(&findings, &augmented_report, held);
+    let is_supported = evidence.series_count() >= LEAST_SERIES;
+    let expected = posterior.expected_error.filter(|_| is_supported);
+    let named = |member: &Member| match member {
+        Member::Kernel(_) => Some(evidence.name(*member).to_owned()),
+        Member::Effect(_) => None,
+    };
+    let structures = posterior
+        .members()
+        .iter()
+        .filter(|(_, probability)| *probability >= LEAST_PROBABILITY)
+        .filter_map(|(member, probability)| {
+            let covariate = evidence.covariate(*member).to_owned();
+            Some(StructureReport { name: named(member)?, covariate, probability: *probability })
+        })
+        .collect();
+    Some(Report {
+        schema: SCHEMA.to_owned(),
+        data: DataSummary {
+            rows: rows.len(),
+            series: evidence.series_count(),
+            conditions: augmented.model.frame.conditions.len(),
+            outliers: evidence.outliers().iter().filter(|is_out| **is_out).count(),
+        },
+        verdict: verdict(evidence).in_view_of(&findings.trials),
+        adequate: adequate(&findings),
+        promise_n: expected.map(|e| e.value),
+        promise_baseline_n: posterior.baseline_error.filter(|_| is_supported).map(|e| e.value),
+        expected_error_n: expected.map(|e| ExpectedErrorReport { value: e.value, ci90: e.interval }),
+        least_squares_n: least_squares_n(evidence, rows, &baseline.model),
+        noise_floor_n: floor_n(augmented, rows),
+        noise: augmented.noise,
+        noise_parts: noise_parts(augmented.noise, rows),
+        changes: changes(evidence),
+        baseline: model_report(evidence, &posterior.baseline, baseline, held_baseline),
+        augmented: augmented_report,
+        candidates: candidates(evidence),
+        structures,
+        limits: limits(evidence),
+        aliasing: aliasing(rows),
+        ignored_columns: Vec::new(),
+        invisible: invisible(evidence, baseline),
+        never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
+        bad_series: bad_series(evidence, rows),
+        effects,
+        trials: findings.trials,
+        sessions: Vec::new(),
+        extrapolation: None,
+    })
+}
+
+/// Returns the verdict of a posterior. A change of friction between sessions or specimens is no effect
+/// that the model lacks.
+fn verdict(evidence: &Evidence) -> Verdict {
+    let posterior = evidence.posterior();
+    let reported: Vec<_> = posterior.reported.iter().filter(|r| !evidence.is_change(r.member)).collect();
+    let is_unnamed = |member: Member| matches!(member, Member::Kernel(_));
+    if reported.iter().any(|r| is_unnamed(r.member)) {
+        Verdict::Unattributed
+    } else if reported.iter().any(|r| !r.rivals.is_empty()) {
+        Verdict::Ambiguous
+    } else if !reported.is_empty() {
+        Verdict::Attributed
+    } else if !posterior.candidates.is_empty() && posterior.candidates.iter().all(|c| c.size.is_excluded()) {
+        Verdict::None
+    } else {
+        Verdict::Inconclusive
+    }
+}
+
+fn adequate(findings: &Findings<'_>) -> bool {
+    let Findings { evidence, augmented, .. } = findings;
+    let residual_n = findings.residuals_n(augmented);
+    let outliers = evidence.outliers();
+    let residuals: Vec<Residual<'_>> = evidence
+        .rows()
+        .filter(|(row, ..)| !outliers[*row])
+        .map(|(row, series, point)| Residual { point, series, residual_n: residual_n[row] })
+        .collect();
+    is_adequate(&residuals)
+}

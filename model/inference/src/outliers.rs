@@ -1,0 +1,240 @@
+//! Gross errors: whole series, and single readings.
+//!
+//! A series may have an offset of its own in each direction that the noise does not explain. Its
+//! probability follows from prior odds and the evidence of the offset, as for any other part of a
+//! hypothesis. Single readings are tested one by one with Bonferroni's correction, against Student's t
+//! distribution of the noise.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::Fit;
+use crate::leave_out::Linearised;
+use crate::noise::{EXCLUDED, Noise};
+use crate::problem::Problem;
+use crate::quadrature::{log_sum_exp, student_tail};
+use crate::score::variance_gain;
+
+/// Prior probability that a series and direction has a gross error.
+const SERIES_PROBABILITY: f64 = 0.01;
+/// Scale of the half-Cauchy prior of the offset of such a series, in repetition noise.
+const SERIES_SCALE: f64 = 10.0;
+/// Posterior probability above which a series is listed.
+const LISTED_PROBABILITY: f64 = 0.9;
+/// Probability above which a series is excluded from the fits that judge it: a gross error inflates the
+/// scatter between series, which hides it.
+const SUSPECTED_PROBABILITY: f64 = 0.5;
+/// Probability that any reading of a table without gross errors is listed.
+const FAMILY_PROBABILITY: f64 = 0.05;
+
+/// A series with a gross error in one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutlyingSeries {
+    /// Number of the series.
+    pub series: usize,
+    /// Whether it is in the second direction.
+    pub direction: bool,
+    /// Probability of the error.
+    pub probability: f64,
+    /// Mean of reading minus prediction from the other series.
+    pub offset: f64,
+    /// Standard deviation of that mean without a gross error.
+    pub sd: f64,
+}
+
+/// A reading with a gross error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutlyingReading {
+    /// Row of the reading.
+    pub row: usize,
+    /// Reading minus its expectation from all others.
+    pub offset: f64,
+    /// Scale of the noise of a reading.
+    pub sd: f64,
+}
+
+/// Gross errors of a table under a hypothesis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outliers {
+    /// Series, in order.
+    pub series: Vec<OutlyingSeries>,
+    /// Readings, in order.
+    pub readings: Vec<OutlyingReading>,
+    /// Root mean square of the other readings about their expectation from all readings, in scales of
+    /// the noise of a reading.
+    pub scatter: f64,
+    /// Every reading minus its expectation from all readings, in scales of the noise of a reading; not a
+    /// number for rows that the fit excludes.
+    pub standardised: Vec<f64>,
+    rows: Vec<bool>,
+}
+
+impl Outliers {
+    /// Finds the gross errors of a table under a fit.
+    pub(crate) fn new(problem: &Problem, fit: &Fit) -> Self {
+        Self::found(problem, fit, LISTED_PROBABILITY).unwrap_or_default()
+    }
+
+    /// Returns the rows of series with a suspected gross error under a fit, which a more robust fit
+    /// excludes.
+    pub(crate) fn suspected(problem: &Problem, fit: &Fit) -> Vec<bool> {
+        let found = Self::found(problem, fit, SUSPECTED_PROBABILITY).unwrap_or_default();
+        let is_in = |row: usize| {
+            let series = problem.rows.series[row];
+            found.series.iter().any(|s| s.series == series)
+        };
+        (0..problem.len()).map(is_in).collect()
+    }
+
+    fn found(problem: &Problem, fit: &Fit, least: f64) -> Option<Self> {
+        let mut outliers = Self {
+            rows: vec![false; problem.len()],
+            standardised: vec![f64::NAN; problem.len()],
+            ..Self::default()
+        };
+        let linearised = Linearised::new(problem, fit)?;
+        outliers.find_readings(problem, fit, &linearised);
+        outliers.find_series(problem, fit, &linearised, least)?;
+        Some(outliers)
+    }
+
+    /// Returns whether a row has a gross error, or belongs to a series that has one.
+    pub fn contains(&self, row: usize) -> bool {
+        self.rows.get(row).copied().unwrap_or(false)
+    }
+
+    fn find_readings(&mut self, problem: &Problem, fit: &Fit, linearised: &Linearised) {
+        let point = &linearised.point;
+        let noise = noise_of(problem, linearised, &fit.mode.weights);
+        let white = point.marginal.white_residual(&point.solution.mean);
+        let precise = point.marginal.whitening.unwhiten_transposed(&white);
+        let quantum = noise.quantum_variance();
+        let (mut squares, mut count) = (0.0, 0.0);
+        for row in (0..problem.len()).filter(|row| fit.mode.weights[*row] != EXCLUDED) {
+            let offset = (noise.own_variance(row) + quantum) * precise[row];
+            let sd = (noise.independent_variance(row) + quantum).max(1e-24).sqrt();
+            self.standardised[row] = offset / sd;
+            if student_tail(offset / sd) * (problem.len() as f64) < FAMILY_PROBABILITY {
+                self.readings.push(OutlyingReading { row, offset, sd });
+                self.rows[row] = true;
+            } else {
+                squares += (offset / sd).powi(2);
+                count += 1.0;
+            }
+        }
+        self.scatter = (squares / f64::max(count, 1.0)).sqrt();
+    }
+
+    fn find_series(
+        &mut self,
+        problem: &Problem,
+        fit: &Fit,
+        linearised: &Linearised,
+        least: f64,
+    ) -> Option<()> {
+        let solution = &linearised.point.solution;
+        // An excluded series is compared with its expectation from the others at the usual noise.
+        let weights = fit.mode.weights.map(|weight| if weight == EXCLUDED { 1.0 } else { weight });
+        let noise = noise_of(problem, linearised, &weights);
+        let prior = libm::log(SERIES_PROBABILITY / (1.0 - SERIES_PROBABILITY));
+        let whitening = noise.whitening(&problem.ranges)?;
+        let white_matrix = whitening.whiten(&linearised.design.matrix);
+        let difference = &linearised.design.target - &linearised.design.matrix * &solution.mean;
+        let residual = whitening.whiten_vector(&difference);
+        for (series, range) in whitening.ranges.iter().enumerate() {
+            let (first, length) = (range.start, range.len());
+            let part = white_matrix.rows(first, length) * solution.root.transpose();
+            let explained = &part * part.transpose();
+            let own = residual.rows(first, length).into_owned();
+            // Precision of the residual given the other series, and its product with the residual.
+            let is_excluded = fit.mode.weights[first] == EXCLUDED;
+            let (share, own) = if is_excluded {
+                let share = (DMatrix::identity(length, length) + explained).try_inverse()?;
+                let own = &share * own;
+                (share, own)
+            } else {
+                (DMatrix::identity(length, length) - explained, own)
+            };
+            // The first direction, the second, or both alike.
+            let choices = [vec![false], vec![true], vec![false, true]];
+            let scored: Vec<_> = choices
+                .into_iter()
+                .filter_map(|directions| {
+                    let is_of = |row: usize| directions.contains(&problem.rows.direction[first + row]);
+                    let ones = DVector::from_fn(length, |row, _| if is_of(row) { 1.0 } else { 0.0 });
+                    // One wrong reading is not a wrong series.
+                    if ones.sum() < 1.5 {
+                        return None;
+                    }
+                    let column = &whitening.inverses[series] * ones;
+                    let (information, score) = (column.dot(&(&share * &column)), column.dot(&own));
+                    let scale = SERIES_SCALE * problem.reference.repetition_sd;
+                    let matrix = DMatrix::from_element(1, 1, information);
+                    let gain = variance_gain(scale, matrix, &DVector::from_element(1, score));
+                    Some((gain, directions, score / information, 1.0 / information.sqrt()))
+                })
+                .collect();
+            let total = log_sum_exp(&scored.iter().map(|(gain, ..)| *gain).collect::<Vec<f64>>());
+            // The prior odds are spread over the choices.
+            let odds = total - libm::log(scored.len().max(1) as f64) + prior;
+            let probability = 1.0 / (1.0 + libm::exp(-odds));
+            let best = scored.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, directions, offset, sd)) = best.filter(|_| probability > least) else {
+                continue;
+            };
+            for direction in directions {
+                let rows: Vec<usize> =
+                    range.clone().filter(|row| problem.rows.direction[*row] == direction).collect();
+                if !rows.is_empty() {
+                    self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
+                }
+                rows.into_iter().for_each(|row| self.rows[row] = true);
+            }
+        }
+        Some(())
+    }
+}
+
+fn noise_of<'a>(problem: &'a Problem, linearised: &'a Linearised, weights: &'a DVector<f64>) -> Noise<'a> {
+    Noise {
+        rows: &problem.rows,
+        reference: &problem.reference,
+        scales: &linearised.point.scales,
+        weights,
+        friction: &linearised.design.channels[problem.space.series_scale_channel],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problem::{ROWS_PER_SERIES, problem, problem_with};
+    use crate::{SearchOptions, infer};
+
+    fn outliers(problem: &Problem) -> Outliers {
+        infer(problem, SearchOptions::default(), 1).unwrap().outliers
+    }
+
+    #[test]
+    fn clean_tables_have_no_outliers() {
+        for count in [9, 12, 24] {
+            let found = outliers(&problem(count, 0.3));
+            assert!(found.series.is_empty() && found.readings.is_empty(), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_series_is_listed_with_its_offset() {
+        let wrong = problem_with(24, 0.3, |row| if row / ROWS_PER_SERIES == 7 { 3.0 } else { 0.0 });
+        let found = outliers(&wrong);
+        assert!(found.series.iter().all(|s| s.series == 7 && (s.offset - 3.0).abs() < 0.3), "{found:?}");
+        assert!(!found.series.is_empty() && found.contains(7 * ROWS_PER_SERIES));
+    }
+
+    #[test]
+    fn a_wrong_reading_is_listed() {
+        let wrong = problem_with(24, 0.3, |row| if row == 31 { -4.0 } else { 0.0 });
+        let found = outliers(&wrong);
+        assert_eq!(found.readings.iter().map(|r| r.row).collect::<Vec<_>>(), [31]);
+        assert!((found.readings[0].offset + 4.0).abs() < 0.3 && found.series.is_empty(), "{found:?}");
+    }
+}

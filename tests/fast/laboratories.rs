@@ -1,0 +1,65 @@
+//! Calibration of small tables as laboratories make them, which rigs of the paper's kind are unlike.
+
+use pinswitch_calibration::effects::Vocabulary;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::{Report, Verdict, calibrate};
+
+use crate::harness::repository;
+
+fn report(name: &str) -> Report {
+    let file = repository("tests/data/laboratories").join(name);
+    let table = PlateauTable::read(std::fs::File::open(file).unwrap(), name).unwrap();
+    calibrate(&table.rows, &Vocabulary::built_in(), 1).unwrap().report
+}
+
+/// Six loads on one contact, mu = 0.18, drag 5 N, gain 1.15: the model is as good as least squares with
+/// these three constants, and names them or what the table cannot separate from them.
+#[test]
+fn drag_and_gain_are_named() {
+    let report = report("drag-and-gain.csv");
+    let names: Vec<Vec<&str>> = report
+        .effects
+        .iter()
+        .map(|e| std::iter::once(e.id.as_str()).chain(e.rivals.iter().map(|r| r.id.as_str())).collect())
+        .collect();
+    let has = |id: &str| names.iter().any(|ids| ids.contains(&id));
+    assert!(names.len() == 2 && has("guide_drag") && has("load_cell_gain"), "{names:?}");
+    let gain = report.effects.iter().find(|e| e.id == "load_cell_gain").unwrap();
+    let [low, high] = gain.parameters["g"].ci95;
+    assert!(low < 0.15 && 0.15 < high, "{gain:?}");
+    let least_squares = report.least_squares_n.unwrap();
+    assert!(report.augmented.heldout_series_rmse_n < 1.05 * least_squares, "{least_squares}");
+    assert!(report.expected_error_n.unwrap().value < 0.15, "{:?}", report.expected_error_n);
+}
+
+/// The fourth repetition of every series has the wrong direction. Its rows are found, and the others
+/// are predicted as if it were absent.
+#[test]
+fn repetitions_with_gross_errors_are_found() {
+    let report = report("wrong-fourth-repetitions.csv");
+    let series: Vec<&str> = report.bad_series.iter().map(|bad| bad.series.as_str()).collect();
+    assert_eq!(series, ["0", "1", "2", "3", "4", "5"], "{:?}", report.bad_series);
+    assert!(report.augmented.heldout_series_rmse_n < 0.1, "{:?}", report.augmented);
+    assert!(report.effects.is_empty(), "{:?}", report.effects);
+}
+
+/// A textbook capstan with mu = 0.18 at seven wrap angles: the wrap is used.
+#[test]
+fn a_capstan_has_its_friction_coefficient() {
+    let report = report("capstan-seven-angles.csv");
+    assert_eq!(report.verdict, Verdict::None, "{:?}", report.effects);
+    let mu = &report.augmented.parameters["mu"];
+    let [low, high] = mu.ci95;
+    assert!((mu.value - 0.18).abs() < 5e-4 && low < 0.18 && 0.18 < high + 1e-5, "{mu:?}");
+}
+
+/// Four stops along the stroke with nothing periodic between them: no structure is finer than the
+/// sampling.
+#[test]
+fn four_stops_show_no_wave() {
+    let report = report("four-stops.csv");
+    let forms = report.effects.iter().filter_map(|effect| effect.form.as_ref());
+    assert!(forms.clone().all(|form| form.shape != "sine"), "{:?}", forms.collect::<Vec<_>>());
+    assert!(report.effects.iter().all(|effect| effect.covariate != "time"), "{:?}", report.effects);
+    assert!(report.augmented.heldout_series_rmse_n < report.least_squares_n.unwrap());
+}

@@ -24,7 +24,9 @@ pub(super) fn summary(report: &Report) -> String {
     text.push_str(&errors(report));
     text.push_str(&format!("verdict: {}\n", verdict(report)));
     if !report.adequate {
-        text.push_str("lack of fit: repeated readings are closer to each other than to the model, see report.html\n");
+        text.push_str(
+            "lack of fit: repeated readings are closer to each other than to the model, see report.html\n",
+        );
     }
     text.push_str(&bad_series(report));
     text.push_str(&trials(report));
@@ -100,9 +102,11 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
 
 /// Formats the friction coefficient of a plain contact.
 fn friction(report: &Report) -> String {
-    report.augmented.parameters.get("mu").map_or_else(String::new, |mu| {
-        format!("mu = {}\n", estimate_words(mu))
-    })
+    report
+        .augmented
+        .parameters
+        .get("mu")
+        .map_or_else(String::new, |mu| format!("mu = {}\n", estimate_words(mu)))
 }
 
 /// Formats a probability, never as 0 or 1: it depends on the priors.

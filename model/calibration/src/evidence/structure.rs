@@ -197,7 +197,14 @@ impl Collector<'_> {
     }
 
     fn time(&mut self) {
-        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Silicone, Channel::Pins];
+        let channels = [
+            Channel::Reading,
+            Channel::Gain,
+            Channel::Drag,
+            Channel::Friction,
+            Channel::Silicone,
+            Channel::Pins,
+        ];
         let mut starts: Vec<f64> = self.rows.series_start_s.clone();
         starts.sort_by(f64::total_cmp);
         starts.dedup();

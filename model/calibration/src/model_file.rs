@@ -9,7 +9,7 @@ use crate::effects::{
     Abscissa, Covariate, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks,
 };
 use crate::evidence::{Fitted, Session};
-use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Spread, Term, prediction_sd_n};
+use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
@@ -102,34 +102,6 @@ pub struct ModelFile {
     vocabulary: Vocabulary,
 }
 
-/// Rounds to nine significant digits: the last digits of a fit depend on the processor, whose matrix
-/// products add in different orders, and files do not.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
-}
-
-fn rounded_noise(noise: Noise) -> Noise {
-    let spread = |s: Spread| Spread { constant_n: rounded(s.constant_n), per_load: rounded(s.per_load) };
-    Noise {
-        repetition: spread(noise.repetition),
-        series: spread(noise.series),
-        correlation: rounded(noise.correlation),
-        series_common: spread(noise.series_common),
-        series_scale: rounded(noise.series_scale),
-        mount_scale: rounded(noise.mount_scale),
-        specimen_scale: rounded(noise.specimen_scale),
-        ..noise
-    }
-}
-
-fn rounded_structure(structure: &Structure) -> Structure {
-    let mut structure = structure.clone();
-    if let Shape::Table { at, value, .. } = &mut structure.form {
-        at.iter_mut().chain(value).for_each(|v| *v = rounded(*v));
-    }
-    structure
-}
-
 /// Returns whether a term depends on the operator.
 fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
     match term {
@@ -146,7 +118,6 @@ impl ModelFile {
     /// Returns the file of a fitted hypothesis.
     pub fn new(fitted: &Fitted) -> Self {
         let Fitted { model, noise, covariance, .. } = fitted;
-        let noise = rounded_noise(*noise);
         let mut frame = model.frame.clone();
         let is_over = |over: Abscissa| {
             model.terms.iter().any(|term| {
@@ -167,8 +138,7 @@ impl ModelFile {
         }
         let discrepancies = |index: usize| {
             let of = model.discrepancies.iter().filter(|d| d.term == index);
-            of.map(|d| DiscrepancyEntry { value: rounded(d.value), sd: rounded(d.sd), factor: d.factor })
-                .collect()
+            of.map(|d| DiscrepancyEntry { value: d.value, sd: d.sd, factor: d.factor }).collect()
         };
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
@@ -177,7 +147,7 @@ impl ModelFile {
                 .names()
                 .into_iter()
                 .zip(model.values())
-                .map(|((name, unit), value)| Constant { name, value: rounded(value), unit: unit.to_owned() })
+                .map(|((name, unit), value)| Constant { name, value, unit: unit.to_owned() })
                 .collect(),
             terms: model
                 .terms
@@ -195,16 +165,16 @@ impl ModelFile {
                         id: term.id().to_owned(),
                         side: None,
                         formula: Some(structure.describe(&model.frame)),
-                        structure: Some(rounded_structure(structure)),
+                        structure: Some(structure.clone()),
                         discrepancies: Vec::new(),
                     },
                 })
                 .collect(),
-            noise,
+            noise: *noise,
             beyond_range: 0.0,
             frame,
             covariance: (0..covariance.nrows())
-                .map(|i| covariance.row(i).iter().copied().map(rounded).collect())
+                .map(|i| covariance.row(i).iter().copied().collect())
                 .collect(),
             vocabulary: model.vocabulary.retaining(|own| used(&own.definition().id)),
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::{CandidateReport, EffectReport, Estimate, Fate, Report, StructureReport};
+use pinswitch_calibration::{CandidateReport, EffectReport, Estimate, Fate, Report};
 use pinswitch_friction::sort_by_number;
 
 /// Built-in effects by id, each as a clause that follows `that`.
@@ -87,16 +87,12 @@ pub fn other_probabilities(report: &Report, least: f64) -> Vec<(&str, f64)> {
                 || effect.rivals.iter().any(|rival| rival.id == id)
         })
     };
-    // A change between sessions is reported on its own.
-    let is_change = |structure: &&StructureReport| {
-        report.changes.iter().any(|c| c.by == structure.covariate && c.probability == structure.probability)
-    };
     // The probability of an effect that is not identifiable is that of its prior.
     let is_visible = |candidate: &&CandidateReport| candidate.fate != Fate::Invisible;
     let effects = report.candidates.iter().filter(is_visible);
     let effects = effects.map(|candidate| (candidate.id.as_str(), candidate.probability));
-    let structures = report.structures.iter().filter(|structure| !is_change(structure));
-    let structures = structures.map(|structure| (structure.name.as_str(), structure.probability));
+    let structures =
+        report.structures.iter().map(|structure| (structure.name.as_str(), structure.probability));
     let mut others: Vec<(&str, f64)> =
         effects.chain(structures).filter(|(id, probability)| *probability > least && !is_shown(id)).collect();
     sort_by_number(&mut others, |(_, probability)| -probability);

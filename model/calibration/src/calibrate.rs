@@ -169,19 +169,24 @@ pub fn calibrate(
     let posterior = evidence.posterior();
     let baseline = evidence.fitted(&posterior.baseline).ok_or_else(not_finite)?;
     let best = posterior.window.first().ok_or_else(not_finite)?;
-    let mut augmented = evidence.fitted(best).ok_or_else(not_finite)?;
-    let findings = Findings { rows, evidence: &evidence, baseline: &baseline, augmented: &augmented, trials };
-    let mut report = report(findings).ok_or_else(not_finite)?;
     let form = draw_form(rows, &evidence, &searched, seed);
-    if let Some(form) = &form {
-        if let Some(unnamed) = report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED) {
-            unnamed.form = Some(form.report.clone());
-        }
-        if form.report.in_model {
-            augmented = form.fitted.clone();
-            report.augmented.parameters.clone_from(&form.parameters);
-            report.augmented.heldout_rmse_n = form.report.heldout_rmse_n;
-        }
+    let in_model = form.as_ref().filter(|form| form.report.in_model);
+    let augmented = match in_model {
+        Some(form) => form.fitted.clone(),
+        None => evidence.fitted(best).ok_or_else(not_finite)?,
+    };
+    let findings = Findings {
+        rows,
+        evidence: &evidence,
+        baseline: &baseline,
+        augmented: &augmented,
+        form: in_model.map(|form| &form.model_report),
+        trials,
+    };
+    let mut report = report(findings).ok_or_else(not_finite)?;
+    let unnamed = report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED);
+    if let Some((unnamed, form)) = unnamed.zip(form.as_ref()) {
+        unnamed.form = Some(form.report.clone());
     }
     Ok(Calibration { report, evidence, baseline, augmented, form })
 }
@@ -216,6 +221,33 @@ mod tests {
         assert!(["session", "time"].contains(&report.effects[0].covariate.as_str()));
         let same = calibrated(&[day("a", 1, 0.6), day("b", 2, 0.6)].concat());
         assert_eq!(same.verdict, Verdict::Attributed);
+    }
+
+    /// The curve of a part has the friction of the latest session.
+    #[test]
+    fn curves_have_the_latest_friction() {
+        let day = |name: &str, seed, factor: f64| {
+            let mut rows = session(seed);
+            rows.retain(|row| row.pins.is_empty());
+            for row in &mut rows {
+                let exponent = row.direction.sign() * 0.24 * factor * row.wrap_angle_deg.to_radians();
+                // The digits of a large sine have no order.
+                let noise_n = 0.2 * (43758.5453 * libm::sin(12.9898 * row.time_s + factor)).fract();
+                row.force_n = row.load_n * libm::exp(exponent) + noise_n;
+                row.labels.session = name.to_owned();
+            }
+            rows
+        };
+        let rows = [day("a", 1, 1.25), day("b", 2, 1.0)].concat();
+        let found = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+        assert_eq!(found.report.changes.len(), 1, "{:?}", found.report.effects);
+        let file = crate::ModelFile::new(&found.augmented);
+        let silicone = pinswitch_friction::Substrate::Silicone;
+        let curve = file.part_curve(silicone, &[], &[20.0], "model.toml").unwrap();
+        let wrap = rows[0].wrap_angle_deg.to_radians();
+        let expected = 20.0 * libm::sinh(0.24 * wrap);
+        assert!((curve.friction_n[0] / expected - 1.0).abs() < 0.03, "{} {expected}", curve.friction_n[0]);
+        assert_eq!(file.sides(), (Vec::new(), Vec::new()));
     }
 
     #[test]

@@ -16,6 +16,8 @@ use crate::table::{PlateauRow, matching_sessions};
 
 /// Posterior probability above which an effect is present, as for reported members.
 const PRESENT: f64 = 0.9;
+/// Posterior probability above which the size of an effect is that of the hypotheses with it.
+const LIKELY: f64 = 0.5;
 /// Share of a typical size that a refuted effect does not reach; a derived effect does not reach its
 /// derived size.
 const TYPICAL_SHARE: f64 = 0.5;
@@ -157,7 +159,7 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
     let member = Member::Effect(index);
     let inside = posterior.probability(member);
     let (probability, value, ci95) = match (posterior.size(index), candidate) {
-        (Some(size), _) if inside > TYPICAL_SHARE => (inside, size.mean, size.interval),
+        (Some(size), _) if inside > LIKELY => (inside, size.mean, size.interval),
         (_, Some(candidate)) => {
             let odds = libm::exp(candidate.log_odds.min(700.0));
             (inside.max(odds / (1.0 + odds)), candidate.size.size, candidate.size.interval())
@@ -278,6 +280,23 @@ mod tests {
         let drag = session_with(5, &[(Term::Named(effect_named("guide_drag").unwrap()), &[0.5])]);
         let constant = trial_of(&drag, 0.5, "drawn_from = []");
         assert_ne!(constant.outcome, TrialOutcome::Confirmed, "{constant:?}");
+    }
+
+    /// Constants after those that a fit shifts keep their start values.
+    #[test]
+    fn effects_with_many_constants_are_tested() {
+        let shapes: String = ["b", "c", "d", "e"]
+            .iter()
+            .map(|name| format!("parameters.{name} = {{ start = 1, low = 0.5, high = 2, unit = \"1\" }}\n"))
+            .collect();
+        let file = format!(
+            "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"rig\"\ncovariate = \"position\"\n\
+             acts_on = \"reading\"\ncombine = \"add\"\nformula = \"a*exp(-b*stroke)*(1 + c*stroke^2)/(1 + d*stroke^3)/(1 + e*stroke^5)\"\n\
+             parameters.a = {{ size = true, start = 0.5, unit = \"N\" }}\n{shapes}"
+        );
+        let vocabulary = Vocabulary::built_in().read(&file, "mine.toml").unwrap();
+        let trial = calibrate(&session(6), &vocabulary, 1).unwrap().report.trials[0].clone();
+        assert!(trial.probability.is_some_and(f64::is_finite) && trial.size.is_some(), "{trial:?}");
     }
 
     #[test]

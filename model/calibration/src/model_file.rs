@@ -14,11 +14,14 @@ use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
 };
-use crate::table::{Frame, PlateauRow};
+use crate::table::{Frame, PlateauRow, Point};
 use crate::toml_text::{locate_field, toml_error};
 
 /// Name and version of the format.
 const SCHEMA: &str = "pinswitch.model/1";
+
+/// Times of the fitted session at which its drift is evaluated.
+const DRIFT_TIMES: usize = 24;
 
 /// A term in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -291,10 +294,8 @@ impl ModelFile {
         let mut sd = prediction_sd_n(&model, &points, &self.covariance(), noise);
         if session == Session::New {
             // What the fitted session drew for itself, another one draws again.
-            let drifting = model.predict(&model.frame.points(rows).unwrap_or_default());
-            let squares: f64 = drifting.iter().zip(&predicted).map(|(a, b)| (a - b).powi(2)).sum();
-            let drift_n = (squares / predicted.len().max(1) as f64).sqrt();
-            sd.iter_mut().for_each(|sd| *sd = libm::hypot(*sd, drift_n));
+            let drift_n = self.drift_n(&model, &points, &predicted);
+            sd.iter_mut().zip(drift_n).for_each(|(sd, drift_n)| *sd = libm::hypot(*sd, drift_n));
         }
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
@@ -311,6 +312,29 @@ impl ModelFile {
             return Err(Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP));
         }
         Ok((predicted, sd))
+    }
+
+    /// Returns the root mean square of the drift of the fitted session about its mean, at each point.
+    fn drift_n(&self, model: &Model, points: &[Point], mean_n: &[f64]) -> Vec<f64> {
+        if !self.drifts() {
+            return vec![0.0; points.len()];
+        }
+        let Frame { travel_time_s, travel_share, session_s, .. } = &self.frame;
+        let stride = (travel_time_s.len() / DRIFT_TIMES).max(1);
+        let times: Vec<(f64, f64)> = travel_time_s
+            .iter()
+            .zip(travel_share)
+            .step_by(stride)
+            .map(|(time_s, travel)| (time_s / session_s, *travel))
+            .collect();
+        let mut squares = vec![0.0; points.len()];
+        for (time, travel) in &times {
+            let at = |p: &Point| Point { time: *time, travel: *travel, is_new_session: false, ..*p };
+            let drifting = model.predict(&points.iter().map(at).collect::<Vec<_>>());
+            let changes = drifting.iter().zip(mean_n).map(|(a, b)| (a - b).powi(2));
+            squares.iter_mut().zip(changes).for_each(|(sum, square)| *sum += square);
+        }
+        squares.iter().map(|sum| (sum / times.len().max(1) as f64).sqrt()).collect()
     }
 
     /// Returns whether a term drifts with the time of the session, so that a new session is predicted with
@@ -361,7 +385,10 @@ impl ModelFile {
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
         let stays =
             |id: &str| self.vocabulary.named(id).is_some_and(|e| e.description().side == Side::Switch);
-        let (inside, outside) = self.terms.iter().map(|t| t.id.as_str()).partition(|id| stays(id));
+        // A change between sessions is no effect: the curve is that of the latest session.
+        let is_change = |term: &&TermEntry| term.structure.as_ref().is_some_and(Structure::is_change);
+        let terms = self.terms.iter().filter(|term| !is_change(term));
+        let (inside, outside) = terms.map(|t| t.id.as_str()).partition(|id| stays(id));
         (outside, inside)
     }
 }

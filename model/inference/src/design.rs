@@ -269,8 +269,8 @@ pub(crate) fn added_column(
     let before = rows.forward.readings(&mode.constants, &rest);
     let after = rows.forward.readings(&mode.constants, &with);
     let column = slope(&after, &before, start);
-    let most = column.iter().fold(0.0f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { f64::NAN });
-    (most > 1e-9).then(|| DVector::from_vec(column))
+    let most = column.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    (most > 1e-9 && column.iter().all(|x| x.is_finite())).then(|| DVector::from_vec(column))
 }
 
 /// Returns the columns of a kernel: its basis times the sensitivity to its channel.

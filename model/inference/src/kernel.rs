@@ -46,6 +46,14 @@ pub fn rms_norm(basis: &DMatrix<f64>) -> f64 {
     (basis.norm_squared() / basis.nrows().max(1) as f64).sqrt()
 }
 
+/// Returns the basis of a wave with this number of cycles over a covariate in 0..1, of any phase.
+pub fn wave(u: &[f64], cycles: f64) -> DMatrix<f64> {
+    DMatrix::from_fn(u.len(), 2, |row, phase| {
+        let angle = 2.0 * PI * cycles * u[row];
+        if phase == 0 { libm::cos(angle) } else { libm::sin(angle) }
+    })
+}
+
 /// Returns the basis of an AR(1) process with this correlation over `count` steps, at the step of each
 /// row: cosines with the spectrum of the process, at most `rank` of them.
 pub fn autoregressive(step: &[usize], count: usize, correlation: f64, rank: usize) -> DMatrix<f64> {

@@ -8,7 +8,7 @@
 //! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
 //! `I + A_s C A_s'` gives it the spread of a new series.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
@@ -91,11 +91,13 @@ pub fn leave_groups_out(
     let Linearised { design, point } = Linearised::new(problem, fit)?;
     let marginal = &point.marginal;
     let mut residuals = vec![0.0; problem.len()];
-    let groups: BTreeSet<usize> = group_of_series.iter().copied().collect();
-    for group in groups {
-        let out: Vec<usize> = (0..problem.len())
-            .filter(|row| group_of_series.get(problem.rows.series[*row]) == Some(&group))
-            .collect();
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (row, series) in problem.rows.series.iter().enumerate() {
+        if let Some(group) = group_of_series.get(*series) {
+            groups.entry(*group).or_default().push(row);
+        }
+    }
+    for (group, out) in groups {
         let matrix = marginal.white_matrix.select_rows(&out);
         let target = marginal.white_target.select_rows(&out);
         let gram = &marginal.gram - matrix.tr_mul(&matrix);

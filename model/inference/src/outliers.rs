@@ -18,11 +18,9 @@ use crate::score::variance_gain;
 const SERIES_PROBABILITY: f64 = 0.01;
 /// Scale of the half-Cauchy prior of the offset of such a series, in repetition noise.
 const SERIES_SCALE: f64 = 10.0;
-/// Posterior probability above which a series is listed.
-const LISTED_PROBABILITY: f64 = 0.9;
-/// Probability above which a series is excluded from the fits that judge it: a gross error inflates the
-/// scatter between series, which hides it.
-const SUSPECTED_PROBABILITY: f64 = 0.5;
+/// Posterior probability above which a series is listed, and excluded from the fits: a gross error inflates
+/// the scatter between series, which hides it.
+const LISTED_PROBABILITY: f64 = 0.5;
 /// Probability that any reading of a table without gross errors is listed.
 const FAMILY_PROBABILITY: f64 = 0.05;
 
@@ -70,14 +68,14 @@ pub struct Outliers {
 
 impl Outliers {
     /// Finds the gross errors of a table under a fit.
-    pub(crate) fn new(problem: &Problem, fit: &Fit) -> Self {
-        Self::found(problem, fit, LISTED_PROBABILITY).unwrap_or_default()
+    pub fn new(problem: &Problem, fit: &Fit) -> Self {
+        Self::found(problem, fit).unwrap_or_default()
     }
 
     /// Returns the rows of series with a suspected gross error under a fit, which a more robust fit
     /// excludes.
     pub(crate) fn suspected(problem: &Problem, fit: &Fit) -> Vec<bool> {
-        let found = Self::found(problem, fit, SUSPECTED_PROBABILITY).unwrap_or_default();
+        let found = Self::found(problem, fit).unwrap_or_default();
         let is_in = |row: usize| {
             let series = problem.rows.series[row];
             found.series.iter().any(|s| s.series == series)
@@ -85,7 +83,7 @@ impl Outliers {
         (0..problem.len()).map(is_in).collect()
     }
 
-    fn found(problem: &Problem, fit: &Fit, least: f64) -> Option<Self> {
+    fn found(problem: &Problem, fit: &Fit) -> Option<Self> {
         let mut outliers = Self {
             rows: vec![false; problem.len()],
             standardised: vec![f64::NAN; problem.len()],
@@ -93,7 +91,7 @@ impl Outliers {
         };
         let linearised = Linearised::new(problem, fit)?;
         outliers.find_readings(problem, fit, &linearised);
-        outliers.find_series(problem, fit, &linearised, least)?;
+        outliers.find_series(problem, fit, &linearised)?;
         Some(outliers)
     }
 
@@ -124,13 +122,7 @@ impl Outliers {
         self.scatter = (squares / f64::max(count, 1.0)).sqrt();
     }
 
-    fn find_series(
-        &mut self,
-        problem: &Problem,
-        fit: &Fit,
-        linearised: &Linearised,
-        least: f64,
-    ) -> Option<()> {
+    fn find_series(&mut self, problem: &Problem, fit: &Fit, linearised: &Linearised) -> Option<()> {
         let solution = &linearised.point.solution;
         // An excluded series is compared with its expectation from the others at the usual noise.
         let weights = fit.mode.weights.map(|weight| if weight == EXCLUDED { 1.0 } else { weight });
@@ -178,7 +170,7 @@ impl Outliers {
             let odds = total - libm::log(scored.len().max(1) as f64) + prior;
             let probability = 1.0 / (1.0 + libm::exp(-odds));
             let best = scored.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, directions, offset, sd)) = best.filter(|_| probability > least) else {
+            let Some((_, directions, offset, sd)) = best.filter(|_| probability > LISTED_PROBABILITY) else {
                 continue;
             };
             for direction in directions {

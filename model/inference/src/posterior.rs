@@ -97,13 +97,16 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let total = log_sum_exp(&window.iter().map(|fit| fit.score).collect::<Vec<f64>>());
     let probabilities: Vec<f64> = window.iter().map(|fit| libm::exp(fit.score - total)).collect();
     let reported = reported(problem, &window, &probabilities);
-    let candidates = candidates(problem, best, &reported);
+    // The baseline alone is a start for other hypotheses, which are scored later.
+    let is_baseline = options.members == 0;
+    let candidates = if is_baseline { Vec::new() } else { candidates(problem, best, &reported) };
     let outliers = Outliers::new(problem, best);
     let error_of =
         |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
     let expected_error = error_of(&window, &probabilities);
     let (fit_count, baseline) = (fits, search.baseline()?);
-    let baseline_error = error_of(std::slice::from_ref(&baseline), &[1.0]);
+    let baseline_error =
+        if is_baseline { expected_error } else { error_of(std::slice::from_ref(&baseline), &[1.0]) };
     Some(Posterior {
         window,
         probabilities,

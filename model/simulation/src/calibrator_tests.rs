@@ -98,8 +98,12 @@ fn table_has_the_wrap_angle() {
 /// the data.
 #[test]
 fn scatter_is_not_attributed() {
-    let cases =
-        [("run_in", Protocol::Paper, 2_023_002), ("stroke_position", Protocol::Randomised, 2_111_002)];
+    let cases = [
+        ("run_in", Protocol::Paper, 2_023_002),
+        ("stroke_position", Protocol::Randomised, 2_111_002),
+        ("guide_drag", Protocol::Randomised, 2_114_001),
+        ("coating_stiffening", Protocol::Randomised, 2_101_002),
+    ];
     for (name, protocol, seed) in cases {
         let is_meant = |c: &Case| c.name == name && c.protocol == protocol && c.group == Group::Singles;
         let case = Case { every_noise: true, ..study_cases().into_iter().find(is_meant).unwrap() };
@@ -108,18 +112,28 @@ fn scatter_is_not_attributed() {
     }
 }
 
-/// A wave of the friction, in a protocol that does not confound time with load; one of the reading with
-/// several turns is much like offsets that wander.
+/// The frequencies are between those of the library.
 #[test]
 fn waves_have_the_right_frequency() {
-    let mut plan = Plan { protocol: Protocol::Randomised, ..Plan::default() };
-    let kind = DisturbanceKind::TimeWave { cycles: 3.3, phase: 2.0 };
-    plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.08 });
-    let calibration = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1).unwrap();
-    let form = calibration.form.unwrap().report;
-    assert_eq!(form.shape, "sine", "{form:?}");
-    let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);
-    assert!((frequency / 3.3 - 1.0).abs() < 0.05 && (size / 0.08 - 1.0).abs() < 0.2, "{form:?}");
+    for (cycles, seed) in [(3.3, 1), (14.25, 2)] {
+        let mut plan = Plan { seed, ..Plan::default() };
+        let kind = DisturbanceKind::TimeWave { cycles, phase: 2.0 };
+        plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.15 });
+        let calibration = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1).unwrap();
+        let form = calibration.form.unwrap().report;
+        let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);
+        assert!(form.shape == "sine" && (frequency / cycles - 1.0).abs() < 0.05, "{cycles}: {form:?}");
+        assert!((size / 0.15 - 1.0).abs() < 0.2, "{cycles}: {form:?}");
+    }
+}
+
+#[test]
+fn structure_is_not_autocorrelation() {
+    let mut plan = Plan { seed: 8, ..Plan::default() };
+    let kind = DisturbanceKind::Spot { at: 0.4, width: 0.15, flat: false };
+    plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.2 });
+    let report = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1).unwrap().report;
+    assert_eq!(report.noise.correlation, 0.0, "{:?}", report.effects);
 }
 
 /// The estimate of the noise is a plan for a rig with the same noise.

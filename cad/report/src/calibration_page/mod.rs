@@ -128,7 +128,7 @@ fn detected(report: &Report) -> String {
             effect.covariate,
             probability(effect.probability),
             odds(effect.odds),
-            newtons(effect.error_before_n),
+            effect.error_before_n.map_or_else(|| "-".to_owned(), newtons),
             newtons(effect.error_after_n),
             table(effect.parameters.iter())
         );

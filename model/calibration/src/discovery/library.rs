@@ -166,9 +166,8 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
     // A fit does not move between numbers of waves: higher numbers start from the waves found by
     // the search.
-    let cycles = [0.5, 0.75].into_iter().chain((2..=16).map(|i| 0.5 * f64::from(i)));
-    let cycles = cycles
-        .chain([9.0, 10.0, 11.0, 12.0, 13.5, 15.0, 17.0, 19.0, 21.0, 23.5, 26.0, 29.0, 32.0, 36.0, 40.0]);
+    let cycles = [0.5, 0.75].into_iter().chain((2..=32).map(|i| 0.5 * f64::from(i)));
+    let cycles = cycles.chain([17.0, 19.0, 21.0, 23.5, 26.0, 29.0, 32.0, 36.0, 40.0]);
     forms.extend(cycles.flat_map(|cycles| PHASES.map(|phase| sine(x, cycles, phase))));
     if is_time {
         for t in [0.05, 0.2, 0.6] {

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::{Channel, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
-use crate::report::Estimate;
-use crate::reporting::{held_out, parameters};
+use crate::report::{Estimate, ModelReport};
+use crate::reporting::{held_out, model_report};
 use crate::table::{PlateauRow, readings_by_session};
 use library::{Candidate, actings, acts_on_word, library};
 
@@ -82,8 +82,8 @@ pub struct DrawnForm {
     pub definition: EffectDefinition,
     /// The best hypothesis with the formula in place of the structure.
     pub fitted: Fitted,
-    /// Constants of that hypothesis.
-    pub(crate) parameters: BTreeMap<String, Estimate>,
+    /// Report of that hypothesis.
+    pub(crate) model_report: ModelReport,
 }
 
 /// Derives the formula of the first unattributed structure of a posterior; `None` without such
@@ -115,9 +115,11 @@ pub(crate) fn draw_form(
     let shape = best.shape(&fitted);
     let mut definition = best.candidate.definition.clone();
     definition.id = free_id(vocabulary, covariate, &shape);
-    let mut constants = parameters(&with_forms, &best.fit, &fitted);
+    let held = held_out(&with_forms, &best.fit)?;
+    let mut model_report = model_report(&with_forms, &best.fit, &fitted, held);
     let old = format!("{}.", best.candidate.definition.id);
-    let own: BTreeMap<String, Estimate> = constants
+    let own: BTreeMap<String, Estimate> = model_report
+        .parameters
         .iter()
         .filter_map(|(name, estimate)| Some((name.strip_prefix(&old)?.to_owned(), estimate.clone())))
         .collect();
@@ -133,7 +135,7 @@ pub(crate) fn draw_form(
     definition.drawn_from = Some(readings_by_session(rows).into_values().collect());
     let renamed = vocabulary.with(vec![OwnEffect::new(definition.clone()).ok()?]).ok()?;
     fitted.model = fitted.model.renamed(&best.candidate.definition.id, &renamed, &definition.id)?;
-    constants = constants
+    model_report.parameters = std::mem::take(&mut model_report.parameters)
         .into_iter()
         .map(|(name, estimate)| match name.strip_prefix(&old) {
             Some(short) => (format!("{}.{short}", definition.id), estimate),
@@ -152,13 +154,13 @@ pub(crate) fn draw_form(
             formula: definition.formula.clone(),
             parameters: own,
             explains: if by_structure > 0.0 { (explained / by_structure).min(1.0) } else { 1.0 },
-            heldout_rmse_n: held_out(&with_forms, &best.fit)?.both_n(),
+            heldout_rmse_n: held.both_n(),
             in_model,
             rivals,
         },
         definition,
         fitted,
-        parameters: constants,
+        model_report,
     })
 }
 
@@ -190,7 +192,8 @@ fn best_form(
     let own = candidates.iter().filter_map(|c| OwnEffect::new(c.definition.clone()).ok()).collect();
     let extended = vocabulary.with(own).ok()?;
     let ids = candidates.iter().map(|c| c.definition.id.as_str()).collect();
-    let with_forms = Evidence::of_forms(rows, &extended, &ids, seed).ok()?;
+    // Gross errors are those of the best hypothesis: the baseline alone takes structure for them.
+    let with_forms = Evidence::of_forms(rows, &extended, &ids, seed).ok()?.with_outliers_of(evidence);
     let hypothesis = evidence.posterior().window.first()?.hypothesis.without(structure);
     let reduced = Fit::of_hypothesis(with_forms.problem(), &hypothesis, &evidence.posterior().excluded)?;
     let is_form = |name: &str| candidates.iter().any(|c| c.definition.id == name);

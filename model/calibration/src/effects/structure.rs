@@ -340,6 +340,12 @@ impl Structure {
         matches!(self.channel, Channel::Reading | Channel::Gain)
     }
 
+    /// Returns whether it is friction that differs between sessions.
+    pub(crate) fn is_change(&self) -> bool {
+        let is_of_session = matches!(self.form, Shape::Table { over: Abscissa::Session, .. });
+        is_of_session && !matches!(self.channel, Channel::Reading | Channel::Gain | Channel::Drag)
+    }
+
     /// Returns the unit of its size.
     pub fn unit(&self) -> &'static str {
         match self.channel {

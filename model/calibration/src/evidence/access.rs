@@ -2,24 +2,41 @@
 
 use pinswitch_inference::{Kernel, Member, leave_groups_out};
 
-use super::Evidence;
 use super::fitted::channel_of;
 use super::forward::Channel;
 use super::structure::Record;
+use super::{Evidence, Fitted};
 use crate::effects::{self, Effect};
 use crate::table::{Frame, Point};
 
 impl Evidence {
     /// Returns the number of series.
     pub fn series_count(&self) -> usize {
-        self.problem.rows().series.last().map_or(0, |last| last + 1)
+        self.series.last().map_or(0, |last| last + 1)
     }
 
     /// Returns, in the order of the problem, the row of the table, the number of the series and the
     /// covariates of each reading.
     pub fn rows(&self) -> impl Iterator<Item = (usize, usize, &Point)> {
-        let series = self.problem.rows().series.iter().copied();
+        let series = self.series.iter().copied();
         self.source.iter().copied().zip(series).zip(&self.points).map(|((row, series), p)| (row, series, p))
+    }
+
+    /// Returns the group of each block of the problem, of which a long series has several, for the group
+    /// of each series.
+    pub(crate) fn groups_of_blocks(&self, group_of_series: impl Fn(usize) -> usize) -> Vec<usize> {
+        let blocks = &self.problem.rows().series;
+        let mut groups = vec![0; blocks.last().map_or(0, |last| last + 1)];
+        for (block, series) in blocks.iter().zip(&self.series) {
+            groups[*block] = group_of_series(*series);
+        }
+        groups
+    }
+
+    /// Returns the first row of the table of a block of the problem.
+    pub(crate) fn row_of_block(&self, block: usize) -> Option<usize> {
+        let place = self.problem.rows().series.iter().position(|of| *of == block)?;
+        self.source(place)
     }
 
     /// Returns the row of the table of a row of the problem.
@@ -59,7 +76,7 @@ impl Evidence {
     /// predicted from the others under the best hypothesis; `None` without a finite fit.
     pub fn left_out_residuals_n(&self) -> Option<Vec<f64>> {
         let best = self.posterior.window.first()?;
-        let groups: Vec<usize> = (0..self.series_count()).collect();
+        let groups = self.groups_of_blocks(|series| series);
         let residuals = leave_groups_out(&self.problem, best, &groups, |_| Vec::new())?;
         Some(self.in_table_order(&residuals))
     }
@@ -73,10 +90,9 @@ impl Evidence {
         ordered
     }
 
-    /// Returns the reading of a row of the table in newtons.
-    pub(crate) fn reading_n(&self, row: usize) -> f64 {
-        let place = self.source.iter().position(|source| *source == row);
-        place.map_or(f64::NAN, |place| self.readings[place])
+    /// Returns reading minus expectation in newtons, in the order of the problem.
+    pub(crate) fn residuals_n(&self, fitted: &Fitted) -> Vec<f64> {
+        self.source.iter().zip(&self.readings).map(|(row, y)| y - fitted.predicted_n[*row]).collect()
     }
 
     /// Returns the root mean square of numbers in the order of the problem, without gross errors and
@@ -138,6 +154,11 @@ impl Evidence {
         }
     }
 
+    /// Returns whether a member is noise, which is not reported.
+    pub(crate) fn is_noise(&self, member: Member) -> bool {
+        self.kernel_at(member).is_some_and(|kernel| kernel.noise_probability.is_some())
+    }
+
     /// Returns whether the size of an effect cannot be negative.
     pub(crate) fn is_one_sided(&self, effect: usize) -> bool {
         self.problem.space().effects[effect].is_one_sided
@@ -159,7 +180,8 @@ impl Evidence {
         let size = self.posterior.size(effect)?;
         let named = self.effect_at(effect);
         let parameter = named.parameters().first()?;
-        let ends = size.interval.map(|end| self.parameter_of_size(effect, end));
+        let least = if self.is_one_sided(effect) { 0.0 } else { f64::NEG_INFINITY };
+        let ends = size.interval.map(|end| self.parameter_of_size(effect, end.max(least)));
         let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         Some((format!("{}.{}", named.id(), parameter.name), interval))
     }
@@ -215,7 +237,7 @@ mod tests {
         for ((left_out, reading), predicted) in left_out.iter().zip(&readings).zip(&fitted.predicted_n) {
             assert!((left_out - (reading - predicted)).abs() < 0.1, "{left_out} {reading} {predicted}");
         }
-        assert!(evidence.weights().iter().all(|weight| (0.0..1.3).contains(weight)));
+        assert!(evidence.weights().iter().all(|weight| *weight > 0.2), "no reading is an outlier");
         assert!(evidence.standardised_noise().iter().all(|noise| noise.abs() < 8.0));
     }
 }

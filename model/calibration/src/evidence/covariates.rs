@@ -17,6 +17,10 @@ pub(super) struct Covariates {
     pub(super) readings: Vec<f64>,
     /// Number of the series of each row, in the order of their first rows.
     pub(super) series: Vec<usize>,
+    /// Number of the block of each row: its series, or a part of a long one.
+    pub(super) block: Vec<usize>,
+    /// Rank of the series of each row in the order of sessions and of time.
+    pub(super) sequence: Vec<usize>,
     /// Rank in time within the series, from 0.
     pub(super) order: Vec<usize>,
     /// Seconds since the series began.
@@ -81,12 +85,15 @@ impl Covariates {
             series_start_s: vec![0.0; points.len()],
             points,
             readings,
+            block: series.clone(),
+            sequence: vec![0; series.len()],
             series,
             wrap_deg,
             labels,
         };
         covariates.order_series();
         covariates.split_long_series();
+        covariates.rank_series();
         Ok(covariates)
     }
 
@@ -106,19 +113,38 @@ impl Covariates {
         }
     }
 
-    /// Splits series of more than [`MOST_SERIES_ROWS`] rows. Their parts then have offsets of their
+    /// Splits series of more than [`MOST_SERIES_ROWS`] rows in blocks. These then have offsets of their
     /// own, which is wider than one offset.
     fn split_long_series(&mut self) {
         let (mut number, mut rows) = (0, 0);
-        let old = self.series.clone();
-        for row in 0..old.len() {
-            let is_new = row > 0 && old[row] != old[row - 1];
+        for row in 0..self.len() {
+            let is_new = row > 0 && self.series[row] != self.series[row - 1];
             if is_new || rows == MOST_SERIES_ROWS {
                 (number, rows) = (number + 1, 0);
             }
-            self.series[row] = number;
+            self.block[row] = number;
             rows += 1;
         }
+    }
+
+    /// Ranks the series by session, in the order of their first rows, and by their start.
+    fn rank_series(&mut self) {
+        let mut sessions: Vec<&str> = Vec::new();
+        let mut starts: Vec<(usize, f64, usize)> = Vec::new();
+        for row in 0..self.len() {
+            let session = self.labels[row].session.as_str();
+            let place = sessions.iter().position(|known| *known == session).unwrap_or_else(|| {
+                sessions.push(session);
+                sessions.len() - 1
+            });
+            if starts.last().is_none_or(|(.., series)| *series != self.series[row]) {
+                starts.push((place, self.series_start_s[row], self.series[row]));
+            }
+        }
+        starts.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut rank = vec![0; starts.len()];
+        starts.iter().enumerate().for_each(|(at, (.., series))| rank[*series] = at);
+        self.sequence = self.series.iter().map(|series| rank[*series]).collect();
     }
 
     pub(super) fn len(&self) -> usize {

@@ -1,7 +1,7 @@
 //! A fitted hypothesis as a model for files: constants, terms, noise and covariance.
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Coefficient, Coefficients, Fit, Member, SizedEffect};
+use pinswitch_inference::{Coefficient, Coefficients, Fit, Member, Outliers, SizedEffect};
 
 use super::Evidence;
 use super::forward::Channel;
@@ -162,7 +162,9 @@ impl Evidence {
     fn noise(&self, fit: &Fit) -> Noise {
         let [sigma, growth, direction, series, scale, by_load] = fit.scales().values();
         let mean_load = self.problem.noise_reference().mean_load;
-        let scatter = self.posterior.outliers.scatter;
+        let is_baseline = fit.hypothesis.is_empty();
+        let outliers = &self.posterior.outliers;
+        let scatter = if is_baseline { Outliers::new(&self.problem, fit).scatter } else { outliers.scatter };
         let (share, correlation) = fit.scales().autoregression();
         let random = |name: &str| {
             let effects = &self.problem.space().random_effects;

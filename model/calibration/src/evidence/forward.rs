@@ -142,6 +142,16 @@ struct Factors {
 
 const NO_CHANGE: Factors = Factors { exponent: 1.0, pins: 1.0, silicone: 1.0 };
 
+impl Factors {
+    /// Scales a contact after all effects, as structure in a model file does.
+    fn apply(self, state: &mut ContactState) {
+        state.mu_pins *= self.pins;
+        state.extra_exponent_pins *= self.pins;
+        state.mu_silicone *= self.silicone;
+        state.exponent_factor *= self.exponent;
+    }
+}
+
 /// The friction model of some rows.
 pub(super) struct FrictionModel {
     pub(super) points: Vec<Point>,
@@ -171,7 +181,7 @@ impl FrictionModel {
         let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
         let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
         let states: Vec<ContactState> =
-            self.conditions.iter().map(|c| self.contact(c, mu, constants, factors)).collect();
+            self.conditions.iter().map(|c| self.contact(c, mu, constants)).collect();
         let moves = acting.iter().any(|(prior, _)| prior.effect.moves_along_a_series());
         let mut last: Option<(&Point, f64)> = None;
         points
@@ -186,6 +196,7 @@ impl FrictionModel {
                 for (prior, values) in &acting {
                     prior.effect.on_contact(values, point, condition, &mut state);
                 }
+                factors.apply(&mut state);
                 let mut reading = state.tension_n(condition, point);
                 for (prior, values) in &acting {
                     reading = prior.effect.on_tension(values, point, condition, reading);
@@ -201,7 +212,7 @@ impl FrictionModel {
     }
 
     /// Returns the contact of a condition before effects, at no load.
-    fn contact(&self, condition: &Condition, mu: [f64; 3], q: &[f64], factors: Factors) -> ContactState {
+    fn contact(&self, condition: &Condition, mu: [f64; 3], q: &[f64]) -> ContactState {
         let [mu_pins, mu_silicone, mu_plain] = mu;
         let high = if condition.substrate.is_none() { mu_plain } else { mu_silicone };
         let device = condition.device.map(|device| self.baseline.device(q, device));
@@ -209,10 +220,10 @@ impl FrictionModel {
         ContactState {
             load_n: 0.0,
             wrap_rad: condition.wrap_rad,
-            mu_pins: mu_pins * factors.pins,
-            mu_silicone: high * factors.silicone,
+            mu_pins,
+            mu_silicone: high,
             extra_exponent_pins: 0.0,
-            exponent_factor: factors.exponent,
+            exponent_factor: 1.0,
             half_load_n,
             steepness,
             local_tension: false,

@@ -55,6 +55,8 @@ pub struct Evidence {
     /// Index in the table of each row of the problem.
     source: Vec<usize>,
     points: Vec<Point>,
+    /// Number of the series of each row of the problem, whose series may be blocks of a long one.
+    series: Vec<usize>,
     readings: Vec<f64>,
     /// Session and specimen of each row of the problem.
     groups: Vec<[String; 2]>,
@@ -142,8 +144,14 @@ impl Evidence {
             .map(|l| (l.session.clone(), l.specimen.clone()))
             .map(|(session, specimen)| [session, specimen])
             .collect();
-        let Covariates { source, points, readings, .. } = rows;
-        Ok(Self { problem, posterior, setup, source, points, readings, groups })
+        let Covariates { source, points, series, readings, .. } = rows;
+        Ok(Self { problem, posterior, setup, source, points, series, readings, groups })
+    }
+
+    /// Replaces the gross errors by those of another posterior of the same table.
+    pub(crate) fn with_outliers_of(mut self, other: &Self) -> Self {
+        self.posterior.outliers.clone_from(&other.posterior.outliers);
+        self
     }
 
     /// Returns the posterior over hypotheses.
@@ -307,7 +315,7 @@ impl Setup {
         let discrepancies = self.priors.iter().map(|prior| self.discrepancies(prior, &forward.points));
         let relevant = self.priors.iter().map(|prior| relevant_changes(prior, rows));
         Rows {
-            series: rows.series.clone(),
+            series: rows.block.clone(),
             direction: rows.points.iter().map(|p| p.sign > 0.0).collect(),
             order: rows.order.clone(),
             load: rows.column(|p| p.load_n),

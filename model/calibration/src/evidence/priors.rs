@@ -128,7 +128,9 @@ impl EffectPrior {
             (Some(_), Some(from)) => vec![from - sized.size],
             (Some(_), None) => {
                 let bounds = self.effect.parameters().iter().skip(1).map(|parameter| parameter.bounds);
-                let shape = self.shapes[sized.shape].iter().zip(bounds).zip(sized.shifts);
+                // Constants after those that a fit shifts keep their start values.
+                let shifts = sized.shifts.into_iter().chain(std::iter::repeat(0.0));
+                let shape = self.shapes[sized.shape].iter().zip(bounds).zip(shifts);
                 let shape = shape.map(|((start, bounds), shift)| shifted(*start, bounds, shift));
                 std::iter::once(sized.size).chain(shape).collect()
             }

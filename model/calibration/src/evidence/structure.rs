@@ -19,7 +19,14 @@ const TIME_RANK: usize = 24;
 /// Series up to which time also varies within them.
 const FEW_SERIES: usize = 4;
 /// Probability that structure over time acts in one interval, rather than as Brownian motion.
-const INTERVAL_PROBABILITY: f64 = 0.5;
+const INTERVAL_PROBABILITY: f64 = 0.4;
+/// Probability that it is a wave.
+const WAVE_PROBABILITY: f64 = 0.2;
+/// Steps between the numbers of cycles of waves, and the largest number.
+const WAVE_STEP: f64 = 0.5;
+const MOST_CYCLES: f64 = 16.0;
+/// Series of a cycle, below which a wave is finer than the sampling.
+const SERIES_OF_CYCLE: f64 = 4.0;
 /// Series up to which every interval is a variant; in a longer table, only those up to its end.
 const MOST_INTERVAL_SERIES: usize = 24;
 /// Covariate of noise.
@@ -166,7 +173,8 @@ impl Collector<'_> {
         channels: &[Channel],
         variants: Vec<Variant>,
     ) {
-        let is_session_bound = record == Record::Time || covariate == NOISE;
+        // A new session draws again what a model file does not keep.
+        let is_session_bound = matches!(record, Record::Time | Record::Nothing);
         if variants.is_empty() {
             return;
         }
@@ -197,14 +205,7 @@ impl Collector<'_> {
     }
 
     fn time(&mut self) {
-        let channels = [
-            Channel::Reading,
-            Channel::Gain,
-            Channel::Drag,
-            Channel::Friction,
-            Channel::Silicone,
-            Channel::Pins,
-        ];
+        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Silicone, Channel::Pins];
         let mut starts: Vec<f64> = self.rows.series_start_s.clone();
         starts.sort_by(f64::total_cmp);
         starts.dedup();
@@ -220,11 +221,18 @@ impl Collector<'_> {
                 move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
             Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
-        let intervals = intervals(&starts);
-        let share = if intervals.is_empty() { 0.0 } else { INTERVAL_PROBABILITY };
-        let mut variants = self.variants(vec![basis], 1.0 - share);
+        let waves = waves(scale, starts.len());
+        let intervals = interval_variants(self.rows.series_count(), INTERVAL_PROBABILITY);
+        let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
+        let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
+        let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
+        let mut variants = self.variants(vec![basis], 1.0 - of_intervals - of_waves);
+        variants.extend(self.variants(waves, of_waves));
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
+        // The scale of the cell changes by a fault or a calibration; what wanders with the load is an offset.
+        let faults = interval_variants(self.rows.series_count(), 1.0);
+        self.add_variants("time", "time", Record::Time, &[Channel::Gain], faults);
     }
 
     /// Adds offsets that wander from series to series in the order of time, in both directions alike or
@@ -235,14 +243,7 @@ impl Collector<'_> {
             return;
         }
         let bases = WANDERING.map(|(correlation, rank)| -> Basis {
-            Box::new(move |rows| {
-                let mut starts = rows.series_start_s.clone();
-                starts.sort_by(f64::total_cmp);
-                starts.dedup();
-                let step = |start: &f64| starts.partition_point(|known| known < start);
-                let steps: Vec<usize> = rows.series_start_s.iter().map(step).collect();
-                kernel::autoregressive(&steps, starts.len(), correlation, rank.min(count))
-            })
+            Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
         });
         let channels = [Channel::Reading, Channel::Drag];
         self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
@@ -438,22 +439,35 @@ impl Collector<'_> {
     }
 }
 
-/// Returns structure that acts in one interval of series with these starts: a change, or a fault that
+/// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles
+/// is a smooth course, which Brownian motion prices as many steps.
+fn waves(session: Interval, series: usize) -> Vec<Basis> {
+    let most = MOST_CYCLES.min(series as f64 / SERIES_OF_CYCLE);
+    let cycles = std::iter::successors(Some(1.0), |cycles| Some(cycles + WAVE_STEP));
+    cycles
+        .take_while(|cycles| *cycles <= most)
+        .map(|cycles| -> Basis {
+            Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
+        })
+        .collect()
+}
+
+/// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
 /// lasts for a while. Brownian motion prices one large step as many small ones.
-fn intervals(starts: &[f64]) -> Vec<Variant> {
-    let count = starts.len();
+fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
     let is_long = count > MOST_INTERVAL_SERIES;
     let mut bases: Vec<Basis> = Vec::new();
     for from in 0..count {
         for until in (if is_long { count } else { from + 1 })..=count {
             if until - from < count {
-                let (low, high) = (starts[from], starts.get(until).copied().unwrap_or(f64::INFINITY));
-                let is_in = move |p: &Point| f64::from(u8::from(p.time_s >= low && p.time_s < high));
-                bases.push(Box::new(move |rows| kernel::single(&rows.column(is_in))));
+                bases.push(Box::new(move |rows| {
+                    let is_in = |sequence: &usize| f64::from(u8::from((from..until).contains(sequence)));
+                    kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+                }));
             }
         }
     }
-    let probability = INTERVAL_PROBABILITY / bases.len().max(1) as f64;
+    let probability = probability / bases.len().max(1) as f64;
     bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
 }
 

@@ -97,6 +97,16 @@ fn an_unmeasured_device_is_refused() {
     assert!(error.help().is_some());
 }
 
+/// A few rows of the fitted session are predicted as in the whole table.
+#[test]
+fn few_rows_of_the_fitted_session_are_predicted() {
+    let rows = session(7);
+    let evidence = evidence(&rows);
+    let whole = evidence.predict(&rows, Session::Fitted).unwrap();
+    let few = evidence.predict(&rows[..3], Session::Fitted).unwrap();
+    assert!(few.iter().zip(&whole).all(|(few, whole)| (few.mean - whole.mean).abs() < 1e-9));
+}
+
 /// The name of a kernel contains its channel, and its curve has a value for every row.
 #[test]
 fn structure_is_reported_with_its_covariate() {
@@ -133,4 +143,6 @@ fn long_series_are_split() {
     }
     let evidence = evidence(&rows);
     assert_eq!(evidence.problem().rows().series.last(), Some(&2));
+    // Reports count the series, and not its parts.
+    assert_eq!(evidence.series_count(), 1);
 }

@@ -73,7 +73,8 @@ struct Case {
 
 impl Question {
     fn pair(between: [&str; 2], probabilities: [f64; 2], cases: [Case; 2]) -> Self {
-        let share = (probabilities[0] / (probabilities[0] + probabilities[1])).clamp(1.0 - OPEN.1, OPEN.1);
+        let share = probabilities[0] / (probabilities[0] + probabilities[1]);
+        let share = if share.is_finite() { share.clamp(1.0 - OPEN.1, OPEN.1) } else { UNDECIDED };
         let (known, needed) = (log_odds(share), log_odds(1.0 - NO_RIVAL));
         Self {
             between: between.map(str::to_owned),
@@ -230,6 +231,7 @@ impl Agenda {
         agenda.add_pairs(report, model, &fitted);
         agenda.add_unconfirmed(report, model, &fitted);
         agenda.add_candidates(report, model, &fitted);
+        agenda.fit_similar_effects();
         for own in model.vocabulary.own().map(|own| own.definition()) {
             if agenda.effects.iter().any(|effect| effect.id() == own.id) {
                 agenda.formulas.push(own.id.clone());
@@ -401,6 +403,29 @@ impl Agenda {
         };
         self.effects.push(effect);
         Some(self.add(contribution))
+    }
+
+    /// Fits to the presence of each effect the open effects that are similar to it, which would explain
+    /// its readings as well.
+    fn fit_similar_effects(&mut self) {
+        let is_presence = |question: &&Question| question.between[1] == NONE;
+        let present: Vec<(String, usize)> = self
+            .questions
+            .iter()
+            .filter(is_presence)
+            .filter_map(|q| Some((q.between[0].clone(), q.cases.first()?.column)))
+            .collect();
+        let effects = &self.effects;
+        let confuses = |id: &str, other: &str| {
+            let effect = effects.iter().find(|effect| effect.id() == id);
+            effect.is_some_and(|effect| effect.description().confused_with.contains(&other))
+        };
+        for question in self.questions.iter_mut().filter(|question| question.between[1] == NONE) {
+            let id = question.between[0].clone();
+            let similar = present.iter().filter(|(other, _)| confuses(&id, other) || confuses(other, &id));
+            let columns: Vec<usize> = similar.map(|(_, column)| *column).collect();
+            question.cases.iter_mut().for_each(|case| case.nuisance.extend(&columns));
+        }
     }
 
     fn asks_about(&self, id: &str) -> bool {

@@ -3,7 +3,7 @@
 use pinswitch_friction::Substrate;
 
 use super::{Discrepancy, Model, Term};
-use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Side, Stage, Structure};
+use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Stage, Structure};
 use crate::table::{Changing, Condition, Point};
 
 impl Model {
@@ -80,8 +80,7 @@ impl Model {
         for (index, term) in self.terms.iter().enumerate() {
             let constants = &values[at..at + term.constants()];
             at += term.constants();
-            let is_kept =
-                !is_part || matches!(term, Term::Named(effect) if effect.description().side == Side::Switch);
+            let is_kept = !is_part || term.is_of_switch();
             let discrepancies = self.discrepancies.iter().filter(|d| d.term == index).collect();
             terms.extend(is_kept.then_some(Acting { term, constants, discrepancies }));
         }

@@ -7,7 +7,7 @@ mod sensitivity;
 
 use pinswitch_friction::{LayoutLaw, published};
 
-use crate::effects::{Effect, Structure, Vocabulary};
+use crate::effects::{Effect, Side, Structure, Vocabulary};
 use crate::table::Frame;
 
 pub(crate) use discrepancy::Largest;
@@ -41,6 +41,15 @@ impl Term {
         match self {
             Term::Named(effect) => effect.parameters().len(),
             Term::Structure(_) => 1,
+        }
+    }
+
+    /// Returns whether it belongs to the switch: a part has it too. Friction that differs between sessions
+    /// is that of the latest one.
+    pub(crate) fn is_of_switch(&self) -> bool {
+        match self {
+            Term::Named(effect) => effect.description().side == Side::Switch,
+            Term::Structure(structure) => structure.is_change(),
         }
     }
 
@@ -267,7 +276,11 @@ impl Model {
 
     /// Returns the value of a constant and its derivative with respect to its coordinate.
     pub(crate) fn value(&self, index: usize) -> (f64, f64) {
-        let coordinate = self.coordinates[index];
+        self.value_at(index, self.coordinates[index])
+    }
+
+    /// Returns the value that a constant has at a coordinate, and its derivative.
+    pub(crate) fn value_at(&self, index: usize, coordinate: f64) -> (f64, f64) {
         if index < self.baseline_len() {
             return (libm::exp(coordinate), libm::exp(coordinate));
         }

@@ -93,9 +93,9 @@ pub struct EffectReport {
     pub odds: f64,
     /// Constants.
     pub parameters: BTreeMap<String, Estimate>,
-    /// Held-out error of the model without it, in newtons.
-    #[serde(rename = "error_before_N")]
-    pub error_before_n: f64,
+    /// Held-out error of the model without it, in newtons; absent if that model is not finite.
+    #[serde(rename = "error_before_N", default, skip_serializing_if = "Option::is_none")]
+    pub error_before_n: Option<f64>,
     /// Held-out error of the model with it, in newtons.
     #[serde(rename = "error_after_N")]
     pub error_after_n: f64,
@@ -170,6 +170,9 @@ pub struct Invisible {
 /// A series that departs from the model by more than its noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BadSeries {
+    /// Session, if the table names it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub session: String,
     /// Name in the table.
     pub series: String,
     /// `eccentric` or `concentric`.
@@ -193,7 +196,8 @@ pub struct BadSeries {
 impl BadSeries {
     /// Describes the location: the series and direction, or the reading in it.
     pub fn place(&self) -> String {
-        let series = format!("series {} {}", self.series, self.direction);
+        let session = if self.session.is_empty() { String::new() } else { format!(" of {}", self.session) };
+        let series = format!("series {}{session} {}", self.series, self.direction);
         match (self.repetition, self.readings.unwrap_or(1)) {
             (Some(repetition), 1) => format!("repetition {repetition} of {series}"),
             (Some(repetition), n) => {

@@ -12,22 +12,17 @@ use crate::report::{EffectReport, Estimate, ModelReport, RivalReport};
 /// Largest odds in a report.
 const MOST_ODDS: f64 = 1e12;
 
-pub(super) fn effects(findings: &Findings<'_>, augmented: &ModelReport, held: HeldOut) -> Vec<EffectReport> {
+pub(super) fn effects(findings: &Findings<'_>, augmented: &ModelReport) -> Vec<EffectReport> {
     let evidence = findings.evidence;
     let reported = evidence.posterior().reported.iter().filter(|r| !evidence.is_change(r.member));
-    reported.map(|reported| effect_report(findings, reported, augmented, held)).collect()
+    reported.map(|reported| effect_report(findings, reported, augmented)).collect()
 }
 
-fn effect_report(
-    findings: &Findings<'_>,
-    reported: &Reported,
-    augmented: &ModelReport,
-    held: HeldOut,
-) -> EffectReport {
+fn effect_report(findings: &Findings<'_>, reported: &Reported, augmented: &ModelReport) -> EffectReport {
     let evidence = findings.evidence;
     let posterior = evidence.posterior();
     let without = posterior.best_without(evidence.problem(), reported.member);
-    let before = without.as_ref().and_then(|fit| held_out(evidence, fit)).map_or(f64::NAN, HeldOut::both_n);
+    let before = without.as_ref().and_then(|fit| held_out(evidence, fit)).map(HeldOut::both_n);
     let odds = posterior.window.first().zip(without.as_ref()).map_or(MOST_ODDS, |(best, without)| {
         libm::exp((best.score - without.score).min(libm::log(MOST_ODDS)))
     });
@@ -47,7 +42,7 @@ fn effect_report(
         odds,
         parameters: constants(augmented, &id, effect, evidence.structure_number(reported.member)),
         error_before_n: before,
-        error_after_n: held.both_n(),
+        error_after_n: augmented.heldout_rmse_n,
         rivals: reported.rivals.iter().map(|rival| rival_report(findings, reported.member, rival)).collect(),
         form: None,
         id,

@@ -36,7 +36,7 @@ impl HeldOut {
 /// have, for lack of loads, is replaced by the other one. Gross errors do not count.
 pub(crate) fn held_out(evidence: &Evidence, fit: &Fit) -> Option<HeldOut> {
     let none = |_| Vec::new();
-    let series: Vec<usize> = (0..evidence.series_count()).map(|series| series % FOLDS).collect();
+    let series = evidence.groups_of_blocks(|series| series % FOLDS);
     let of_series = leave_groups_out(evidence.problem(), fit, &series, none)?;
     let series_n = evidence.root_mean_square_n(&of_series);
     let of_load = load_of_series(evidence);
@@ -45,7 +45,7 @@ pub(crate) fn held_out(evidence: &Evidence, fit: &Fit) -> Option<HeldOut> {
     loads.dedup();
     let loads_n = if loads.len() > FOLDS {
         let fold = |load: &f64| loads.partition_point(|known| *known < load.to_bits()) % FOLDS;
-        let groups: Vec<usize> = of_load.iter().map(fold).collect();
+        let groups = evidence.groups_of_blocks(|series| fold(&of_load[series]));
         evidence.root_mean_square_n(&leave_groups_out(evidence.problem(), fit, &groups, none)?)
     } else {
         series_n
@@ -81,7 +81,8 @@ fn layouts_n(evidence: &Evidence, fit: &Fit, conditions: &[Condition]) -> Option
         let devices = conditions.iter().filter(is_of).filter_map(|c| c.device);
         devices.flat_map(|device| evidence.device_constants(device)).collect()
     };
-    let mut residuals = leave_groups_out(evidence.problem(), fit, &groups, own)?;
+    let of_blocks = evidence.groups_of_blocks(|series| groups[series]);
+    let mut residuals = leave_groups_out(evidence.problem(), fit, &of_blocks, own)?;
     // Rows without pins belong to no layout.
     for ((_, series, _), residual) in evidence.rows().zip(&mut residuals) {
         if groups[series] == layouts.len() {
@@ -122,10 +123,8 @@ pub(crate) fn least_squares_n(evidence: &Evidence, rows: &[PlateauRow], model: &
 
 /// Returns the report of a fit.
 pub(crate) fn model_report(evidence: &Evidence, fit: &Fit, fitted: &Fitted, held: HeldOut) -> ModelReport {
-    let in_sample: Vec<f64> =
-        evidence.rows().map(|(row, ..)| evidence.reading_n(row) - fitted.predicted_n[row]).collect();
     ModelReport {
-        rmse_n: evidence.root_mean_square_n(&in_sample),
+        rmse_n: evidence.root_mean_square_n(&evidence.residuals_n(fitted)),
         heldout_rmse_n: held.both_n(),
         heldout_series_rmse_n: held.series_n,
         heldout_loads_rmse_n: held.loads_n,
@@ -136,7 +135,7 @@ pub(crate) fn model_report(evidence: &Evidence, fit: &Fit, fitted: &Fitted, held
 
 /// Returns the constants with 95 % intervals. The interval of a size is that of the mixture over all
 /// hypotheses with the effect, if the fit is the best one.
-pub(crate) fn parameters(evidence: &Evidence, fit: &Fit, fitted: &Fitted) -> BTreeMap<String, Estimate> {
+fn parameters(evidence: &Evidence, fit: &Fit, fitted: &Fitted) -> BTreeMap<String, Estimate> {
     let model = &fitted.model;
     let conditions = &model.frame.conditions;
     let is_used = |name: &str| match name {
@@ -146,15 +145,10 @@ pub(crate) fn parameters(evidence: &Evidence, fit: &Fit, fitted: &Fitted) -> BTr
     };
     let mut parameters = BTreeMap::new();
     for (i, (name, unit)) in model.names().into_iter().enumerate().filter(|(_, (name, _))| is_used(name)) {
-        let (value, slope) = model.value(i);
-        let sd = fitted.covariance[(i, i)].max(0.0).sqrt();
-        let ci95 = if i < model.baseline_len() {
-            [value * libm::exp(-NORMAL_95 * sd), value * libm::exp(NORMAL_95 * sd)]
-        } else {
-            let (low, high) = model.bounds_of(i);
-            let reach = NORMAL_95 * sd * slope.abs();
-            [(value - reach).max(low), (value + reach).min(high)]
-        };
+        let value = model.value(i).0;
+        // The posterior is normal in the coordinate, which keeps a bounded constant within its bounds.
+        let reach = NORMAL_95 * fitted.covariance[(i, i)].max(0.0).sqrt();
+        let ci95 = [-reach, reach].map(|step| model.value_at(i, model.coordinates[i] + step).0);
         parameters.insert(name, Estimate { value, ci95, unit: unit.to_owned() });
     }
     let is_best = evidence.posterior().window.first().is_some_and(|best| best.hypothesis == fit.hypothesis);

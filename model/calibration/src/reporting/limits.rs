@@ -105,6 +105,7 @@ fn acts(evidence: &Evidence, effect: &'static dyn Effect, baseline: &Fitted) -> 
 /// Returns every effect with its probability and outcome, the most probable first.
 pub(super) fn candidates(evidence: &Evidence) -> Vec<CandidateReport> {
     let posterior = evidence.posterior();
+    let best = posterior.window.first().map(|fit| &fit.hypothesis);
     let is_rival =
         |member: Member| posterior.reported.iter().any(|r| r.rivals.iter().any(|(m, _)| *m == member));
     let mut all: Vec<CandidateReport> = (0..evidence.problem().space().effects.len())
@@ -112,7 +113,7 @@ pub(super) fn candidates(evidence: &Evidence) -> Vec<CandidateReport> {
             let member = Member::Effect(index);
             let known = posterior.candidates.iter().find(|candidate| candidate.effect == index);
             let (fate, outside) = match known {
-                _ if posterior.reported.iter().any(|r| r.member == member) => (Fate::Kept, 0.0),
+                _ if best.is_some_and(|best| best.contains(member)) => (Fate::Kept, 0.0),
                 _ if is_rival(member) => (Fate::Rival, 0.0),
                 Some(candidate) => {
                     let odds = libm::exp(candidate.log_odds.min(700.0));

@@ -13,14 +13,14 @@ use crate::adequacy::{Residual, is_adequate};
 use crate::aliasing::aliasing;
 use crate::confirmation::TrialReport;
 use crate::evidence::{Evidence, Fitted};
-use crate::report::{DataSummary, ExpectedErrorReport, Report, StructureReport, Verdict};
+use crate::report::{DataSummary, ExpectedErrorReport, ModelReport, Report, StructureReport, Verdict};
 use crate::table::PlateauRow;
 
 use bad_series::bad_series;
 use changes::changes;
 use effects::effects;
-pub(crate) use errors::{HeldOut, held_out, parameters};
-use errors::{least_squares_n, model_report};
+use errors::least_squares_n;
+pub(crate) use errors::{HeldOut, held_out, model_report};
 use limits::{NEVER_VISIBLE, candidates, invisible, limits};
 use noise::{floor_n, noise_parts};
 
@@ -37,14 +37,9 @@ pub(crate) struct Findings<'a> {
     pub(crate) evidence: &'a Evidence,
     pub(crate) baseline: &'a Fitted,
     pub(crate) augmented: &'a Fitted,
+    /// Report of the augmented model, if a formula takes the place of structure in it.
+    pub(crate) form: Option<&'a ModelReport>,
     pub(crate) trials: Vec<TrialReport>,
-}
-
-impl Findings<'_> {
-    /// Returns reading minus prediction of each row of the table, in newtons.
-    fn residuals_n(&self, fitted: &Fitted) -> Vec<f64> {
-        self.rows.iter().zip(&fitted.predicted_n).map(|(row, p)| row.force_n - p).collect()
-    }
 }
 
 /// Returns the report of findings.
@@ -54,8 +49,9 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
     let best = posterior.window.first()?;
     let held = held_out(evidence, best)?;
     let held_baseline = held_out(evidence, &posterior.baseline)?;
-    let augmented_report = model_report(evidence, best, augmented, held);
-    let effects = effects(&findings, &augmented_report, held);
+    let augmented_report =
+        findings.form.cloned().unwrap_or_else(|| model_report(evidence, best, augmented, held));
+    let effects = effects(&findings, &augmented_report);
     let is_supported = evidence.series_count() >= LEAST_SERIES;
     let expected = posterior.expected_error.filter(|_| is_supported);
     let named = |member: &Member| match member {
@@ -65,7 +61,11 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
     let structures = posterior
         .members()
         .iter()
-        .filter(|(_, probability)| *probability >= LEAST_PROBABILITY)
+        .filter(|(member, probability)| *probability >= LEAST_PROBABILITY && !evidence.is_noise(*member))
+        // A reported change is listed on its own.
+        .filter(|(member, _)| {
+            !evidence.is_change(*member) || posterior.reported.iter().all(|r| r.member != *member)
+        })
         .filter_map(|(member, probability)| {
             let covariate = evidence.covariate(*member).to_owned();
             Some(StructureReport { name: named(member)?, covariate, probability: *probability })
@@ -127,12 +127,12 @@ fn verdict(evidence: &Evidence) -> Verdict {
 
 fn adequate(findings: &Findings<'_>) -> bool {
     let Findings { evidence, augmented, .. } = findings;
-    let residual_n = findings.residuals_n(augmented);
-    let outliers = evidence.outliers();
     let residuals: Vec<Residual<'_>> = evidence
         .rows()
-        .filter(|(row, ..)| !outliers[*row])
-        .map(|(row, series, point)| Residual { point, series, residual_n: residual_n[row] })
+        .zip(evidence.residuals_n(augmented))
+        .enumerate()
+        .filter(|(place, _)| !evidence.posterior().outliers.contains(*place))
+        .map(|(_, ((_, series, point), residual_n))| Residual { point, series, residual_n })
         .collect();
     is_adequate(&residuals)
 }

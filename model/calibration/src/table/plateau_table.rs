@@ -35,7 +35,7 @@ pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 /// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
 /// assert_eq!(table.rows[0].pins, [5, 8, 11]);
 /// let error = PlateauTable::read(csv.replace("10.451", "-1").as_bytes(), "plateaus.csv").unwrap_err();
-/// assert_eq!(error.to_string(), "plateaus.csv:2:28: load_N = -1: below 0; give a value of at least 0");
+/// assert_eq!(error.to_string(), "plateaus.csv:2:29: load_N = -1: below 0; give a value of at least 0");
 /// # Ok::<(), TableError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -59,7 +59,7 @@ pub(super) fn is_visible(plan: &Plan, traits: &SessionTraits) -> Option<bool> {
         let odds = index.map_or(f64::NEG_INFINITY, |index| prior(Member::Effect(index), 0));
         changes.push((change, odds));
     }
-    let kernels = space.kernels.iter().enumerate();
+    let kernels = space.kernels.iter().enumerate().filter(|(_, kernel)| kernel.noise_probability.is_none());
     let of_structure = kernels
         .flat_map(|(i, kernel)| (0..kernel.variants.len()).map(move |form| (i, form)))
         .map(|(i, form)| prior(Member::Kernel(i), form))

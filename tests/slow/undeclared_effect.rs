@@ -277,5 +277,11 @@ fn unknown_effects_are_not_missed() {
         assert!(shapes.iter().any(|known| **known == shape), "{name}: {form}");
         let [low, high] = [0, 1].map(|end| form["parameters"]["a"]["ci95"][end].as_f64().unwrap());
         assert!(low < size && size < high, "{name}: {low} to {high}");
+        // Every constant of a form that is this well determined has a finite interval.
+        let constants = report["augmented"]["parameters"].as_object().unwrap();
+        if let Some((_, constant)) = constants.iter().find(|(name, _)| name.ends_with("forgetting.t")) {
+            let [low, high] = [0, 1].map(|end| constant["ci95"][end].as_f64().unwrap());
+            assert!(low > 0.2 && low < 2.0 && 2.0 < high && high < 20.0, "{name}: {constant}");
+        }
     }
 }

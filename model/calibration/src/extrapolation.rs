@@ -2,10 +2,10 @@
 
 use crate::calibrate::{Calibration, CalibrationError, calibrate};
 use crate::effects::Vocabulary;
-use crate::median::median;
 use crate::model::Model;
 use crate::report::Extrapolation;
 use crate::table::PlateauRow;
+use pinswitch_measurements::median;
 
 /// Error, in standard deviations of noise, above which a reading is a bad one: an error of the model
 /// hardly reaches it.

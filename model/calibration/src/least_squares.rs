@@ -57,7 +57,7 @@ pub(crate) fn least_squares(start: &Model, points: &[Point], readings_n: &[f64])
 
 fn huber_weights(residual: &[f64]) -> Vec<f64> {
     let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
-    let scale = (1.4826 * crate::median::median(&mut sizes)).max(1e-9);
+    let scale = (1.4826 * pinswitch_measurements::median(&mut sizes)).max(1e-9);
     residual.iter().map(|r| (HUBER * scale / r.abs().max(1e-12)).min(1.0)).collect()
 }
 

@@ -1,13 +1,14 @@
 //! Calibration of the friction model with measured data.
 //!
-//! The crate converts raw logs to plateau tables, computes the probability of each effect that the
-//! paper's model lacks, and writes a model that predicts readings. The statistics are those of
-//! [`pinswitch_inference`]; this crate has the friction model, the priors and the report. It does
-//! not depend on simulated rigs, parts, files or plots. `model/doc/glossary.md` defines the terms.
+//! The crate computes the probability of each effect that the paper's model lacks, and writes a
+//! model that predicts readings. The tables are those of [`pinswitch_measurements`], the statistics
+//! those of [`pinswitch_inference`]; this crate has the friction model, the priors and the report.
+//! It does not depend on simulated rigs, parts, files or plots. `model/doc/glossary.md` defines the
+//! terms.
 //!
 //! Each step can be used alone:
 //!
-//! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
+//! 1. [`segmentation`] converts `run.toml` and its logs to the rows of a plateau table.
 //! 2. [`table`] reads and checks a plateau table.
 //! 3. [`evidence`] computes the posterior over hypotheses: sets of [`effects`], and of structure
 //!    without a name, in addition to the refitted model of the paper.
@@ -76,7 +77,6 @@ pub mod evidence;
 pub mod experiment;
 mod extrapolation;
 mod least_squares;
-mod median;
 pub mod model;
 mod model_check;
 mod model_file;
@@ -86,12 +86,10 @@ mod part_curve;
 mod published_maxima;
 mod report;
 mod reporting;
-pub mod segmentation;
 mod session_plan;
 pub mod table;
 #[cfg(test)]
 mod test_session;
-mod toml_text;
 
 pub use aliasing::{Aliasing, aliasing};
 
@@ -99,8 +97,8 @@ pub use calibrate::{Calibration, CalibrationError, calibrate};
 pub use confirmation::{TrialOutcome, TrialReport};
 pub use discovery::{DrawnForm, FormReport, FormRival};
 pub use extrapolation::calibrate_below;
-pub use median::median;
 pub use model_file::ModelFile;
+pub use pinswitch_measurements::{median, segmentation, toml_error};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
@@ -108,4 +106,3 @@ pub use report::{
     StructureReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};
-pub use toml_text::toml_error;

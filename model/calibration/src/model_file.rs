@@ -15,7 +15,7 @@ use crate::model_check::{
     invalid, walk_to_offset,
 };
 use crate::table::{Frame, PlateauRow, Point};
-use crate::toml_text::{locate_field, toml_error};
+use pinswitch_measurements::{locate_field, toml_error};
 
 /// Name and version of the format.
 const SCHEMA: &str = "pinswitch.model/1";

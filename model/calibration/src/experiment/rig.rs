@@ -6,7 +6,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
-use crate::toml_text::{locate_field, toml_error};
+use pinswitch_measurements::{locate_field, toml_error};
 
 /// Advice for every invalid file.
 const HELP: &str = "see `pinswitch init rig` for each field";

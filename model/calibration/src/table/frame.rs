@@ -6,14 +6,14 @@ use pinswitch_friction::{Substrate, published};
 use serde::{Deserialize, Serialize};
 
 use super::change::Change;
-use super::row::{Labels, PlateauRow, Sweep};
 use super::substrate_word::substrate_word;
+use super::{Labels, PlateauRow, Sweep};
 
 /// A condition: substrate and pins.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
     /// What the tendon touches; `None` for `plain`.
-    #[serde(rename = "surface", with = "super::substrate_word")]
+    #[serde(rename = "surface", with = "crate::table::substrate_word")]
     pub substrate: Option<Substrate>,
     /// Occupied grooves, ascending.
     pub pins: Vec<usize>,

@@ -11,7 +11,7 @@ use super::OwnEffect;
 use super::definition::{DefinitionError, EffectDefinition, OwnParameter, Part};
 use super::unknown_name::unknown_name;
 use crate::effects::{ActsOn, Combine, Covariate, Side, Vocabulary};
-use crate::toml_text::toml_error;
+use pinswitch_measurements::toml_error;
 
 /// Name and version of the format.
 pub(super) const SCHEMA: &str = "pinswitch.effects/1";

@@ -28,7 +28,7 @@ pub fn readings_by_session(rows: &[PlateauRow]) -> BTreeMap<String, String> {
 }
 
 /// Returns whether a text can be a fingerprint written by [`readings_by_session`].
-pub(crate) fn is_fingerprint(text: &str) -> bool {
+pub fn is_fingerprint(text: &str) -> bool {
     !text.is_empty()
         && text.len().is_multiple_of(DIGITS)
         && text.len() <= SKETCH * DIGITS
@@ -36,7 +36,7 @@ pub(crate) fn is_fingerprint(text: &str) -> bool {
 }
 
 /// Returns the names of the sessions that match one of the fingerprints, at least in part.
-pub(crate) fn matching_sessions(rows: &[PlateauRow], fingerprints: &[String]) -> BTreeSet<String> {
+pub fn matching_sessions(rows: &[PlateauRow], fingerprints: &[String]) -> BTreeSet<String> {
     let is_one = |hashes: &BTreeSet<u32>| {
         fingerprints.iter().any(|fingerprint| {
             let of: Vec<u32> = (0..fingerprint.len() / DIGITS)

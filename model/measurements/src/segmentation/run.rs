@@ -115,8 +115,8 @@ impl<'a> RunSegmentation<'a> {
 /// in that file; `file` is the name of the description in errors.
 ///
 /// ```
-/// use pinswitch_calibration::segmentation::segment_run;
-/// use pinswitch_calibration::table::PlateauTable;
+/// use pinswitch_measurements::segmentation::segment_run;
+/// use pinswitch_measurements::table::PlateauTable;
 ///
 /// let run = r#"
 /// [rig]

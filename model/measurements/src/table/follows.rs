@@ -7,7 +7,7 @@ use pinswitch_friction::{Direction, published, sort_by_number};
 
 use super::row::PlateauRow;
 use super::substrate_word::substrate_word;
-use crate::aliasing::rank_correlation;
+use crate::correlation::rank_correlation;
 use crate::median::median;
 
 /// Plausible slopes in newtons of reading per newton of load, for friction over the paper's wrap,

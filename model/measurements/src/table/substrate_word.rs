@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serializer};
 const PLAIN: &str = "plain";
 
 /// Words and their substrates.
-pub(crate) const WORDS: [(&str, Option<Substrate>); 3] =
+pub const WORDS: [(&str, Option<Substrate>); 3] =
     [("silicone", Some(Substrate::Silicone)), ("abs", Some(Substrate::Abs)), (PLAIN, None)];
 
 /// Returns the word of a substrate: `silicone`, `abs`, or `plain` for an unknown material.
@@ -16,14 +16,19 @@ pub fn substrate_word(substrate: Option<Substrate>) -> &'static str {
     substrate.map_or(PLAIN, Substrate::as_str)
 }
 
-pub(crate) fn serialize<S: Serializer>(
-    substrate: &Option<Substrate>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
+/// Writes the word of a substrate, for `#[serde(with)]`.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize<S: Serializer>(substrate: &Option<Substrate>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(substrate_word(*substrate))
 }
 
-pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Substrate>, D::Error> {
+/// Reads the word of a substrate, for `#[serde(with)]`.
+///
+/// # Errors
+/// If the value is not one of [`WORDS`].
+pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Substrate>, D::Error> {
     let word = String::deserialize(deserializer)?;
     WORDS.iter().find(|(known, _)| *known == word).map(|(_, substrate)| *substrate).ok_or_else(|| {
         let known = WORDS.map(|(word, _)| format!("`{word}`")).join(", ");

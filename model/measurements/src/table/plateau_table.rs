@@ -14,20 +14,21 @@ use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
 
 /// Largest load and reading in newtons: ten tonnes exceed any tendon.
-pub(crate) const MAX_N: f64 = 1e5;
+pub const MAX_N: f64 = 1e5;
 /// Highest speed in percent.
-pub(crate) const MAX_PERCENT: f64 = 1e6;
+pub const MAX_PERCENT: f64 = 1e6;
 /// Longest time in seconds: over thirty years, so that a clock may count from 1970.
 const MAX_S: f64 = 1e10;
 
-/// Smallest and largest wrap angle in degrees: the largest is two revolutions.
-pub(crate) const MIN_WRAP_DEG: f64 = 1.0;
-pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
+/// Smallest wrap angle in degrees.
+pub const MIN_WRAP_DEG: f64 = 1.0;
+/// Largest wrap angle in degrees: two revolutions.
+pub const MAX_WRAP_DEG: f64 = 720.0;
 
 /// A plateau table with its original cells, including those of unknown columns.
 ///
 /// ```
-/// use pinswitch_calibration::table::{PlateauTable, TableError};
+/// use pinswitch_measurements::table::{PlateauTable, TableError};
 ///
 /// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
 /// a,silicone,5;8;11,up,1003.2,10.451,50,3,eccentric,1,12.7,4.5,9.62

@@ -86,13 +86,13 @@ fn field_at(value: &Spanned<DeValue<'_>>, part: &Range<usize>, field: &str) -> O
 ///
 /// A field that is absent has the location of its innermost parent that is present. Anything after
 /// a space in `field` is ignored.
-pub(crate) fn field_location(file: &str, text: &str, field: &str) -> Location {
+pub fn field_location(file: &str, text: &str, field: &str) -> Location {
     field_span(text, field).map_or_else(|| Location::file(file), |span| Location::in_text(file, text, span))
 }
 
 /// Returns the diagnostic of a field's value with file, line and column of that field in a TOML
 /// text.
-pub(crate) fn locate_field(diagnostic: Diagnostic, file: &str, text: &str) -> Diagnostic {
+pub fn locate_field(diagnostic: Diagnostic, file: &str, text: &str) -> Diagnostic {
     let Some(Location { field: Some(field), value, .. }) = diagnostic.location().cloned() else {
         return diagnostic.or_in_file(file);
     };

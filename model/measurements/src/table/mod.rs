@@ -1,0 +1,24 @@
+//! Plateau tables and their rows (`model/doc/file-formats.md`).
+
+mod columns;
+mod follows;
+mod friction_gap;
+mod joined;
+mod plateau_table;
+mod plausible_table;
+mod readings;
+mod row;
+mod row_cells;
+pub mod substrate_word;
+mod swapped_columns;
+mod table_error;
+mod units;
+mod whole_series;
+
+pub use plateau_table::PlateauTable;
+pub use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
+pub use readings::readings_by_session;
+pub use readings::{is_fingerprint, matching_sessions};
+pub use row::{Labels, PlateauRow, Sweep};
+pub use substrate_word::substrate_word;
+pub use table_error::TableError;

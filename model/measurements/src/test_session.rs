@@ -1,0 +1,85 @@
+//! A small session for unit tests: readings of the paper's model with seeded noise, for two layouts and
+//! bare silicone.
+
+use pinswitch_friction::{Direction, Substrate, published};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::table::{Labels, PlateauRow, Sweep};
+
+/// Number of repetitions of each series and direction.
+pub(crate) const REPETITIONS: u32 = 9;
+
+/// Returns the rows of a session without effects: ascending and descending loads, varying speed,
+/// noise of 0.05 N.
+pub(crate) fn session(seed: u64) -> Vec<PlateauRow> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let conditions: [(Option<Substrate>, &[usize]); 5] = [
+        (Some(Substrate::Silicone), &[]),
+        (Some(Substrate::Abs), &[5, 8, 11]),
+        (Some(Substrate::Silicone), &[5, 8, 11]),
+        (Some(Substrate::Abs), &[3, 5, 7, 9, 11, 13]),
+        (Some(Substrate::Silicone), &[3, 5, 7, 9, 11, 13]),
+    ];
+    let weights_g = [251.2, 1003.2, 2005.0, 3007.2, 4007.8, 5002.5];
+    let (mut rows, mut time_s, mut series) = (Vec::new(), 0.0, 0);
+    for (substrate, pins) in conditions {
+        for sweep in [Sweep::Up, Sweep::Down] {
+            for step in 0..weights_g.len() {
+                let load_mass_g =
+                    weights_g[if sweep == Sweep::Up { step } else { weights_g.len() - 1 - step }];
+                let speed_pct = f64::from(random.random_range(4..=7u8)) * 10.0;
+                for direction in [Direction::Eccentric, Direction::Concentric] {
+                    for repetition in 1..=REPETITIONS {
+                        time_s += 3.5;
+                        let share = (f64::from(repetition) - 0.5) / f64::from(REPETITIONS);
+                        rows.push(PlateauRow {
+                            series: series.to_string(),
+                            substrate,
+                            pins: pins.to_vec(),
+                            sweep,
+                            load_mass_g,
+                            load_n: published::load_n(load_mass_g),
+                            speed_pct,
+                            dwell_s: 3.0,
+                            direction,
+                            repetition,
+                            position_mm: 152.4
+                                * if direction == Direction::Eccentric { share } else { 1.0 - share },
+                            time_s,
+                            force_n: 0.0,
+                            wrap_angle_deg: published::WRAP_ANGLE_DEG,
+                            labels: Labels::default(),
+                        });
+                    }
+                }
+                series += 1;
+            }
+        }
+    }
+    for row in &mut rows {
+        // The sum of twelve uniform variates approximates a normal one.
+        let normal = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+        row.force_n = tension_n(row) + 0.05 * normal;
+    }
+    rows
+}
+
+/// Returns the tension of the paper's model (`model/doc/friction-laws.md`), which switches at 15 N
+/// for each three pins.
+fn tension_n(row: &PlateauRow) -> f64 {
+    let exponent = row.direction.sign() * row.wrap_angle_deg.to_radians();
+    let force_n = |mu: f64| row.load_n * (libm::exp(mu * exponent) - 1.0);
+    let (on_pins_n, on_silicone_n) = (force_n(published::MU_PINS), force_n(published::MU_SILICONE));
+    let pins = row.pins.len() as f64;
+    let weight = pins / 30.0;
+    row.load_n
+        + match (row.substrate, pins > 0.0) {
+            (Some(Substrate::Abs), _) => on_pins_n,
+            (_, false) => on_silicone_n,
+            (_, true) => {
+                let share = 1.0 / (1.0 + libm::exp(-4.0 * (row.load_n / (5.0 * pins) - 1.0)));
+                (1.0 + weight) * (1.0 - share) * on_pins_n + (1.0 - weight) * share * on_silicone_n
+            }
+        }
+}

@@ -1,15 +1,43 @@
 //! Calibration of small tables as laboratories make them, which rigs of the paper's kind are unlike.
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::table::{Optional, PlateauTable};
 use pinswitch_calibration::{Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
-fn report(name: &str) -> Report {
+fn table(name: &str) -> PlateauTable {
     let file = repository("tests/data/laboratories").join(name);
-    let table = PlateauTable::read(std::fs::File::open(file).unwrap(), name).unwrap();
-    calibrate(&table.rows, &Vocabulary::built_in(), 1).unwrap().report
+    PlateauTable::read(std::fs::File::open(file).unwrap(), name).unwrap()
+}
+
+fn report(name: &str) -> Report {
+    calibrate(&table(name).rows, &Vocabulary::built_in(), 1).unwrap().report
+}
+
+/// A laboratory without positions, clock, speeds and dwells has the verdict of its readings: those
+/// columns are empty, and no covariate is made of them.
+#[test]
+fn tables_without_covariates_keep_their_verdict() {
+    for name in ["drag-and-gain.csv", "capstan-seven-angles.csv", "four-stops.csv"] {
+        let mut rows = table(name).rows;
+        for row in &mut rows {
+            row.unknown =
+                Optional::ALL.into_iter().fold(row.unknown, |unknown, quantity| unknown.with(quantity));
+        }
+        let text = PlateauTable::write(&rows);
+        assert!(text.starts_with("series,substrate,pins,load_N,direction,force_N"), "{text}");
+        let rows = PlateauTable::read(text.as_bytes(), name).unwrap().rows;
+        let report = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap().report;
+        assert_eq!(report.unknown_columns.len(), Optional::ALL.len());
+        let over = ["position", "time", "speed", "dwell", "repetition", "sweep"];
+        assert!(report.effects.iter().all(|e| !over.contains(&e.covariate.as_str())), "{:?}", report.effects);
+        let before = self::report(name);
+        let ids = |report: &Report| report.effects.iter().map(|e| e.id.clone()).collect::<Vec<_>>();
+        if name != "four-stops.csv" {
+            assert_eq!((report.verdict, ids(&report)), (before.verdict, ids(&before)), "{name}");
+        }
+    }
 }
 
 /// Six loads on one contact, mu = 0.18, drag 5 N, gain 1.15: the model is as good as least squares with

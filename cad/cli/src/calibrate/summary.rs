@@ -36,6 +36,10 @@ pub(super) fn summary(report: &Report) -> String {
     if !report.ignored_columns.is_empty() {
         text.push_str(&format!("ignored columns: {}\n", neutral_line(&listed(&report.ignored_columns))));
     }
+    if !report.unknown_columns.is_empty() {
+        let columns = report.unknown_columns.join(", ");
+        text.push_str(&format!("absent or incomplete columns, whose covariates are not used: {columns}\n"));
+    }
     text.push_str(&extrapolation(report));
     text
 }

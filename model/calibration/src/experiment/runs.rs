@@ -7,7 +7,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{Direction, Substrate, published};
 
 use super::rig::{MAX_SPEED_PCT, MIN_SPEED_PCT, RigLimits, WRAPS};
-use crate::table::{Labels, MAX_WRAP_DEG, MIN_WRAP_DEG, PlateauRow, Sweep, substrate_word};
+use crate::table::{Labels, MAX_WRAP_DEG, MIN_WRAP_DEG, PlateauRow, Sweep, Unknown, substrate_word};
 
 /// One series to record.
 #[derive(Clone, Debug, PartialEq)]
@@ -272,6 +272,7 @@ pub(super) fn append(
                     mount: run.mount.to_string(),
                     ..Labels::default()
                 },
+                unknown: Unknown::default(),
             });
         }
     }

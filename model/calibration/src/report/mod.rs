@@ -302,6 +302,9 @@ pub struct Report {
     pub aliasing: Vec<Aliasing>,
     /// Columns of the table that no calibration reads.
     pub ignored_columns: Vec<String>,
+    /// Optional columns that are absent, or empty in some rows: their covariates are not used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unknown_columns: Vec<String>,
     /// Effects that are not identifiable with this table.
     pub invisible: Vec<Invisible>,
     /// Effects that no table of such a rig identifies after the refit.

@@ -338,7 +338,7 @@ impl TableError {
             Self::NoFriction { .. } => {
                 "check that force_N is the load cell behind the switch, and not a copy of load_N"
             }
-            Self::LoadUnit { .. } => "give newtons and grams, or 0 for an unknown mass",
+            Self::LoadUnit { .. } => "convert the loads to newtons (kilograms x 9.80665), and leave load_mass_g empty if it is unknown",
             Self::ImplausibleLoads { .. } => {
                 "give newtons: divide grams by 101.97, multiply kilonewtons by 1000"
             }

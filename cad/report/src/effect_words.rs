@@ -40,6 +40,10 @@ pub fn effect_clause(id: &str) -> String {
 /// Returns a reported effect as a clause; unattributed structure with its covariate.
 pub fn reported_clause(effect: &EffectReport) -> String {
     match effect.side {
+        // On a rig without a switch only their sum is defined.
+        Some(_) if effect.id == "guide_drag" && !effect.includes.is_empty() => {
+            "the guides and the contact have a constant drag".to_owned()
+        }
         Some(_) => effect_clause(&effect.id),
         None => format!("an effect without a name acts over {}", effect.covariate),
     }

@@ -81,6 +81,17 @@ pub fn estimate_words(estimate: &Estimate) -> String {
     format!("{value:.decimals$}{unit} [{low:.decimals$}, {high:.decimals$}]")
 }
 
+/// Returns the friction of a `plain` contact, such as `mu = 0.180 [0.178, 0.182]`; without wrap angles
+/// only the exponent is known. `None` for a switch.
+pub fn friction_words(report: &Report) -> Option<String> {
+    let constants = &report.augmented.parameters;
+    let mu = constants.get("mu").map(|mu| format!("mu = {}", estimate_words(mu)));
+    let exponent = |x: &Estimate| {
+        format!("friction exponent = {} (mu times the wrap; for mu, give wrap_angle_deg)", estimate_words(x))
+    };
+    mu.or_else(|| constants.get("x").map(exponent))
+}
+
 /// Returns identifiable effects and structures with a probability above `least` that are neither reported
 /// nor rivals, the most probable first.
 pub fn other_probabilities(report: &Report, least: f64) -> Vec<(&str, f64)> {

@@ -66,16 +66,19 @@ fn minutes(text: &str) -> Result<f64, Diagnostic> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = &arguments.calibration;
+    let rig = match &arguments.rig {
+        None => None,
+        Some(path) => Some(
+            RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
+                .map_err(Failure::bad_input)?,
+        ),
+    };
     let report = report(folder)?;
     let (model, _) = read_model(&folder.join("model.toml"))?;
     let path = folder.join("residuals.csv");
     let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
         .map_err(Failure::bad_input)?;
-    let rig = match &arguments.rig {
-        None => RigLimits::of_plain_table(&table.rows).unwrap_or_default(),
-        Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
-            .map_err(Failure::bad_input)?,
-    };
+    let rig = rig.or_else(|| RigLimits::of_plain_table(&table.rows)).unwrap_or_default();
     let name = folder.display().to_string();
     let vocabulary = with_form(arguments.effects.vocabulary()?, folder, &report)?;
     if let Some(id) = undefined_effect(&report, &model, &vocabulary) {

@@ -16,6 +16,8 @@ use super::folder_lock::{FolderLock, JOURNAL, LockMode};
 use super::record::{Record, is_plain, read_existing};
 use super::steps::Step;
 use super::{WriteError, refuse_obstacle};
+use crate::input::sources_from;
+use crate::provenance::{PROVENANCE, Provenance};
 
 /// Name of the folder for staged files.
 const STAGED: &str = ".pinswitch-staged";
@@ -143,6 +145,41 @@ impl SetFolder {
         let steps = self.stage(files)?;
         let first = steps.last().map(|seal| Step::Remove(seal.target().clone()));
         self.take(&first.into_iter().chain(steps).collect::<Vec<_>>())
+    }
+
+    /// As [`Self::replace`], and lists the files in the manifest of the folder, with every file that this process has read
+    /// as their source. Entries of `stale` files are removed.
+    ///
+    /// # Errors
+    /// [`WriteError`]; of a damaged or foreign manifest before anything changes.
+    pub(super) fn replace_listed(
+        &self,
+        files: &[OutputFile],
+        command: &str,
+        stale: &[&str],
+    ) -> Result<(), WriteError> {
+        let Some((seal, others)) = files.split_last() else { return Ok(()) };
+        let manifest = self
+            .provenance()?
+            .retaining(|name| !stale.contains(&name) && self.folder.join(name).symlink_metadata().is_ok());
+        let manifest = manifest.with_files(command, sources_from(&self.folder), files);
+        let path = self.folder.join(PROVENANCE);
+        let bytes = manifest.to_bytes().map_err(|e| WriteError::at(&path)(std::io::Error::other(e)))?;
+        // Until it is renamed, after the other files, the earlier manifest reveals a mixture of both runs.
+        let all: Vec<OutputFile> =
+            others.iter().cloned().chain([OutputFile::new(PROVENANCE, bytes), seal.clone()]).collect();
+        self.replace(&all)
+    }
+
+    /// Reads the manifest of provenance; an empty one if there is none.
+    fn provenance(&self) -> Result<Provenance, WriteError> {
+        let path = self.folder.join(PROVENANCE);
+        match read_existing(&path).map_err(WriteError::at(&path))? {
+            Some(bytes) => {
+                Provenance::parse(&bytes).map_err(|problem| WriteError::Manifest { path, problem })
+            }
+            None => Ok(Provenance::default()),
+        }
     }
 
     fn plan(&self, files: &[OutputFile], source: &SourceEntry, force: bool) -> Result<Plan, PublishError> {

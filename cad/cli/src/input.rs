@@ -65,6 +65,12 @@ pub(super) fn was_read(path: &Path) -> bool {
     READ.lock().unwrap_or_else(PoisonError::into_inner).contains_key(&real)
 }
 
+/// Returns the SHA-256 of the file at `path` in hexadecimal digits; `None` if this process has not read it.
+pub(super) fn sha256_read(path: &Path) -> Option<String> {
+    let real = path.canonicalize().ok()?;
+    READ.lock().unwrap_or_else(PoisonError::into_inner).get(&real).map(|input| input.sha256.clone())
+}
+
 /// Returns the files that this process has read, by their canonical paths.
 pub(super) fn files_read() -> BTreeMap<PathBuf, InputFile> {
     READ.lock().unwrap_or_else(PoisonError::into_inner).clone()

@@ -71,6 +71,7 @@ mod adequacy;
 mod aliasing;
 mod calibrate;
 mod confirmation;
+mod content_hash;
 mod discovery;
 pub mod effects;
 pub mod evidence;

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     /// drift and mounts.
     #[arg(required_unless_present = "published", value_name = "TABLE")]
     tables: Vec<PathBuf>,
-    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
+    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml, provenance.json and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Calibrate on the seven maxima of the paper instead of a table.

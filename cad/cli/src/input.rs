@@ -172,7 +172,7 @@ fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
             _ => refused("cannot read", "give a file that exists and can be read").with_source(e),
         })
     })?;
-    // A pipe has no content that could be overwritten or compared.
+    // A pipe is neither overwritten nor listed.
     if path.is_file()
         && let Ok(real) = path.canonicalize()
     {

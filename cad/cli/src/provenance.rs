@@ -20,7 +20,7 @@ const SCHEMA: &str = "pinswitch.provenance/1";
 /// another program; a single damaged byte does not remove it.
 const PROGRAM: &[u8] = b"pinswitch";
 /// Digits of a hash that an error shows.
-const SHOWN_DIGITS: usize = 12;
+const SHOWN_DIGITS: usize = 8;
 /// Commands whose files are out of date once their inputs change. Plans and simulated tables stay valid.
 const DERIVING: [&str; 2] = ["segment", "calibrate"];
 
@@ -192,15 +192,13 @@ impl ChangedFile {
     pub(crate) fn diagnostic(&self, path: &Path) -> Diagnostic {
         let digits = |hash: &str| hash.chars().take(SHOWN_DIGITS).collect::<String>();
         let problem = format!(
-            "was changed since `pinswitch {}` wrote it: its SHA-256 is {}..., {PROVENANCE} lists {}...",
+            "was changed since `pinswitch {}` wrote it (SHA-256 {}..., not {}...)",
             self.command,
             digits(&self.current),
             digits(&self.written)
         );
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(format!(
-            "restore it; if the change is intended, rename it or remove {PROVENANCE}, and it is accepted as an external \
-             input"
-        ))
+        let help = format!("restore it; to use the changed file, rename it or remove {PROVENANCE}");
+        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
     }
 }
 

@@ -18,7 +18,8 @@ use crate::write::write_listed;
 
 /// Convert raw 200 Hz logs to a plateau table.
 ///
-/// Prints the faults of each log. Also writes a JSON file with the faults, and one SVG per log with its plateaus marked, next to the table.
+/// Prints the faults of each log. Also writes, next to the table, a JSON file with the faults, one SVG per log with its
+/// plateaus marked, and provenance.json.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: pinswitch segment run.toml --out plateaus.csv")]
 pub(super) struct Arguments {

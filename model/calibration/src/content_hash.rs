@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 /// Begin of the line.
 const MARK: &str = "# SHA-256 of the lines above: ";
 /// Digits of a hash that an error shows.
-const SHOWN_DIGITS: usize = 12;
+const SHOWN_DIGITS: usize = 8;
 
 /// Appends the line to a text that ends with a line feed.
 pub(crate) fn with_content_hash(text: String) -> String {
@@ -28,11 +28,11 @@ pub(crate) fn check_content_hash(text: &str) -> Result<(), Diagnostic> {
     }
     let digits = |hash: &str| hash.chars().take(SHOWN_DIGITS).collect::<String>();
     let problem = format!(
-        "was changed since pinswitch wrote it: its SHA-256 is {}..., its last line lists {}...",
+        "was changed since pinswitch wrote it (SHA-256 {}..., not {}...)",
         digits(&hash),
         digits(listed)
     );
-    Err(Diagnostic::new(problem).with_help("restore it; if the change is intended, delete its last line"))
+    Err(Diagnostic::new(problem).with_help("restore it; to use the changed file, delete its last line"))
 }
 
 /// Returns the SHA-256 in hexadecimal digits, independent of the kind of line ends.

@@ -30,6 +30,7 @@ mod laboratories;
 mod next_experiment;
 mod own_effects;
 mod pictures;
+mod provenance;
 mod readme;
 mod reference_shell;
 mod segment_raw;

@@ -17,6 +17,7 @@ mod finger_text;
 mod input;
 mod law;
 mod predict_rows;
+mod provenance;
 mod range;
 mod second_kernel;
 mod slicing;

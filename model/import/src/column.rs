@@ -309,8 +309,12 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
     if quantity.dimensions().is_empty() || column.is_clock || column.has_factor {
         return;
     }
-    let Some(unit) = column.unit.or_else(|| assumed_unit(column, sheet, header)) else {
-        questions.push(unknown_unit(column));
+    let given = map.force_unit.filter(|_| quantity == Quantity::Force);
+    let Some(unit) = column.unit.or(given).or_else(|| assumed_unit(column, sheet, header)) else {
+        let question = unknown_unit(column);
+        if !questions.contains(&question) {
+            questions.push(question);
+        }
         return;
     };
     column.unit = Some(unit);
@@ -397,6 +401,14 @@ fn unknown_unit(column: &Column) -> Question {
         Quantity::Speed => &["%", "mm/s"],
         _ => &["W", "mW"],
     };
+    let is_wide = column.direction.is_some() || column.load.is_some() || column.repetition.is_some();
+    if column.quantity == Quantity::Force && is_wide {
+        let readings = units.iter().map(|unit| ((*unit).to_owned(), format!("force_unit={unit}")));
+        return Question {
+            problem: "the columns of forces have no unit".to_owned(),
+            readings: readings.collect(),
+        };
+    }
     let problem = format!("column '{}' has no unit", column.name);
     let mut readings: Vec<_> =
         units.iter().map(|unit| ((*unit).to_owned(), format!("unit.{}={unit}", reference(column)))).collect();

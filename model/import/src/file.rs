@@ -57,6 +57,9 @@ impl FileReading {
             header.names.clone_from(names);
             header.units.clear();
         }
+        if let Some(diagnostic) = too_few_names(name, &recording, &header) {
+            return Err(diagnostic);
+        }
         let mut questions = Vec::new();
         let columns = column::assign(sheet, &header, map, &mut questions);
         let is_used = |choice: &crate::map::ColumnChoice| {
@@ -431,4 +434,23 @@ fn no_header(name: &str, recording: &Recording, map: &Map) -> Diagnostic {
     Diagnostic::new("no line with numbers")
         .with_location(location)
         .with_help("give a file with a line of names and lines of numbers")
+}
+
+/// Returns an error if rows have more cells than names: the names may then belong to other cells.
+fn too_few_names(name: &str, recording: &Recording, header: &Header) -> Option<Diagnostic> {
+    let sheet = &recording.sheet;
+    let count = header.names.len();
+    let row = (header.first_data..sheet.len().min(header.first_data + 200)).find(|row| {
+        (count..sheet.width(*row)).any(|column| !sheet.cell(*row, column).is_empty())
+            && header::is_data(sheet, *row)
+    })?;
+    let width = (0..sheet.width(row)).rev().find(|column| !sheet.cell(row, *column).is_empty())? + 1;
+    let is_comma = recording.delimiter == Some(crate::dialect::Delimiter::Sign(b','));
+    let help = if is_comma && width == 2 * count {
+        "export with semicolons as delimiter, or with decimal points: a decimal comma looks like a delimiter here"
+    } else {
+        "name every cell, as in --set names=index,time_s,force_N"
+    };
+    let problem = format!("{width} cells, but {count} columns have names");
+    Some(Diagnostic::new(problem).with_location(Location::line(name, sheet.line(row))).with_help(help))
 }

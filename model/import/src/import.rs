@@ -172,7 +172,7 @@ fn build_table(
     understanding.notes.append(&mut table.notes);
     let csv = table.lines(usize::MAX);
     let header = csv.lines().next().unwrap_or_default();
-    if !header.contains("wrap_angle_deg") && table.len() > 0 {
+    if table.lacks_wrap_angle() {
         understanding
             .notes
             .push("the wrap angle is not known: give it with --set wrap_angle_deg=180".to_owned());

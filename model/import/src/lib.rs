@@ -38,6 +38,8 @@ mod pattern;
 mod quantity;
 mod question;
 mod recording;
+#[cfg(test)]
+mod round_trip;
 mod sheet;
 mod table;
 mod times;

@@ -11,6 +11,8 @@ use crate::sheet::Sheet;
 
 /// Line that ends a header block.
 const END: &str = "***End_of_Header***";
+/// Lines in which the separator is declared.
+const MAX_HEADER_LINES: usize = 100;
 
 /// Whether a text is an LVM file.
 pub(crate) fn is_lvm(text: &str) -> bool {
@@ -60,7 +62,7 @@ pub(crate) struct LvmSheet {
 /// # Errors
 /// A [`Diagnostic`] if no segment has data.
 pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
-    let mut declared = Declared { separator: '\t', sign: DecimalSign::Point, segment: Vec::new() };
+    let mut declared = Declared { separator: separator(text), sign: DecimalSign::Point, segment: Vec::new() };
     let mut multi = "No".to_owned();
     let mut sheet = Sheet::default();
     let mut notes = Vec::new();
@@ -91,15 +93,6 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
             declared.segment.clear();
         }
         match key {
-            "Separator" => {
-                declared.separator = if cells.get(1).or(cells.first()).is_some_and(|c| c.contains("omma"))
-                    || line.contains("Comma")
-                {
-                    ','
-                } else {
-                    '\t'
-                };
-            }
             "Decimal_Separator" => {
                 declared.sign = if line.trim_end().ends_with(',') && !line.trim_end().ends_with(".,") {
                     DecimalSign::Comma
@@ -149,6 +142,13 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
         notes.push(format!("{segments} segments, joined by their dates and times"));
     }
     Ok(LvmSheet { sheet, sign: declared.sign, separator: declared.separator, notes })
+}
+
+/// Returns the separator that the header declares.
+fn separator(text: &str) -> char {
+    let mut lines = text.lines().take(MAX_HEADER_LINES);
+    let is_comma = lines.any(|line| line.starts_with("Separator") && line.to_lowercase().contains("comma"));
+    if is_comma { ',' } else { '\t' }
 }
 
 /// Whether a line has samples: its first cell, the time, is a number or empty.

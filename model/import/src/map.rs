@@ -71,6 +71,8 @@ pub struct Map {
     pub(crate) date_order: Option<DateOrder>,
     pub(crate) is_swapped: Option<bool>,
     pub(crate) force_sign: Option<bool>,
+    /// Unit of the columns of forces without one.
+    pub(crate) force_unit: Option<&'static Unit>,
     pub(crate) sample_rate_hz: Option<Decimal>,
     pub(crate) full_speed_mm_s: Option<Decimal>,
     pub(crate) skip_bad_rows: bool,
@@ -104,7 +106,7 @@ const CONSTANTS: [&str; 17] = [
 ];
 
 /// Keys of `--set`, for messages.
-const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, directions, force_sign, \
+const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, directions, force_sign, force_unit, \
     sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, \
     direction.NAME, load.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
@@ -121,6 +123,7 @@ struct MapFile {
     sheet: Option<String>,
     date: Option<String>,
     force_sign: Option<i64>,
+    force_unit: Option<String>,
     sample_rate_hz: Option<f64>,
     full_speed_mm_s: Option<f64>,
     bad_rows: Option<String>,
@@ -174,6 +177,7 @@ impl Map {
             ("decimal", entries.decimal),
             ("date", entries.date),
             ("bad_rows", entries.bad_rows),
+            ("force_unit", entries.force_unit),
             ("force_sign", entries.force_sign.map(|sign| sign.to_string())),
             ("sample_rate_hz", entries.sample_rate_hz.map(|rate| rate.to_string())),
             ("full_speed_mm_s", entries.full_speed_mm_s.map(|speed| speed.to_string())),
@@ -298,6 +302,7 @@ impl Map {
                     _ => return Err(words("1 or -1")),
                 });
             }
+            "force_unit" => self.force_unit = Some(parse_unit(key, value)?),
             "sample_rate_hz" => self.sample_rate_hz = Some(positive(key, value)?),
             "full_speed_mm_s" => self.full_speed_mm_s = Some(positive(key, value)?),
             "bad_rows" => {
@@ -416,6 +421,7 @@ impl Map {
             "force_sign",
             self.force_sign.map(|is_negative| if is_negative { "-1" } else { "1" }.to_owned()),
         );
+        line("force_unit", self.force_unit.map(|unit| quoted(unit.name)));
         line("sample_rate_hz", self.sample_rate_hz.map(number));
         line("full_speed_mm_s", self.full_speed_mm_s.map(number));
         line("bad_rows", self.skip_bad_rows.then(|| quoted("skip")));

@@ -78,6 +78,12 @@ fn position(quantity: Quantity) -> usize {
 }
 
 impl Table {
+    /// Whether a reading is on a plain contact, whose wrap angle has no default, without a wrap angle.
+    pub(crate) fn lacks_wrap_angle(&self) -> bool {
+        let is_plain = |row: &Row| row.cells[position(Quantity::Substrate)] == "plain";
+        self.rows.iter().any(|row| is_plain(row) && row.cells[position(Quantity::WrapAngle)].is_empty())
+    }
+
     /// Number of readings.
     pub(crate) fn len(&self) -> usize {
         self.rows.len()
@@ -121,6 +127,13 @@ fn push_line<'a>(out: &mut String, cells: impl Iterator<Item = &'a str>) {
 
 /// Returns the question about a word that is not a known direction.
 pub(crate) fn unknown_direction(word: &str) -> Question {
+    if word.is_empty() {
+        let readings = vec![
+            ("all such readings are concentric".to_owned(), "concentric=".to_owned()),
+            ("all such readings are eccentric".to_owned(), "eccentric=".to_owned()),
+        ];
+        return Question { problem: "some readings have no direction".to_owned(), readings };
+    }
     let readings = vec![
         ("the load is pulled, and the force is higher".to_owned(), format!("concentric={word}")),
         ("the load is released, and the force is lower".to_owned(), format!("eccentric={word}")),
@@ -243,11 +256,39 @@ fn direction_words(
             }
         }
     }
-    for (word, _) in words.iter().filter(|(_, direction)| direction.is_none()).take(4) {
-        let shown = if word.is_empty() { "(empty)" } else { word };
-        questions.push(unknown_direction(shown));
+    let unknown: Vec<&String> = words.iter().filter(|(_, d)| d.is_none()).map(|(word, _)| word).collect();
+    match unknown.as_slice() {
+        [a, b] if words.len() == 2 => questions.push(opposite_words(a, b, files)),
+        _ => questions.extend(unknown.iter().take(4).map(|word| unknown_direction(word))),
     }
     words.into_iter().filter_map(|(word, direction)| Some((word, direction?))).collect()
+}
+
+/// Returns the question which of two words is the concentric direction, with the forces as a hint.
+fn opposite_words(a: &str, b: &str, files: &[FileReading]) -> Question {
+    let mean = |word: &str| {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for file in files {
+            let Some((column, force)) = file.column(Quantity::Direction).zip(file.forces().next()) else {
+                continue;
+            };
+            let sheet = &file.recording.sheet;
+            let rows = file.rows.iter().filter(|row| sheet.cell(**row, column.index) == word);
+            for force in rows.filter_map(|row| file.value(*row, force)) {
+                sum += force.to_f64();
+                count += 1.0;
+            }
+        }
+        sum / count
+    };
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let reading = |word: &str, mean: f64| {
+        (format!("the mean force is {mean:.3} N with '{word}'"), format!("concentric={word}"))
+    };
+    Question {
+        problem: format!("the directions '{a}' and '{b}' are not known; the concentric one pulls the load"),
+        readings: vec![reading(a, mean_a), reading(b, mean_b)],
+    }
 }
 
 /// Adds the readings of a file.
@@ -302,6 +343,15 @@ fn add_rows(
             set(Quantity::Force, force.to_string());
             if let Some(repetition) = column.repetition {
                 set(Quantity::Repetition, repetition.to_string());
+            }
+            // In a table with a column for each load, the rows are trials.
+            if column.load.is_some() && !cells[position(Quantity::Series)].is_empty() {
+                let row_name = std::mem::take(&mut cells[position(Quantity::Series)]);
+                let has_repetition = !cells[position(Quantity::Repetition)].is_empty();
+                match row_name.parse::<u32>() {
+                    Ok(_) if !has_repetition => cells[position(Quantity::Repetition)] = row_name,
+                    _ => cells[position(Quantity::Series)] = format!("{row_name}, {load_text}"),
+                }
             }
             if cells[position(Quantity::Series)].is_empty() {
                 cells[position(Quantity::Series)] = series_name(file, &cells, &load_text);
@@ -359,7 +409,9 @@ fn add_words(
             let value = given.unwrap_or(default);
             if !value.is_empty() {
                 cells[i] = value.to_owned();
-                table.constants.insert(quantity.column(), (value.to_owned(), given.is_some()));
+                if !file.constants.contains_key(quantity.column()) {
+                    table.constants.insert(quantity.column(), (value.to_owned(), given.is_some()));
+                }
             }
         }
     }
@@ -470,26 +522,29 @@ fn series_name(file: &FileReading, cells: &[String; COLUMNS.len()], load: &str) 
     name
 }
 
-/// Asks whether the sign of the cell is reversed, if nearly all readings are negative.
-fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
+/// Returns the share of negative readings.
+fn negative_share(table: &Table) -> f64 {
     let negative = table.rows.iter().filter(|row| row.force_n < 0.0).count();
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     let share = negative as f64 / table.rows.len().max(1) as f64;
-    if map.force_sign.is_none() && share > REVERSED_SHARE {
+    share
+}
+
+/// Asks whether the sign of the cell is reversed, if nearly all readings are negative.
+fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
+    if map.force_sign.is_none() && negative_share(table) > REVERSED_SHARE {
         let readings = vec![
             ("the cell reads a tension as negative".to_owned(), "force_sign=-1".to_owned()),
             ("the forces are negative".to_owned(), "force_sign=1".to_owned()),
         ];
-        questions.push(Question {
-            problem: format!("{negative} of {} forces are negative", table.rows.len()),
-            readings,
-        });
+        questions.push(Question { problem: "nearly all forces are negative".to_owned(), readings });
     }
 }
 
 /// Compares the words with the forces: at the same load, the force is higher while the load is pulled.
 fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questions: &mut Vec<Question>) {
-    if map.is_swapped.is_some() || table.rows.iter().all(|row| row.is_decided) {
+    let is_sign_open = map.force_sign.is_none() && negative_share(table) > REVERSED_SHARE;
+    if is_sign_open || map.is_swapped.is_some() || table.rows.iter().all(|row| row.is_decided) {
         return;
     }
     let mut groups: BTreeMap<String, [Vec<f64>; 2]> = BTreeMap::new();

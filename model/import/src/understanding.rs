@@ -140,18 +140,18 @@ impl fmt::Display for Understanding {
         }
         writeln!(
             f,
-            "result     {} with {} rows ({})",
+            "result     {} with {} ({})",
             self.kind,
-            self.rows,
+            counted(self.rows, "row"),
             self.files.first().map_or("", |file| file.kind_reason)
         )?;
         for (word, direction, count) in &self.directions {
-            writeln!(f, "direction  {} = {direction} ({count} readings)", shown(word))?;
+            writeln!(f, "direction  {} = {direction} ({})", shown(word), counted(*count, "reading"))?;
         }
         for (name, value, is_given) in &self.constants {
             writeln!(f, "constant   {name} = {}{}", shown(value), if *is_given { "" } else { " (default)" })?;
         }
-        if !self.preview.is_empty() {
+        if self.preview.len() > 1 {
             writeln!(f, "first rows")?;
             for line in &self.preview {
                 writeln!(f, "  {}", shown(&excerpt(line, 200)))?;
@@ -165,6 +165,10 @@ impl fmt::Display for Understanding {
         }
         Ok(())
     }
+}
+
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
 fn same_columns(a: &FileUnderstanding, b: &FileUnderstanding) -> bool {
@@ -192,7 +196,7 @@ fn write_file(f: &mut fmt::Formatter<'_>, file: &FileUnderstanding) -> fmt::Resu
         vec![["column".to_owned(), "quantity".to_owned(), "unit".to_owned(), "conversion".to_owned()]];
     for column in file.columns.iter().filter(|column| column.ignored.is_empty()) {
         table.push([
-            excerpt(&shown(&column.name), MAX_NAME).into(),
+            excerpt(&shown(&column.name), MAX_NAME),
             match column.readings.as_str() {
                 "" => column.quantity.replace('_', " "),
                 readings => format!("{}, {readings}", column.quantity),
@@ -214,8 +218,7 @@ fn write_file(f: &mut fmt::Formatter<'_>, file: &FileUnderstanding) -> fmt::Resu
         writeln!(f, "ignored    column '{}': {}", excerpt(&shown(&column.name), MAX_NAME), column.ignored)?;
     }
     for (reason, count, first) in &file.ignored_rows {
-        let rows = if *count == 1 { "row" } else { "rows" };
-        writeln!(f, "ignored    {count} {rows}: {reason} (first in line {first})")?;
+        writeln!(f, "ignored    {}: {reason} (first in line {first})", counted(*count, "row"))?;
     }
     for note in &file.notes {
         writeln!(f, "note       {}", shown(note))?;

@@ -287,9 +287,9 @@ fn remove_duplicates(columns: &mut [Column], questions: &mut Vec<Question>) {
                 let others = all.iter().filter(|other| other.index != column.index);
                 let option: Vec<String> =
                     others.map(|other| format!("column.{}=ignore", reference(other))).collect();
-                (format!("'{}' is it", column.name), option.join("' --set '"))
+                (format!("'{}' is it", column.name), option.join("\n"))
             });
-            questions.push(Question { problem, readings: readings.collect() });
+            questions.push(Question::new(problem, readings));
         }
     }
 }
@@ -327,7 +327,7 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
             ),
             ("the column is not needed".to_owned(), format!("column.{}=ignore", reference(column))),
         ];
-        questions.push(Question { problem, readings });
+        questions.push(Question::new(problem, readings));
         return;
     }
     match (quantity, unit.dimension) {
@@ -340,11 +340,11 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
             let readings = vec![
                 (
                     format!("{base} per {}, and the reading in {base} at 0", unit.name),
-                    format!("factor.{0}=0.001' --set 'offset.{0}=0", reference(column)),
+                    format!("factor.{0}=0.001\noffset.{0}=0", reference(column)),
                 ),
                 ("the column is not needed".to_owned(), format!("column.{}=ignore", reference(column))),
             ];
-            questions.push(Question { problem, readings });
+            questions.push(Question::new(problem, readings));
         }
         (Quantity::Position, Dimension::Angle) => {
             column.ignore("an angle: its millimetres per degree are the option factor.NAME")
@@ -404,10 +404,7 @@ fn unknown_unit(column: &Column) -> Question {
     let is_wide = column.direction.is_some() || column.load.is_some() || column.repetition.is_some();
     if column.quantity == Quantity::Force && is_wide {
         let readings = units.iter().map(|unit| ((*unit).to_owned(), format!("force_unit={unit}")));
-        return Question {
-            problem: "the columns of forces have no unit".to_owned(),
-            readings: readings.collect(),
-        };
+        return Question::new("the columns of forces have no unit", readings);
     }
     let problem = format!("column '{}' has no unit", column.name);
     let mut readings: Vec<_> =
@@ -415,5 +412,5 @@ fn unknown_unit(column: &Column) -> Question {
     if !matches!(column.quantity, Quantity::Load | Quantity::Force) {
         readings.push(("leave it out".to_owned(), format!("column.{}=ignore", reference(column))));
     }
-    Question { problem, readings }
+    Question::new(problem, readings)
 }

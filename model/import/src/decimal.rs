@@ -9,6 +9,12 @@ const PRODUCT_DIGITS: u32 = 18;
 /// Largest exponent of ten, in magnitude.
 const MAX_EXPONENT: i32 = 10_000;
 
+/// Powers of ten that are exact as binary numbers.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
 /// A decimal number: `digits` times ten to the power of `exponent`, with a sign.
 ///
 /// A product of decimals is exact, and [`Decimal::to_f64`] rounds once. Therefore `0.0012 kN` is exactly `1.2 N`.
@@ -124,6 +130,14 @@ impl Decimal {
 
     /// Returns the nearest binary number.
     pub fn to_f64(self) -> f64 {
+        // Both are exact as binary numbers, so that one rounding gives the nearest (W. D. Clinger, PLDI 1990).
+        if self.digits < 1 << 53
+            && let Some(power) = POWERS.get(self.exponent.unsigned_abs() as usize)
+        {
+            #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
+            let digits = if self.is_negative { -(self.digits as f64) } else { self.digits as f64 };
+            return if self.exponent < 0 { digits / power } else { digits * power };
+        }
         let sign = if self.is_negative { "-" } else { "" };
         format!("{sign}{}e{}", self.digits, self.exponent).parse().unwrap_or(f64::NAN)
     }

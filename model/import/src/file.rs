@@ -53,6 +53,16 @@ impl FileReading {
         let sheet = &recording.sheet;
         let mut header =
             header::find(sheet, map.header_line).ok_or_else(|| no_header(name, &recording, map))?;
+        // A header block may have another length in another file of the same machine.
+        let has_known_names = |header: &Header| {
+            header.names.iter().any(|name| map.columns.iter().any(|(known, _)| known == name))
+        };
+        if !map.columns.is_empty()
+            && !has_known_names(&header)
+            && let Some(other) = header::find(sheet, None).filter(has_known_names)
+        {
+            header = other;
+        }
         if let Some(names) = &map.names {
             header.names.clone_from(names);
             header.units.clear();
@@ -170,8 +180,7 @@ impl FileReading {
                     shown(0),
                     shown(1)
                 );
-                self.questions
-                    .push(Question { problem, readings: options("decimal comma", "decimal point") });
+                self.questions.push(Question::new(problem, options("decimal comma", "decimal point")));
                 DecimalSign::Point
             }
             (true, false, _) => DecimalSign::Point,
@@ -186,10 +195,10 @@ impl FileReading {
                     &format!("it is {}", value(DecimalSign::Comma)),
                     &format!("it is {}", value(DecimalSign::Point)),
                 );
-                self.questions.push(Question {
-                    problem: format!("{} has a decimal comma or a thousands separator", shown(3)),
+                self.questions.push(Question::new(
+                    format!("{} has a decimal comma or a thousands separator", shown(3)),
                     readings,
-                });
+                ));
                 DecimalSign::Comma
             }
             (false, false, false) => DecimalSign::Point,
@@ -266,6 +275,43 @@ impl FileReading {
 
     /// Decides whether a row has a reading.
     fn judge(&self, row: usize) -> RowVerdict {
+        let sheet = &self.recording.sheet;
+        let (mut has_force, mut has_number) = (false, false);
+        let mut bad = None;
+        for column in self.columns.iter().filter(|column| column.quantity.is_number()) {
+            let cell = sheet.cell(row, column.index);
+            if is_missing(cell) {
+                continue;
+            }
+            if self.value(row, column).is_some_and(|value| value.to_f64().is_finite()) {
+                has_number = true;
+                has_force |= column.quantity == Quantity::Force;
+            } else if bad.is_none() {
+                bad = Some(column);
+            }
+        }
+        // Most rows of a log begin with a number.
+        let begins_with_number = sheet.cell(row, 0).starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        if bad.is_none() && has_force && begins_with_number {
+            return RowVerdict::Use;
+        }
+        if let Some(reason) = self.reason_to_skip(row) {
+            return RowVerdict::Skip(reason);
+        }
+        match bad {
+            Some(_) if !has_number => RowVerdict::Skip("text"),
+            Some(column) => {
+                let cell = sheet.cell(row, column.index);
+                let problem = self.problem(cell, column);
+                RowVerdict::Bad { column: column.name.clone(), cell: cell.to_owned(), problem }
+            }
+            None if has_force => RowVerdict::Use,
+            None => RowVerdict::Skip("no force"),
+        }
+    }
+
+    /// Returns why a row is not one of readings, whatever its numbers are.
+    fn reason_to_skip(&self, row: usize) -> Option<&'static str> {
         const SUMMARY: [&str; 16] = [
             "mean",
             "average",
@@ -286,47 +332,19 @@ impl FileReading {
         ];
         let sheet = &self.recording.sheet;
         if header::is_comment(sheet, row) {
-            return RowVerdict::Skip("comment");
+            return Some("comment");
         }
-        let is_name = |column: &Column| {
-            !column.name.is_empty() && sheet.cell(row, column.index).eq_ignore_ascii_case(&column.name)
-        };
-        let names = self.columns.iter().filter(|column| is_name(column)).count();
-        if names > 0 && names * 2 > self.columns.iter().filter(|column| !column.name.is_empty()).count() {
-            return RowVerdict::Skip("repeated header");
+        let named = || self.columns.iter().filter(|column| !column.name.is_empty());
+        let repeated =
+            named().filter(|column| sheet.cell(row, column.index).eq_ignore_ascii_case(&column.name)).count();
+        if repeated > 0 && repeated * 2 > named().count() {
+            return Some("repeated header");
         }
         if header::is_units_row(sheet, row) && !header::is_data(sheet, row) {
-            return RowVerdict::Skip("repeated units");
+            return Some("repeated units");
         }
-        let (mut has_force, mut has_number) = (false, false);
-        let mut bad = None;
-        for column in self.columns.iter().filter(|column| column.quantity.is_number()) {
-            let cell = sheet.cell(row, column.index);
-            if is_missing(cell) {
-                continue;
-            }
-            if self.value(row, column).is_some_and(|value| value.to_f64().is_finite()) {
-                has_number = true;
-                has_force |= column.quantity == Quantity::Force;
-            } else if bad.is_none() {
-                bad = Some(RowVerdict::Bad {
-                    column: column.name.clone(),
-                    cell: cell.to_owned(),
-                    problem: self.problem(cell, column),
-                });
-            }
-        }
-        let first_word =
-            sheet.row(row).find(|cell| !cell.is_empty()).map(vocabulary::words).unwrap_or_default();
-        if first_word.first().is_some_and(|word| SUMMARY.contains(&word.as_str())) {
-            return RowVerdict::Skip("summary");
-        }
-        match bad {
-            Some(_) if !has_number => RowVerdict::Skip("text"),
-            Some(bad) => bad,
-            None if has_force => RowVerdict::Use,
-            None => RowVerdict::Skip("no force"),
-        }
+        let first = sheet.row(row).find(|cell| !cell.is_empty()).map(vocabulary::words).unwrap_or_default();
+        first.first().is_some_and(|word| SUMMARY.contains(&word.as_str())).then_some("summary")
     }
 
     fn problem(&self, cell: &str, column: &Column) -> &'static str {
@@ -362,7 +380,7 @@ impl FileReading {
                 ("samples of a log".to_owned(), "kind=log".to_owned()),
                 ("a steady reading in each row".to_owned(), "kind=table".to_owned()),
             ];
-            self.questions.push(Question { problem, readings });
+            self.questions.push(Question::new(problem, readings));
         }
     }
 
@@ -398,10 +416,10 @@ impl FileReading {
                 ("the day is first".to_owned(), "date=dmy".to_owned()),
                 ("the month is first".to_owned(), "date=mdy".to_owned()),
             ];
-            self.questions.push(Question {
-                problem: format!("column '{}': the order of day and month in '{cell}'", column.name),
+            self.questions.push(Question::new(
+                format!("column '{}': the order of day and month in '{cell}'", column.name),
                 readings,
-            });
+            ));
             return;
         }
     }

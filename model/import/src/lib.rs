@@ -57,6 +57,6 @@ pub use map::{Kind, Map, SCHEMA};
 pub use number::DecimalSign;
 pub use pattern::Pattern;
 pub use quantity::Quantity;
-pub use question::Question;
+pub use question::{Answer, Question};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding, Understanding};
 pub use unit::{Dimension, Unit};

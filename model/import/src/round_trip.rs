@@ -143,8 +143,8 @@ fn readings() -> impl Strategy<Value = Vec<Reading>> {
         for (i, (load, share, position)) in all.into_iter().enumerate() {
             let time = i64::try_from(i).unwrap_or(0) * 2 * 317;
             let load = load * 10 + 1;
-            readings.push((load, true, load * (110_00 + share) / 100, position, time));
-            readings.push((load, false, load * (90_00 - share) / 100, position, time + 317));
+            readings.push((load, true, load * (11_000 + share) / 100, position, time));
+            readings.push((load, false, load * (9_000 - share) / 100, position, time + 317));
         }
         readings
     })

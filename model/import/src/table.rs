@@ -132,13 +132,13 @@ pub(crate) fn unknown_direction(word: &str) -> Question {
             ("all such readings are concentric".to_owned(), "concentric=".to_owned()),
             ("all such readings are eccentric".to_owned(), "eccentric=".to_owned()),
         ];
-        return Question { problem: "some readings have no direction".to_owned(), readings };
+        return Question::new("some readings have no direction", readings);
     }
     let readings = vec![
         ("the load is pulled, and the force is higher".to_owned(), format!("concentric={word}")),
         ("the load is released, and the force is lower".to_owned(), format!("eccentric={word}")),
     ];
-    Question { problem: format!("'{word}' is not a known direction"), readings }
+    Question::new(format!("'{word}' is not a known direction"), readings)
 }
 
 /// Makes a table of the rows of files; what is missing or has two readings becomes a question.
@@ -195,7 +195,7 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
                 ("a mass, the same in all rows".to_owned(), "load_kg=1".to_owned()),
                 ("in a column".to_owned(), "column.NAME=load".to_owned()),
             ];
-            questions.push(Question { problem: format!("{}: the load is not known", file.name), readings });
+            questions.push(Question::new(format!("{}: the load is not known", file.name), readings));
         }
         let has_direction = has(Quantity::Direction)
             || constant(file, map, "direction").is_some()
@@ -206,8 +206,7 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
                 ("all readings after the load was released".to_owned(), "direction=eccentric".to_owned()),
                 ("in a column".to_owned(), "column.NAME=direction".to_owned()),
             ];
-            questions
-                .push(Question { problem: format!("{}: the direction is not known", file.name), readings });
+            questions.push(Question::new(format!("{}: the direction is not known", file.name), readings));
         }
         if questions.len() > before {
             return false;
@@ -285,10 +284,10 @@ fn opposite_words(a: &str, b: &str, files: &[FileReading]) -> Question {
     let reading = |word: &str, mean: f64| {
         (format!("the mean force is {mean:.3} N with '{word}'"), format!("concentric={word}"))
     };
-    Question {
-        problem: format!("the directions '{a}' and '{b}' are not known; the concentric one pulls the load"),
-        readings: vec![reading(a, mean_a), reading(b, mean_b)],
-    }
+    Question::new(
+        format!("the directions '{a}' and '{b}' are not known; the concentric one pulls the load"),
+        vec![reading(a, mean_a), reading(b, mean_b)],
+    )
 }
 
 /// Adds the readings of a file.
@@ -429,9 +428,9 @@ fn substrate(raw: &str, questions: &mut Vec<Question>) -> String {
             if !questions.iter().any(|question| question.problem == problem) && questions.len() < 5 {
                 let readings = vec![(
                     "one contact of a given material".to_owned(),
-                    "column.substrate=ignore' --set 'substrate=plain".to_owned(),
+                    "column.substrate=ignore\nsubstrate=plain".to_owned(),
                 )];
-                questions.push(Question { problem, readings });
+                questions.push(Question::new(problem, readings));
             }
             String::new()
         }
@@ -537,14 +536,14 @@ fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
             ("the cell reads a tension as negative".to_owned(), "force_sign=-1".to_owned()),
             ("the forces are negative".to_owned(), "force_sign=1".to_owned()),
         ];
-        questions.push(Question { problem: "nearly all forces are negative".to_owned(), readings });
+        questions.push(Question::new("nearly all forces are negative", readings));
     }
 }
 
 /// Compares the words with the forces: at the same load, the force is higher while the load is pulled.
 fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questions: &mut Vec<Question>) {
     let is_sign_open = map.force_sign.is_none() && negative_share(table) > REVERSED_SHARE;
-    if is_sign_open || map.is_swapped.is_some() || table.rows.iter().all(|row| row.is_decided) {
+    if is_sign_open {
         return;
     }
     let mut groups: BTreeMap<String, [Vec<f64>; 2]> = BTreeMap::new();
@@ -569,7 +568,8 @@ fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questio
             contradicting += usize::from(high < low);
         }
     }
-    if contradicting <= agreeing {
+    let is_decided = map.is_swapped.is_some() || table.rows.iter().all(|row| row.is_decided);
+    if is_decided || contradicting <= agreeing {
         if contradicting > 0 {
             table.notes.push(format!(
                 "at {contradicting} of {} loads the concentric force is below the eccentric one",
@@ -600,7 +600,7 @@ fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questio
         agreeing + contradicting,
         names.join(" and ")
     );
-    questions.push(Question { problem, readings });
+    questions.push(Question::new(problem, readings));
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {

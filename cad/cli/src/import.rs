@@ -176,7 +176,7 @@ fn read_unpacked(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Asks on a terminal whether to write. Scripts cannot answer: without a terminal, everything is certain here.
+/// Prompts for confirmation on a terminal. Scripts cannot answer: without a terminal, everything is certain here.
 fn is_confirmed(arguments: &Arguments) -> Result<bool, Failure> {
     let is_terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
     if arguments.yes || arguments.json || !is_terminal {

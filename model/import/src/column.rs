@@ -31,9 +31,10 @@ pub(crate) struct Column {
     pub(crate) offset: Decimal,
     /// Whether the cells are dates or times of day.
     pub(crate) is_clock: bool,
-    /// Direction, load and trial of a column of a wide table.
+    /// Direction, load, wrap angle in degrees and trial of a column of a wide table.
     pub(crate) direction: Option<Direction>,
     pub(crate) load: Option<(Decimal, &'static Unit)>,
+    pub(crate) angle: Option<Decimal>,
     pub(crate) repetition: Option<u32>,
     /// Why the column is not read.
     pub(crate) reason: &'static str,
@@ -46,13 +47,28 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// What distinguishes the readings of one column from those of another.
-    fn key(&self) -> (Option<&'static str>, Option<String>, Option<u32>) {
-        (
-            self.direction.map(Direction::as_str),
-            self.load.map(|(value, unit)| format!("{value} {}", unit.name)),
-            self.repetition,
-        )
+    /// Text of what distinguishes the readings of one column from those of another.
+    fn key(&self) -> String {
+        let direction = self.direction.map(Direction::as_str);
+        let load = self.load.map(|(value, unit)| value.times(unit.factor).to_f64());
+        format!("{direction:?} {load:?} {:?} {:?}", self.angle.map(Decimal::to_f64), self.repetition)
+    }
+
+    /// Whether the column has the readings of one direction, load, angle or trial of a wide table.
+    pub(crate) fn is_wide(&self) -> bool {
+        self.direction.is_some() || self.load.is_some() || self.angle.is_some() || self.repetition.is_some()
+    }
+
+    /// Whether the column is what a drive was commanded, not what was measured.
+    fn is_set_value(&self) -> bool {
+        const WORDS: [&str; 7] =
+            ["target", "setpoint", "command", "commanded", "demand", "desired", "reference"];
+        let words = vocabulary::words(&self.name);
+        words.iter().any(|word| WORDS.contains(&word.as_str()) || word.starts_with("soll"))
+    }
+
+    fn is_wide_by_words(&self) -> bool {
+        self.direction.is_some() || self.load.is_some() || self.angle.is_some()
     }
 
     fn ignore(&mut self, reason: &'static str) {
@@ -119,7 +135,12 @@ pub(crate) fn assign(
         }
     }
     remove_duplicates(&mut columns, questions);
+    let forces = columns.iter().filter(|column| column.quantity == Quantity::Force).count();
     for column in &mut columns {
+        // The number in a name counts trials only if there are several.
+        if forces == 1 {
+            column.repetition = None;
+        }
         set_factor(column, sheet, header, map, questions);
     }
     columns
@@ -146,6 +167,7 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         is_clock: false,
         direction: choice.direction.or(reading.direction),
         load: reading.load,
+        angle: choice.angle.or(reading.angle),
         repetition: choice.repetition.or(reading.repetition),
         reason: if choice.quantity == Some(Quantity::Ignore) {
             "left out on request"
@@ -255,13 +277,18 @@ fn remove_duplicates(columns: &mut [Column], questions: &mut Vec<Question>) {
         let all: Vec<usize> = (0..columns.len()).filter(|i| columns[*i].quantity == quantity).collect();
         let is_wide = quantity == Quantity::Force && {
             let keys: std::collections::BTreeSet<_> = all.iter().map(|i| columns[*i].key()).collect();
-            keys.len() == all.len()
+            // Numbered forces over time are several load cells, not trials.
+            let has_trials = columns
+                .iter()
+                .any(|c| matches!(c.quantity, Quantity::Load | Quantity::LoadMass | Quantity::Direction));
+            keys.len() == all.len() && (has_trials || all.iter().any(|i| columns[*i].is_wide_by_words()))
         };
         if all.len() < 2 || is_wide {
             continue;
         }
         for rank in [
             |c: &Column| c.is_decided,
+            |c: &Column| !c.is_set_value(),
             |c: &Column| Quantity::of_table_column(&c.name).is_some(),
             |c: &Column| c.is_named,
         ] {
@@ -401,8 +428,7 @@ fn unknown_unit(column: &Column) -> Question {
         Quantity::Speed => &["%", "mm/s"],
         _ => &["W", "mW"],
     };
-    let is_wide = column.direction.is_some() || column.load.is_some() || column.repetition.is_some();
-    if column.quantity == Quantity::Force && is_wide {
+    if column.quantity == Quantity::Force && column.is_wide() {
         let readings = units.iter().map(|unit| ((*unit).to_owned(), format!("force_unit={unit}")));
         return Question::new("the columns of forces have no unit", readings);
     }

@@ -359,9 +359,7 @@ impl FileReading {
 
     fn decide_kind(&mut self, map: &Map) {
         let has = |quantity| self.column(quantity).is_some();
-        let is_wide = self
-            .forces()
-            .any(|column| column.direction.is_some() || column.load.is_some() || column.repetition.is_some());
+        let is_wide = self.forces().any(Column::is_wide);
         let has_load = has(Quantity::Load) || has(Quantity::LoadMass);
         let has_time = has(Quantity::Time) || map.sample_rate_hz.is_some();
         let is_table = is_wide || has(Quantity::Direction) || has_load;

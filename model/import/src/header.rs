@@ -139,6 +139,10 @@ fn candidate(sheet: &Sheet, row: usize) -> Option<(Header, usize)> {
     let known =
         names.iter().zip(&units).filter(|(name, unit)| name::read(name, **unit).quantity.is_some()).count();
     let mismatch = names.len().abs_diff(width);
+    // A title, above data without names.
+    if known == 0 && names.len() < width {
+        return None;
+    }
     let score = (known * 100 + run + 1_000).saturating_sub(mismatch * 20);
     Some((Header { names_row: Some(row), units_row, first_data, names, units }, score))
 }

@@ -298,6 +298,7 @@ fn choice(column: &Column, understanding: &Understanding) -> ColumnChoice {
         offset: Some(column.offset).filter(|offset| has_factor && !offset.is_zero()),
         direction: direction.filter(|_| is_read),
         load: column.load.filter(|_| is_read).map(|(value, unit)| format!("{value} {}", unit.name)),
+        angle: column.angle.filter(|_| is_read),
         repetition: column.repetition.filter(|_| is_read),
     }
 }

@@ -45,6 +45,7 @@ pub(crate) struct ColumnChoice {
     pub(crate) offset: Option<Decimal>,
     pub(crate) direction: Option<Direction>,
     pub(crate) load: Option<String>,
+    pub(crate) angle: Option<Decimal>,
     pub(crate) repetition: Option<u32>,
 }
 
@@ -108,7 +109,7 @@ const CONSTANTS: [&str; 17] = [
 /// Keys of `--set`, for messages.
 const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, directions, force_sign, force_unit, \
     sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, \
-    direction.NAME, load.NAME, and constants such as substrate, wrap_angle_deg and load_N";
+    direction.NAME, load.NAME, wrap_angle_deg.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -145,6 +146,7 @@ struct ColumnEntry {
     offset: Option<f64>,
     direction: Option<String>,
     load: Option<String>,
+    wrap_angle_deg: Option<f64>,
     repetition: Option<u32>,
 }
 
@@ -222,6 +224,10 @@ impl Map {
                     .map(|word| parse_direction(&at("direction"), &word))
                     .transpose()?,
                 load: entry.load,
+                angle: entry
+                    .wrap_angle_deg
+                    .map(|angle| parse_number(&at("wrap_angle_deg"), &angle.to_string()))
+                    .transpose()?,
                 repetition: entry.repetition,
             };
             if map.columns.iter().any(|(name, _)| *name == entry.name) {
@@ -333,6 +339,9 @@ impl Map {
             "direction" => {
                 ColumnChoice { direction: Some(parse_direction(key, value)?), ..ColumnChoice::default() }
             }
+            "wrap_angle_deg" => {
+                ColumnChoice { angle: Some(parse_number(key, value)?), ..ColumnChoice::default() }
+            }
             "load" => ColumnChoice { load: Some(value.to_owned()), ..ColumnChoice::default() },
             _ => return Err(unknown(key, value)),
         };
@@ -353,6 +362,7 @@ impl Map {
         old.factor = choice.factor.or(old.factor);
         old.offset = choice.offset.or(old.offset);
         old.direction = choice.direction.or(old.direction);
+        old.angle = choice.angle.or(old.angle);
         old.load = choice.load.or(old.load.take());
         Ok(())
     }
@@ -449,6 +459,7 @@ impl Map {
             line("factor", choice.factor.map(number));
             line("offset", choice.offset.map(number));
             line("direction", choice.direction.map(|direction| quoted(direction.as_str())));
+            line("wrap_angle_deg", choice.angle.map(number));
             line("load", choice.load.as_deref().map(quoted));
             line("repetition", choice.repetition.map(|n| n.to_string()));
         }
@@ -543,6 +554,7 @@ mod tests {
             "offset.Kraft [x]=-12",
             "direction.F1=eccentric",
             "load.F1=2 kg",
+            "wrap_angle_deg.F1=90",
             "substrate=silicone",
             "pins=5;8;11",
             "wrap_angle_deg=90",

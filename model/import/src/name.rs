@@ -1,4 +1,4 @@
-//! What the name of a column shows: quantity, unit, direction, load and trial.
+//! What the name of a column shows: quantity, unit, direction, load, wrap angle and trial.
 
 use pinswitch_friction::Direction;
 
@@ -17,6 +17,8 @@ pub(crate) struct NameReading {
     pub(crate) direction: Option<Direction>,
     /// Load of a column that has the readings at one load.
     pub(crate) load: Option<(Decimal, &'static Unit)>,
+    /// Wrap angle in degrees of a column that has the readings at one angle.
+    pub(crate) angle: Option<Decimal>,
     /// Trial of a column that has one reading of each row.
     pub(crate) repetition: Option<u32>,
     /// Whether a word of the name, not only its unit, names the quantity.
@@ -67,7 +69,7 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
     for separator in [" in ", ", ", ":", ",", "_", " ", "-", "."] {
         // "5 kg" is a load, not a 5 in kilograms.
         if let Some((stem, unit)) = name.rsplit_once(separator)
-            && (separator != " " || load_in(name).is_none())
+            && (separator != " " || (load_in(name).is_none() && angle_in(name).is_none()))
         {
             add(stem, unit);
         }
@@ -80,8 +82,12 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
 fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
     let words = words(stem);
     let fits = |quantity: &Quantity| unit.is_none_or(|unit| quantity.dimensions().contains(&unit.dimension));
-    let direction = direction_in_name(&words);
-    let load = load_in(stem);
+    let direction = match stem.trim_end().chars().next_back() {
+        Some('+') => Some(Direction::Concentric),
+        Some('-' | '\u{2212}') => Some(Direction::Eccentric),
+        _ => direction_in_name(&words),
+    };
+    let (load, angle) = (load_in(stem), angle_in(stem));
     let possible = quantities(&words);
     let is_force = |unit: &Unit| unit.dimension == Dimension::Force;
     let named = possible.iter().copied().find(fits);
@@ -109,7 +115,9 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
     let is_reading = unit.is_none_or(|unit| Quantity::Force.dimensions().contains(&unit.dimension));
     let quantity = match quantity {
         None if direction.is_some() && is_reading => Some(Quantity::Force),
-        None if load.is_some() && is_reading && possible.is_empty() => Some(Quantity::Force),
+        None if (load.is_some() || angle.is_some()) && is_reading && possible.is_empty() => {
+            Some(Quantity::Force)
+        }
         Some(Quantity::Repetition | Quantity::Series) if unit.is_some_and(is_force) => Some(Quantity::Force),
         other => other,
     };
@@ -119,13 +127,24 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
         unit,
         direction: direction.filter(|_| is_wide),
         load: load.filter(|_| is_wide),
-        repetition: number.filter(|_| is_wide && load.is_none()),
+        angle: angle.filter(|_| is_wide),
+        repetition: number.filter(|_| is_wide && load.is_none() && angle.is_none()),
         is_named: named.is_some() || direction.is_some(),
     })
 }
 
 /// Finds a load in a stem, such as `5 kg` or `10N`.
 pub(crate) fn load_in(stem: &str) -> Option<(Decimal, &'static Unit)> {
+    value_in(stem, Quantity::Load)
+}
+
+/// Finds a wrap angle in a stem, such as `90 deg`, in degrees.
+fn angle_in(stem: &str) -> Option<Decimal> {
+    value_in(stem, Quantity::WrapAngle).map(|(value, unit)| value.times(unit.factor))
+}
+
+/// Finds a number with a unit of a quantity.
+fn value_in(stem: &str, quantity: Quantity) -> Option<(Decimal, &'static Unit)> {
     let starts = stem.char_indices().filter(|(at, c)| {
         c.is_ascii_digit() && !stem[..*at].ends_with(|p: char| p.is_alphanumeric() || p == '.' || p == ',')
     });
@@ -133,9 +152,8 @@ pub(crate) fn load_in(stem: &str) -> Option<(Decimal, &'static Unit)> {
         let rest = &stem[at..];
         let digits = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(rest.len());
         let after = rest[digits..].trim_start_matches(' ');
-        let letters = after.find(|c: char| !c.is_alphabetic()).unwrap_or(after.len());
-        let unit =
-            Unit::parse(&after[..letters]).filter(|u| Quantity::Load.dimensions().contains(&u.dimension));
+        let letters = after.find(|c: char| !(c.is_alphabetic() || c == '°')).unwrap_or(after.len());
+        let unit = Unit::parse(&after[..letters]).filter(|u| quantity.dimensions().contains(&u.dimension));
         let number = rest[..digits].replace(',', ".");
         if let (Some(unit), Some((value, None))) = (unit, number::parse(&number, DecimalSign::Point)) {
             return Some((value, unit));
@@ -191,7 +209,12 @@ mod tests {
         assert_eq!(at_load.load.map(|l| (l.0.to_f64(), l.1.name)), Some((2.5, "kg")));
         assert_eq!(at_load.direction, Some(Direction::Eccentric));
         assert_eq!(read("Trial 3 [N]", None).repetition, Some(3));
-        assert_eq!(read("F_out [N]", None).direction, Some(Direction::Eccentric));
+        let at_angle = read("45° up [N]", None);
+        assert_eq!((at_angle.angle.map(Decimal::to_f64), at_angle.repetition), (Some(45.0), None));
+        assert_eq!(read("F- (N)", None).direction, Some(Direction::Eccentric));
+        assert_eq!(read("Fup", None).direction, Some(Direction::Concentric));
+        // Forces at both ends of the tendon.
+        assert_eq!((read("F_in [N]", None).direction, read("F_out [N]", None).direction), (None, None));
     }
 
     proptest! {

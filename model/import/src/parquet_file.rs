@@ -66,4 +66,43 @@ mod reader {
             other => other.to_string(),
         }
     }
+
+    #[cfg(test)]
+    mod tests {
+        use std::sync::Arc;
+
+        use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+        use parquet::file::writer::SerializedFileWriter;
+        use parquet::schema::parser::parse_message_type;
+
+        use super::*;
+
+        #[test]
+        fn plain_columns_are_read() {
+            let schema = "message m { REQUIRED DOUBLE load_kg; REQUIRED BINARY direction (UTF8); REQUIRED DOUBLE force_N; }";
+            let schema = Arc::new(parse_message_type(schema).unwrap());
+            let mut bytes = Vec::new();
+            let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::default()).unwrap();
+            let mut group = file.next_row_group().unwrap();
+            for number in 0..3 {
+                let mut column = group.next_column().unwrap().unwrap();
+                let words = [ByteArray::from("up"), ByteArray::from("down")];
+                let written = match number {
+                    0 => column.typed::<DoubleType>().write_batch(&[1.0, 1.0], None, None),
+                    1 => column.typed::<ByteArrayType>().write_batch(&words, None, None),
+                    _ => column.typed::<DoubleType>().write_batch(&[12.5, 0.1 + 0.2], None, None),
+                };
+                assert_eq!(written.unwrap(), 2);
+                column.close().unwrap();
+            }
+            group.close().unwrap();
+            file.close().unwrap();
+            let sheet = read(&bytes).unwrap().sheet;
+            let row = |row| sheet.row(row).collect::<Vec<_>>();
+            assert_eq!(row(0), ["load_kg", "direction", "force_N"]);
+            assert_eq!(row(2), ["1", "down", "0.30000000000000004"]);
+            bytes.truncate(bytes.len() / 2);
+            assert!(read(&bytes).is_err() && read(b"PAR1PAR1").is_err());
+        }
+    }
 }

@@ -243,15 +243,14 @@ fn direction_words(
         *direction =
             decided(word).map(|d| (d, true)).or_else(|| vocabulary::direction(word).map(|d| (d, false)));
     }
-    // Of two words, the other one has the other direction.
+    // Of two words, the other one has the other direction; the forces must agree with it.
     if words.len() == 2 {
         let all: Vec<_> = words.values().copied().collect();
         for (i, direction) in words.values_mut().enumerate() {
-            let (own, other) = (all[i], all[1 - i]);
-            if let (None | Some((_, false)), Some((other, true))) = (own, other) {
-                let opposite =
-                    if other == Direction::Concentric { Direction::Eccentric } else { Direction::Concentric };
-                *direction = Some((opposite, true));
+            match (all[i], all[1 - i]) {
+                (None, Some((other, is_decided))) => *direction = Some((opposite(other), is_decided)),
+                (Some((_, false)), Some((other, true))) => *direction = Some((opposite(other), true)),
+                _ => {}
             }
         }
     }
@@ -340,6 +339,9 @@ fn add_rows(
             set(Quantity::LoadMass, mass.map_or_else(String::new, |mass| mass.to_string()));
             set(Quantity::Direction, direction.as_str().to_owned());
             set(Quantity::Force, force.to_string());
+            if let Some(angle) = column.angle {
+                set(Quantity::WrapAngle, angle.to_string());
+            }
             if let Some(repetition) = column.repetition {
                 set(Quantity::Repetition, repetition.to_string());
             }

@@ -109,6 +109,7 @@ impl ColumnUnderstanding {
         let mut readings = Vec::new();
         readings.extend(column.direction.map(|direction| direction.as_str().to_owned()));
         readings.extend(column.load.map(|(value, unit)| format!("at {value} {}", unit.name)));
+        readings.extend(column.angle.map(|angle| format!("at {angle} deg")));
         readings.extend(column.repetition.map(|number| format!("trial {number}")));
         Self {
             name: column.name.clone(),

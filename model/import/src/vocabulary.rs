@@ -241,9 +241,11 @@ const NAMES: [(Quantity, &[&str]); 20] = [
 ];
 
 /// Ends of German compounds, such as `Hebekraft`.
-const COMPOUNDS: [(&str, Quantity); 8] = [
+const COMPOUNDS: [(&str, Quantity); 10] = [
     ("kraft", Quantity::Force),
     ("winkel", Quantity::WrapAngle),
+    ("position", Quantity::Position),
+    ("weg", Quantity::Position),
     ("geschwindigkeit", Quantity::Speed),
     ("richtung", Quantity::Direction),
     ("masse", Quantity::LoadMass),
@@ -432,10 +434,14 @@ pub(crate) fn direction(cell: &str) -> Option<Direction> {
 
 /// Returns the direction in the words of a column name, such as `F_heben`.
 pub(crate) fn direction_in_name(words: &[String]) -> Option<Direction> {
-    // Short words that mean other things in names: "in" an inch, "load" the load, "pos" a position.
-    const OTHER: [&str; 7] = ["in", "load", "loading", "pos", "1", "ab", "auf"];
-    let words: Vec<String> = words.iter().filter(|word| !OTHER.contains(&word.as_str())).cloned().collect();
+    // Words that mean other things in names: "in" an inch or an input, "load" the load, "pos" a position.
+    const OTHER: [&str; 6] = ["in", "out", "load", "pos", "1", "vor"];
+    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| !OTHER.contains(word)).collect();
     let mut all: Vec<_> = words.iter().filter_map(|word| direction(word)).collect();
+    if all.is_empty() {
+        // Fup and Fdown.
+        all = words.iter().filter_map(|word| direction(word.strip_prefix('f')?)).collect();
+    }
     if all.is_empty() {
         // German compounds, such as Hebekraft and Senkkraft.
         let starts = [

@@ -112,6 +112,8 @@ fn parse_time(text: &str, half: Option<&str>) -> Option<Decimal> {
     let text = text.char_indices().find(|(_, c)| *c == '-').map_or(text, |(at, _)| &text[..at]);
     let parts: Vec<&str> = text.split(':').collect();
     let (hours, minutes, seconds) = match parts.as_slice() {
+        // Minutes and seconds, if the last part has a fraction.
+        [minutes, seconds] if seconds.contains(['.', ',']) => ("0", *minutes, *seconds),
         [hours, minutes] => (*hours, *minutes, "0"),
         [hours, minutes, seconds] => (*hours, *minutes, *seconds),
         _ => return None,
@@ -149,6 +151,8 @@ mod tests {
             ("19/02/2013 9:51:39 AM", Some(start)),
             ("09:51:39.197", Some(35_499.197)),
             ("9:51:39 PM", Some(78_699.0)),
+            ("01:23.5", Some(83.5)),
+            ("01:23", Some(4_980.0)),
             ("19.02.2013", Some(1_361_232_000.0)),
             ("12.5", None),
             ("1.2.3", None),

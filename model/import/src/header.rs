@@ -67,26 +67,38 @@ pub(crate) fn is_data(sheet: &Sheet, row: usize) -> bool {
             && !has(neighbour, CellKind::Value))
 }
 
-/// Whether every cell of a row is a unit or empty, and at least one is a unit.
+/// Whether a row has the units of the names above: most cells are known units, and none is the name of a quantity.
 pub(crate) fn is_units_row(sheet: &Sheet, row: usize) -> bool {
-    let mut has_unit = false;
+    let (mut has_known, mut units, mut others) = (false, 0, 0);
     for cell in sheet.row(row) {
         if Unit::parse(cell).is_some() {
-            has_unit = true;
-        } else if !is_missing(cell.trim_matches(['(', ')', '[', ']'])) && !is_other_unit(cell) {
-            return false;
+            has_known = true;
+            units += 1;
+        } else if is_other_unit(cell) {
+            units += 1;
+        } else if !is_missing(cell.trim_matches(['(', ')', '[', ']'])) {
+            others += 1;
+            if name::read(cell, None).quantity.is_some() {
+                return false;
+            }
         }
     }
-    has_unit
+    has_known && units > others
 }
 
 /// Whether a cell of a row of units looks like a unit that is not known, such as `(m/s^2)` or `degC`.
 fn is_other_unit(cell: &str) -> bool {
+    const WORDS: [&str; 20] = [
+        "1", "c", "degc", "k", "bar", "pa", "kpa", "mpa", "hz", "khz", "rpm", "a", "ohm", "nm", "ncm",
+        "text", "string", "a.u.", "date", "1/min",
+    ];
     let is_bracketed = cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
+    let lower = cell.to_lowercase();
+    let is_format = lower.contains(':') && lower.chars().all(|c| "hmsdyf:./- 0".contains(c));
     is_bracketed
+        || is_format
+        || WORDS.contains(&lower.as_str())
         || (cell.chars().count() <= 6 && cell.contains(['/', '°', '^', '²']))
-        || cell == "1"
-        || cell == "C"
 }
 
 /// Finds the header. `line` is that of the names, if the user gave it; 0 for a sheet without names.
@@ -223,6 +235,10 @@ mod tests {
         let machine = header("Results Table 1\nRate,20,Hz\nTime,Load\n(s),(kN)\n0.0,1.2\n0.1,1.3\n");
         assert_eq!((machine.names_row, machine.units_row, machine.first_data), (Some(2), Some(3), 4));
         assert_eq!(machine.units[1].map(|u| u.name), Some("kN"));
+        let format = header(
+            "Time,Force,Temp,Cell\nhh:mm:ss.f,N,degC,Wheatstone\n0:00:01.5,1.2,20,1\n0:00:01.6,1.3,20,1\n",
+        );
+        assert_eq!((format.names_row, format.units_row, format.first_data), (Some(0), Some(1), 2));
         let comment = header("# rig 3\n# t,F\n0.0,1.2\n0.1,1.3\n");
         assert_eq!(
             (comment.names_row, comment.names.as_slice()),

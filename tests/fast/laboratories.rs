@@ -1,15 +1,43 @@
 //! Calibration of small tables as laboratories make them, which rigs of the paper's kind are unlike.
 
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::table::{Optional, PlateauTable};
 use pinswitch_calibration::{Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
-fn report(name: &str) -> Report {
+fn table(name: &str) -> PlateauTable {
     let file = repository("tests/data/laboratories").join(name);
-    let table = PlateauTable::read(std::fs::File::open(file).unwrap(), name).unwrap();
-    calibrate(&table.rows, &Vocabulary::built_in(), 1).unwrap().report
+    PlateauTable::read(std::fs::File::open(file).unwrap(), name).unwrap()
+}
+
+fn report(name: &str) -> Report {
+    calibrate(&table(name).rows, &Vocabulary::built_in(), 1).unwrap().report
+}
+
+/// A laboratory without positions, clock, speeds and dwells has the verdict of its readings: those
+/// columns are empty, and no covariate is made of them.
+#[test]
+fn tables_without_covariates_keep_their_verdict() {
+    for name in ["drag-and-gain.csv", "capstan-seven-angles.csv", "four-stops.csv"] {
+        let mut rows = table(name).rows;
+        for row in &mut rows {
+            row.unknown =
+                Optional::ALL.into_iter().fold(row.unknown, |unknown, quantity| unknown.with(quantity));
+        }
+        let text = PlateauTable::write(&rows);
+        assert!(text.starts_with("series,substrate,pins,load_N,direction,force_N"), "{text}");
+        let rows = PlateauTable::read(text.as_bytes(), name).unwrap().rows;
+        let report = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap().report;
+        assert_eq!(report.unknown_columns.len(), Optional::ALL.len());
+        let over = ["position", "time", "speed", "dwell", "repetition", "sweep"];
+        assert!(report.effects.iter().all(|e| !over.contains(&e.covariate.as_str())), "{:?}", report.effects);
+        let before = self::report(name);
+        let ids = |report: &Report| report.effects.iter().map(|e| e.id.clone()).collect::<Vec<_>>();
+        if name != "four-stops.csv" {
+            assert_eq!((report.verdict, ids(&report)), (before.verdict, ids(&before)), "{name}");
+        }
+    }
 }
 
 /// Six loads on one contact, mu = 0.18, drag 5 N, gain 1.15: the model is as good as least squares with
@@ -24,6 +52,9 @@ fn drag_and_gain_are_named() {
         .collect();
     let has = |id: &str| names.iter().any(|ids| ids.contains(&id));
     assert!(names.len() == 2 && has("guide_drag") && has("load_cell_gain"), "{names:?}");
+    // Without a switch, adhesion of the contact is part of the drag, and not its rival.
+    let drag = report.effects.iter().find(|e| e.id == "guide_drag").unwrap();
+    assert!(drag.includes == ["adhesion"] && drag.rivals.iter().all(|r| r.id != "adhesion"), "{drag:?}");
     let gain = report.effects.iter().find(|e| e.id == "load_cell_gain").unwrap();
     let [low, high] = gain.parameters["g"].ci95;
     assert!(low < 0.15 && 0.15 < high, "{gain:?}");
@@ -51,6 +82,25 @@ fn a_capstan_has_its_friction_coefficient() {
     let mu = &report.augmented.parameters["mu"];
     let [low, high] = mu.ci95;
     assert!((mu.value - 0.18).abs() < 5e-4 && low < 0.18 && 0.18 < high + 1e-5, "{mu:?}");
+}
+
+/// One load at several angles is the oldest capstan experiment.
+#[test]
+fn one_load_at_many_angles_has_a_friction_coefficient() {
+    let mut rows = table("capstan-seven-angles.csv").rows;
+    let load_n = rows[0].load_n;
+    rows.retain(|row| row.load_n == load_n);
+    let one_load = PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap();
+    one_load.require_baseline("t.csv").unwrap();
+    let report = calibrate(&one_load.rows, &Vocabulary::built_in(), 1).unwrap().report;
+    let mu = &report.augmented.parameters["mu"];
+    assert!((mu.value - 0.18).abs() < 2e-3 && mu.ci95[0] < 0.18 && 0.18 < mu.ci95[1], "{mu:?}");
+    assert!(report.effects.is_empty(), "{:?}", report.effects);
+    // One angle of them determines nothing.
+    let wrap_deg = rows[0].wrap_angle_deg;
+    rows.retain(|row| row.wrap_angle_deg == wrap_deg);
+    let one_angle = PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap();
+    assert!(one_angle.require_baseline("t.csv").unwrap_err().to_string().contains("1 different load"));
 }
 
 /// Four stops along the stroke with nothing periodic between them: no structure is finer than the

@@ -12,7 +12,7 @@ use crate::model::{Model, UNATTRIBUTED};
 use crate::own_values::check_finite_effects;
 use crate::report::Report;
 use crate::reporting::{Findings, report};
-use crate::table::{Frame, PlateauRow};
+use crate::table::{Frame, PlateauRow, with_complete_columns};
 
 /// Reason why a table cannot be calibrated; converts to a [`Diagnostic`].
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +126,8 @@ pub fn calibrate(
     vocabulary: &Vocabulary,
     seed: u64,
 ) -> Result<Calibration, CalibrationError> {
+    let (rows, lacking) = with_complete_columns(rows);
+    let rows = rows.as_slice();
     let baseline = Model::baseline(Frame::new(rows)).among(vocabulary);
     let needed = baseline.values().len() + ROWS_FOR_NOISE;
     if rows.len() < needed {
@@ -177,6 +179,8 @@ pub fn calibrate(
     };
     let findings = Findings {
         rows,
+        vocabulary: &searched,
+        lacking: &lacking,
         evidence: &evidence,
         baseline: &baseline,
         augmented: &augmented,

@@ -14,7 +14,7 @@ use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
 };
-use crate::table::{Frame, PlateauRow, Point};
+use crate::table::{Frame, Optional, PlateauRow, Point};
 use pinswitch_measurements::{locate_field, toml_error};
 
 /// Name and version of the format.
@@ -265,18 +265,41 @@ impl ModelFile {
         Ok(model)
     }
 
+    /// Checks that the rows have the covariate of each effect. The time of a new session is not
+    /// used: its drifts are averages.
+    fn check_covariates(&self, rows: &[PlateauRow], session: Session) -> Result<(), Diagnostic> {
+        for term in &self.terms {
+            let named = self.vocabulary.named(&term.id).map(|effect| effect.description().covariate);
+            let covariate = named.or(term.structure.as_ref().map(|structure| structure.covariate));
+            let Some(quantity) = covariate.and_then(Covariate::column) else { continue };
+            if quantity == Optional::Time && session == Session::New {
+                continue;
+            }
+            if let Some(row) = rows.iter().position(|row| row.unknown.contains(quantity)) {
+                let (column, id) = (quantity.column(), &term.id);
+                let problem =
+                    format!("row {} has no {column}, on which `{id}` of the model depends", row + 1);
+                let help = format!("give {column} in every row, or predict with baseline.toml");
+                return Err(Diagnostic::new(problem).with_help(help));
+            }
+        }
+        Ok(())
+    }
+
     /// Predicts readings and their standard deviations in newtons. A condition that was not
     /// calibrated is predicted by the layout law, with a larger standard deviation. Drifts have their
     /// mean over the fitted session in a new one, which may drift differently.
     ///
     /// # Errors
-    /// As [`ModelFile::model`], and if a prediction is not finite.
+    /// As [`ModelFile::model`], if the rows lack the covariate of an effect, and if a prediction is
+    /// not finite.
     pub fn predict(
         &self,
         rows: &[PlateauRow],
         session: Session,
         file: &str,
     ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+        self.check_covariates(rows, session)?;
         let (mut frame, model) = (self.frame.clone(), self.model(file)?);
         rows.iter().for_each(|row| frame.extend(row));
         let model = model.in_frame(frame);
@@ -424,6 +447,22 @@ mod tests {
             let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
             assert!(error.starts_with("model.toml:") && error.contains(": noise.walk_N = "), "{error}");
         }
+    }
+
+    /// An effect over a covariate that a row lacks would be predicted at an invented value.
+    #[test]
+    fn rows_without_the_covariate_are_refused() {
+        let effect = crate::effects::effect_named("stroke_position").unwrap();
+        let rows = crate::test_session::session_with(3, &[(Term::Named(effect), &[0.1])]);
+        let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+        let file = ModelFile::new(&calibration.augmented);
+        let mut row = rows[0].clone();
+        assert!(file.predict(std::slice::from_ref(&row), Session::New, "model.toml").is_ok());
+        row.unknown = row.unknown.with(Optional::Position);
+        let error = file.predict(&[row.clone()], Session::New, "model.toml").unwrap_err();
+        assert!(error.problem().contains("row 1 has no position_mm"), "{error}");
+        let baseline = ModelFile::new(&calibration.baseline);
+        assert!(baseline.predict(&[row], Session::New, "baseline.toml").is_ok());
     }
 
     #[test]

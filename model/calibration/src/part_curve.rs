@@ -7,7 +7,7 @@ use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substr
 use crate::model::{Noise, prediction_sd_n};
 use crate::model_check::check_friction;
 use crate::model_file::ModelFile;
-use crate::table::{Frame, Labels, PlateauRow, Point, Sweep};
+use crate::table::{Frame, Labels, PlateauRow, Point, Sweep, Unknown};
 
 /// Number of repetitions after which all transients have settled.
 const SETTLED: u32 = 1000;
@@ -176,6 +176,7 @@ impl ModelFile {
             force_n: 0.0,
             wrap_angle_deg: published::WRAP_ANGLE_DEG,
             labels: Labels::default(),
+            unknown: Unknown::default(),
         }
     }
 }

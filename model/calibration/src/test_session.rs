@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::model::{Model, Term};
-use crate::table::{Frame, Labels, PlateauRow, Sweep};
+use crate::table::{Frame, Labels, PlateauRow, Sweep, Unknown};
 
 /// Number of repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;
@@ -56,6 +56,7 @@ pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRo
                             force_n: 0.0,
                             wrap_angle_deg: published::WRAP_ANGLE_DEG,
                             labels: Labels::default(),
+                            unknown: Unknown::default(),
                         });
                     }
                 }

@@ -5,7 +5,7 @@ use pinswitch_friction::{Direction, Substrate, published};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::table::{Labels, PlateauRow, Sweep};
+use crate::table::{Labels, PlateauRow, Sweep, Unknown};
 
 /// Number of repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;
@@ -50,6 +50,7 @@ pub(crate) fn session(seed: u64) -> Vec<PlateauRow> {
                             force_n: 0.0,
                             wrap_angle_deg: published::WRAP_ANGLE_DEG,
                             labels: Labels::default(),
+                            unknown: Unknown::default(),
                         });
                     }
                 }

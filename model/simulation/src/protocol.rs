@@ -1,6 +1,6 @@
 //! Rows of a session, with its settings and times, before the forces are known.
 
-use pinswitch_calibration::table::{Labels, PlateauRow, Sweep};
+use pinswitch_calibration::table::{Labels, PlateauRow, Sweep, Unknown};
 use pinswitch_friction::published;
 use pinswitch_friction::{Direction, Substrate};
 use rand::RngExt;
@@ -130,6 +130,7 @@ fn series(
                 force_n: 0.0,
                 wrap_angle_deg: plan.wrap_angle_deg,
                 labels: Labels::default(),
+                unknown: Unknown::default(),
             });
         }
     }

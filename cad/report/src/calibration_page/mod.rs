@@ -60,6 +60,11 @@ fn data(report: &Report) -> String {
             escape(&report.ignored_columns.join(", "))
         );
     }
+    if !report.unknown_columns.is_empty() {
+        let columns = escape(&report.unknown_columns.join(", "));
+        let _ =
+            writeln!(html, "<p>Absent or incomplete columns, whose covariates are not used: {columns}.</p>");
+    }
     html
 }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::table::Optional;
+
 /// Covariate along which an effect shows (`model/doc/effect-catalogue.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -39,6 +41,19 @@ impl Covariate {
         Covariate::Time,
         Covariate::Condition,
     ];
+
+    /// Returns the column without which the covariate is not known; `None` for what every table has.
+    pub(crate) fn column(self) -> Option<Optional> {
+        match self {
+            Covariate::Repetition => Some(Optional::Repetition),
+            Covariate::Position => Some(Optional::Position),
+            Covariate::Speed => Some(Optional::Speed),
+            Covariate::Dwell => Some(Optional::Dwell),
+            Covariate::Sweep => Some(Optional::Sweep),
+            Covariate::Time => Some(Optional::Time),
+            Covariate::Load | Covariate::Direction | Covariate::Condition => None,
+        }
+    }
 
     /// Returns the word used in reports and model files.
     pub fn as_str(self) -> &'static str {

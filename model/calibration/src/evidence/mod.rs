@@ -32,7 +32,7 @@ use self::priors::EffectPrior;
 use self::structure::{Structure, structures};
 use crate::effects::Vocabulary;
 use crate::model::{DiscrepancyFactor, Largest, Model};
-use crate::table::{Condition, Frame, PlateauRow, Point};
+use crate::table::{Condition, Frame, PlateauRow, Point, Unknown};
 
 /// Smallest relevant change of friction or reading, as a share.
 pub const CONSEQUENCE: f64 = 0.05;
@@ -129,8 +129,9 @@ impl Evidence {
         seed: u64,
     ) -> Result<Self, Diagnostic> {
         let frame = Frame::new(rows);
+        let unknown = rows.first().map(|row| row.unknown).unwrap_or_default();
         let rows = Covariates::new(&frame, rows)?;
-        let setup = Setup::new(frame, &rows, vocabulary, forms);
+        let setup = Setup::new(frame, &rows, vocabulary, forms, unknown);
         let space = setup.space(&rows);
         let problem = Problem::new(space, setup.rows(&rows, Session::Fitted), rows.readings.clone())
             .map_err(|error| Diagnostic::new(error.to_string()))?;
@@ -225,7 +226,13 @@ impl Evidence {
 }
 
 impl Setup {
-    fn new(frame: Frame, rows: &Covariates, vocabulary: &Vocabulary, forms: &BTreeSet<&str>) -> Self {
+    fn new(
+        frame: Frame,
+        rows: &Covariates,
+        vocabulary: &Vocabulary,
+        forms: &BTreeSet<&str>,
+        unknown: Unknown,
+    ) -> Self {
         let conditions = frame.conditions.clone();
         let model = Model::baseline(frame.clone());
         let first = Model::device_constants(0)[0];
@@ -234,7 +241,7 @@ impl Setup {
         let baseline = Baseline::new(&conditions, device_means);
         let force_unit = Self::force_unit(rows);
         let highest = rows.readings.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit, forms);
+        let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit, forms, unknown);
         let has_silicone = conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone));
         let has_both = has_silicone && conditions.iter().any(Condition::has_pins);
         let structures = structures(rows, has_both, force_unit);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
 use crate::effects::{Covariate, Effect, Vocabulary, effect_named};
-use crate::table::Frame;
+use crate::table::{Frame, Unknown};
 
 /// Prior probability of the effects that most rigs have.
 const USUAL_PROBABILITY: f64 = 0.30;
@@ -85,16 +85,25 @@ pub(super) struct EffectPrior {
 impl EffectPrior {
     /// Returns the priors of a vocabulary for a table, whose readings are at most `highest_n`.
     /// Forces are `force_unit` times larger than on the paper's rig. Effects that are `forms` of a
-    /// library have one shape, since the library has an effect for each.
+    /// library have one shape, since the library has an effect for each. An effect over a covariate
+    /// that is unknown has none, and on a rig of `plain` contacts one of the switch.
     pub(super) fn of_vocabulary(
         vocabulary: &Vocabulary,
         frame: &Frame,
         highest_n: f64,
         force_unit: f64,
         forms: &BTreeSet<&str>,
+        unknown: Unknown,
     ) -> Vec<Self> {
+        let is_plain = frame.is_plain();
+        let is_candidate = |effect: &dyn Effect| {
+            let description = effect.description();
+            let is_unknown = description.covariate.column().is_some_and(|q| unknown.contains(q));
+            !is_unknown && (description.on_plain || !is_plain)
+        };
         vocabulary
             .effects()
+            .filter(|effect| is_candidate(*effect))
             .map(|effect| {
                 if effect.id() == LIMIT {
                     let typical_size = Some(LIMIT_SIZE_N * force_unit);

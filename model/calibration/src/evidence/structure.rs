@@ -130,8 +130,13 @@ struct Collector<'a> {
 /// paper's rig.
 pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
     let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
-    collector.time();
-    collector.wandering();
+    // Without a clock the order of the series is not known.
+    let has_clock = distinct(&rows.column(|p| p.time_s)) > 1;
+    if has_clock {
+        collector.time();
+        collector.wandering();
+        collector.previous_load();
+    }
     collector.along_a_series();
     collector.load();
     collector.protocol();
@@ -287,12 +292,13 @@ impl Collector<'_> {
             );
             let scale = Interval::of(&self.rows.series_time_s);
             let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
+            let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
             self.add(
                 "time in a series",
                 "repetition",
                 Record::Table(Abscissa::SeriesReadings, false),
                 COMMON,
-                vec![creep],
+                creep,
             );
         }
     }
@@ -323,6 +329,9 @@ impl Collector<'_> {
                 load_level,
             );
         }
+    }
+
+    fn previous_load(&mut self) {
         let memory = |p: &Point| {
             let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
             (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 
 use pinswitch_inference::{Candidate, Member};
 
-use crate::effects::Effect;
+use crate::effects::{Effect, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
 use crate::model::Term;
 use crate::report::{CandidateReport, Fate, Invisible, LimitReport};
+use crate::table::Optional;
 
 /// Change of a reading in newtons below which an effect does not act on a table.
 const NO_CHANGE_N: f64 = 1e-6;
@@ -89,6 +90,28 @@ pub(super) fn invisible(evidence: &Evidence, baseline: &Fitted) -> Vec<Invisible
             })
         })
         .collect()
+}
+
+/// Returns the effects over covariates that the table lacks.
+pub(super) fn without_covariate(
+    vocabulary: &Vocabulary,
+    lacking: &[Optional],
+    is_plain: bool,
+) -> Vec<Invisible> {
+    let effects = vocabulary.effects().filter_map(|effect| {
+        let description = effect.description();
+        let column = description.covariate.column().filter(|column| lacking.contains(column))?;
+        if is_plain && !description.on_plain {
+            return None;
+        }
+        Some(Invisible {
+            id: description.id.to_owned(),
+            why: format!("the table has no complete column {}", column.column()),
+            experiment: description.experiment.to_owned(),
+            possible: None,
+        })
+    });
+    effects.collect()
 }
 
 /// Returns whether an effect changes a reading of the table.

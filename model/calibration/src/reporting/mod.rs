@@ -12,16 +12,17 @@ use pinswitch_inference::Member;
 use crate::adequacy::{Residual, is_adequate};
 use crate::aliasing::aliasing;
 use crate::confirmation::TrialReport;
+use crate::effects::Vocabulary;
 use crate::evidence::{Evidence, Fitted};
 use crate::report::{DataSummary, ExpectedErrorReport, ModelReport, Report, StructureReport, Verdict};
-use crate::table::PlateauRow;
+use crate::table::{Optional, PlateauRow};
 
 use bad_series::bad_series;
 use changes::changes;
 use effects::effects;
 use errors::least_squares_n;
 pub(crate) use errors::{HeldOut, held_out, model_report};
-use limits::{NEVER_VISIBLE, candidates, invisible, limits};
+use limits::{NEVER_VISIBLE, candidates, invisible, limits, without_covariate};
 use noise::{floor_n, noise_parts};
 
 /// Name and version of the format.
@@ -34,6 +35,10 @@ const LEAST_SERIES: usize = 4;
 /// A posterior with its models, from which a report follows.
 pub(crate) struct Findings<'a> {
     pub(crate) rows: &'a [PlateauRow],
+    /// Effects among which the evidence was searched.
+    pub(crate) vocabulary: &'a Vocabulary,
+    /// Columns that the table lacks.
+    pub(crate) lacking: &'a [Optional],
     pub(crate) evidence: &'a Evidence,
     pub(crate) baseline: &'a Fitted,
     pub(crate) augmented: &'a Fitted,
@@ -44,8 +49,9 @@ pub(crate) struct Findings<'a> {
 
 /// Returns the report of findings.
 pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
-    let Findings { rows, evidence, baseline, augmented, .. } = &findings;
+    let Findings { rows, evidence, baseline, augmented, vocabulary, lacking, .. } = &findings;
     let posterior = evidence.posterior();
+    let is_plain = baseline.model.frame.is_plain();
     let best = posterior.window.first()?;
     let held = held_out(evidence, best)?;
     let held_baseline = held_out(evidence, &posterior.baseline)?;
@@ -96,7 +102,8 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         limits: limits(evidence),
         aliasing: aliasing(rows),
         ignored_columns: Vec::new(),
-        invisible: invisible(evidence, baseline),
+        unknown_columns: lacking.iter().map(|quantity| quantity.column().to_owned()).collect(),
+        invisible: [invisible(evidence, baseline), without_covariate(vocabulary, lacking, is_plain)].concat(),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(evidence, rows),
         effects,

@@ -11,7 +11,7 @@ use super::finding::Finding;
 use super::log::Log;
 use super::plateaus::{Segmented, segment};
 use super::run_plan::{RunPlan, SeriesPlan};
-use crate::table::{Labels, PlateauRow};
+use crate::table::{Labels, PlateauRow, Unknown};
 
 /// Name and version of the report's format.
 const SCHEMA: &str = "pinswitch.segmentation/1";
@@ -190,6 +190,7 @@ fn rows<'a>(
         force_n: p.force_n,
         wrap_angle_deg: plan.rig.wrap_angle_deg,
         labels: Labels::default(),
+        unknown: Unknown::default(),
     })
 }
 

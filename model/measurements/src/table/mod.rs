@@ -13,6 +13,7 @@ pub mod substrate_word;
 mod swapped_columns;
 mod table_error;
 mod units;
+mod unknown;
 mod whole_series;
 
 pub use plateau_table::PlateauTable;
@@ -22,3 +23,4 @@ pub use readings::{is_fingerprint, matching_sessions};
 pub use row::{Labels, PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;
+pub use unknown::{Optional, Unknown, with_complete_columns};

@@ -12,6 +12,7 @@ use super::row::{Labels, PlateauRow, Sweep};
 use super::row_cells::RowCells;
 use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
+use super::unknown::{Optional, Unknown};
 
 /// Largest load and reading in newtons: ten tonnes exceed any tendon.
 pub const MAX_N: f64 = 1e5;
@@ -109,7 +110,9 @@ impl PlateauTable {
         let mut at = [None; COLUMNS.len()];
         for (slot, &column) in at.iter_mut().zip(&COLUMNS) {
             *slot = header.iter().position(|name| name == column);
-            if slot.is_none() && !(force == Force::Ignored && column == "force_N") {
+            let may_be_absent = Optional::ALL.iter().any(|quantity| quantity.column() == column)
+                || (force == Force::Ignored && column == "force_N");
+            if slot.is_none() && !may_be_absent {
                 return Err(TableError::MissingColumn { location: Box::new(record_at(0)), column });
             }
         }
@@ -127,7 +130,11 @@ impl PlateauTable {
                 labels_at.map(|at| at.and_then(|i| record.get(i)).unwrap_or("").to_owned());
             let row =
                 PlateauRow { labels: Labels { session, mount, operator, specimen }, ..parse_row(&line)? };
-            // A repeated reading would count twice, although the pair shows no scatter.
+            // A repeated reading would count twice, although the pair shows no scatter. Without
+            // repetition and time, equal rows are repetitions.
+            let is_numbered = [Optional::Repetition, Optional::Time]
+                .iter()
+                .any(|quantity| !row.unknown.contains(*quantity));
             let reading = (
                 row.labels.session.clone(),
                 row.series.clone(),
@@ -135,7 +142,8 @@ impl PlateauTable {
                 row.repetition,
                 row.time_s.to_bits(),
             );
-            if let (Force::Needed, Some(first)) = (force, lines.insert(reading, byte)) {
+            let first = lines.insert(reading, byte).filter(|_| is_numbered && force == Force::Needed);
+            if let Some(first) = first {
                 let first = line_at(&text, first);
                 let problem = format!("the row repeats the series, direction and time of line {first}");
                 return Err(line.refuse(9, problem, "keep one of the two, or number the repetitions"));
@@ -176,7 +184,7 @@ impl PlateauTable {
         out
     }
 
-    /// Writes rows as a plateau table in CSV. The column `wrap_angle_deg` is written if any row
+    /// Writes rows as a plateau table in CSV. A quantity that no row has gets no column. The column `wrap_angle_deg` is written if any row
     /// departs from the paper's wrap angle; those of session, mount, operator and specimen if any
     /// row names one.
     pub fn write(rows: &[PlateauRow]) -> String {
@@ -188,7 +196,17 @@ impl PlateauTable {
             .enumerate()
             .filter(|(i, _)| rows.iter().any(|row| !row.labels.all()[*i].is_empty()));
         let labels: Vec<(usize, &str)> = labels.map(|(i, name)| (i, *name)).collect();
-        push_line(&mut out, COLUMNS.iter().copied().chain(extra).chain(labels.iter().map(|(_, name)| *name)));
+        let known = |column: &str, row: &PlateauRow| {
+            let quantity = Optional::ALL.into_iter().find(|quantity| quantity.column() == column);
+            quantity.is_none_or(|quantity| !row.unknown.contains(quantity))
+        };
+        let written: Vec<bool> = COLUMNS
+            .iter()
+            .map(|column| rows.is_empty() || rows.iter().any(|row| known(column, row)))
+            .collect();
+        let columns =
+            COLUMNS.iter().zip(&written).filter(|(_, written)| **written).map(|(column, _)| *column);
+        push_line(&mut out, columns.chain(extra).chain(labels.iter().map(|(_, name)| *name)));
         for row in rows {
             let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
             let cells = [
@@ -208,7 +226,9 @@ impl PlateauTable {
             ];
             let wrap = extra.map(|_| row.wrap_angle_deg.to_string());
             let names = labels.iter().map(|(i, _)| row.labels.all()[*i]);
-            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str).chain(names));
+            let cells = COLUMNS.iter().zip(&cells).zip(&written).filter(|(_, written)| **written);
+            let cells = cells.map(|((column, cell), _)| if known(column, row) { cell.as_str() } else { "" });
+            push_line(&mut out, cells.chain(wrap.as_deref()).chain(names));
         }
         out
     }
@@ -284,6 +304,24 @@ impl Cells<'_> {
         Ok(value)
     }
 
+    /// Whether the cell of an optional column is empty.
+    fn is_empty(&self, column: usize) -> bool {
+        (self.cell)(column).is_empty()
+    }
+
+    /// Parses a number within bounds; zero where the cell is empty.
+    fn optional(&self, column: usize, least: f64, most: f64) -> Result<f64, TableError> {
+        if self.is_empty(column) { Ok(0.0) } else { self.number(column, least, most) }
+    }
+
+    /// Returns the quantities whose cells are empty.
+    fn unknown(&self) -> Unknown {
+        Optional::ALL.into_iter().fold(Unknown::default(), |unknown, quantity| {
+            let column = COLUMNS.iter().position(|column| *column == quantity.column());
+            if column.is_some_and(|column| self.is_empty(column)) { unknown.with(quantity) } else { unknown }
+        })
+    }
+
     /// Returns the wrap angle in degrees; the paper's where the column or the cell is absent.
     fn wrap_angle_deg(&self) -> Result<f64, TableError> {
         let column = COLUMNS.len();
@@ -331,7 +369,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
         let problem = "no grooves on abs, where only pins carry the tendon";
         return Err(cells.refuse(2, problem, "list the occupied grooves"));
     }
-    let repetition = cells.number(9, 1.0, 1e6)?;
+    let repetition = if cells.is_empty(9) { 1.0 } else { cells.number(9, 1.0, 1e6)? };
     if repetition.fract() != 0.0 {
         return Err(cells.refuse(9, "not a whole number", "count the repetitions 1, 2, ..."));
     }
@@ -341,22 +379,26 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
         series: (cells.cell)(0).to_owned(),
         substrate,
         pins,
-        sweep: cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
-        load_mass_g: cells.number(4, 0.0, 1e7)?,
+        sweep: match cells.is_empty(3) {
+            true => Sweep::Up,
+            false => cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
+        },
+        load_mass_g: cells.optional(4, 0.0, 1e7)?,
         load_n: cells.number(5, 0.0, MAX_N)?,
-        speed_pct: cells.number(6, 0.0, MAX_PERCENT)?,
-        dwell_s: cells.number(7, 0.0, 1e6)?,
+        speed_pct: cells.optional(6, 0.0, MAX_PERCENT)?,
+        dwell_s: cells.optional(7, 0.0, 1e6)?,
         direction: cells
             .word(8, &[("eccentric", Direction::Eccentric), ("concentric", Direction::Concentric)])?,
         repetition,
-        position_mm: cells.number(10, -1e6, 1e6)?,
-        time_s: cells.number(11, -MAX_S, MAX_S)?,
+        position_mm: cells.optional(10, -1e6, 1e6)?,
+        time_s: cells.optional(11, -MAX_S, MAX_S)?,
         force_n: match cells.force {
             Force::Needed => cells.number(12, -MAX_N, MAX_N)?,
             Force::Ignored => 0.0,
         },
         wrap_angle_deg: cells.wrap_angle_deg()?,
         labels: Labels::default(),
+        unknown: cells.unknown(),
     })
 }
 
@@ -453,10 +495,10 @@ mod tests {
     fn incomplete_tables_are_refused() {
         assert!(matches!(read(""), Err(TableError::Empty { .. })));
         assert!(matches!(read(&format!("{HEADER}\n")), Err(TableError::Empty { .. })));
-        let error = read(&HEADER.replace("dwell_s,", "")).unwrap_err();
-        assert!(matches!(error, TableError::MissingColumn { column: "dwell_s", .. }));
+        let error = read(&HEADER.replace("direction,", "")).unwrap_err();
+        assert!(matches!(error, TableError::MissingColumn { column: "direction", .. }));
         let shown = Diagnostic::from(error).render("error");
-        assert!(shown.contains("t.csv:1: column 'dwell_s' is missing\n  1 | series,substrate,"), "{shown}");
+        assert!(shown.contains("t.csv:1: column 'direction' is missing\n  1 | series,substrate,"), "{shown}");
         let short = read(&format!("{HEADER}\n0,silicone\n")).unwrap_err().to_string();
         assert!(short.starts_with("t.csv:2: 2 cells, but the header has 13"), "{short}");
     }

@@ -4,6 +4,8 @@
 use pinswitch_friction::{Direction, Substrate};
 use serde::{Deserialize, Serialize};
 
+use super::unknown::Unknown;
+
 /// Order of the loads in the sweep of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -57,6 +59,8 @@ pub struct PlateauRow {
     pub wrap_angle_deg: f64,
     /// Session, mount, operator and specimen.
     pub labels: Labels,
+    /// Quantities that the table lacks in this row; their fields have neutral values.
+    pub unknown: Unknown,
 }
 
 /// Labels that group rows for random effects; empty where the table has none.

@@ -1,4 +1,5 @@
-//! `import` on small files as machines and loggers write them: exports of other programs, wide tables, folders, workbooks.
+//! `import` on small files as machines and loggers write them: exports of other programs, wide
+//! tables, folders, workbooks.
 
 use std::io::Write;
 use std::path::Path;
@@ -74,7 +75,8 @@ fn wide_tables_become_readings() {
     assert!(map.contains("direction = \"concentric\""), "{map}");
 }
 
-/// The same table with decimal commas, with a row of units, and with other words for the directions.
+/// The same table with decimal commas, with a row of units, and with other words for the
+/// directions.
 #[test]
 fn rewritten_tables_are_equal() {
     let (expected, _) = imported("units-row.csv", &[]);
@@ -93,7 +95,8 @@ fn rewritten_tables_are_equal() {
     assert_eq!(read(&expected), read(&original));
 }
 
-/// A measured table in kilonewtons, milliseconds, with decimal commas, shuffled columns and French words.
+/// A measured table in kilonewtons, milliseconds, with decimal commas, shuffled columns and French
+/// words.
 #[test]
 fn a_measured_table_survives_rewriting() {
     let Some(path) = shared_file("data/real/davinci_tool4.csv") else { return };

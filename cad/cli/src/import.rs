@@ -22,9 +22,10 @@ const ENDINGS: [&str; 10] = ["csv", "txt", "tsv", "dat", "lvm", "xlsx", "xls", "
 
 /// Convert the files of a laboratory to a plateau table or a log.
 ///
-/// Reads text with any delimiter, encoding and decimal sign, LabVIEW measurement files, workbooks and Parquet. Prints what
-/// was understood. If a value has two readings, writes nothing and lists the options that decide. Next to the table, writes
-/// a map (NAME.import.toml), which repeats the import.
+/// Reads text with any delimiter, encoding and decimal sign, LabVIEW measurement files, workbooks
+/// and Parquet. Prints what was understood. If a value has two readings, writes nothing and lists
+/// the options that decide. Next to the table, writes a map (NAME.import.toml), which repeats the
+/// import.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch import rig.csv --out plateaus.csv
@@ -38,7 +39,8 @@ pub(super) struct Arguments {
     /// File for the plateau table or the log.
     #[arg(long, value_name = "CSV", required_unless_present = "dry_run")]
     out: Option<PathBuf>,
-    /// Decisions about columns, units and words; `pinswitch init import` writes one with every key explained.
+    /// Decisions about columns, units and words; `pinswitch init import` writes one with every key
+    /// explained.
     #[arg(long, value_name = "TOML")]
     map: Option<PathBuf>,
     /// Set one value of the map, as in --set decimal=comma or --set unit.Kraft=kN; may be repeated.
@@ -176,7 +178,8 @@ fn read_unpacked(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Prompts for confirmation on a terminal. Scripts cannot answer: without a terminal, everything is certain here.
+/// Prompts for confirmation on a terminal. Scripts cannot answer: without a terminal, everything is
+/// certain here.
 fn is_confirmed(arguments: &Arguments) -> Result<bool, Failure> {
     let is_terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
     if arguments.yes || arguments.json || !is_terminal {

@@ -114,7 +114,8 @@ fn cells(sheet: &Sheet, header: &Header, column: usize) -> Cells {
     kinds
 }
 
-/// Assigns a quantity, a unit and a factor to every column; what has two readings becomes a question.
+/// Assigns a quantity, a unit and a factor to every column; what has two readings becomes a
+/// question.
 pub(crate) fn assign(
     sheet: &Sheet,
     header: &Header,
@@ -217,7 +218,8 @@ fn find_directions(columns: &mut [Column], kinds: &[Cells]) {
     }
 }
 
-/// Times of day and dates are the time; a date without a time of day belongs to the time of day in another column.
+/// Times of day and dates are the time; a date without a time of day belongs to the time of day in
+/// another column.
 fn find_clocks(columns: &mut [Column], kinds: &[Cells]) {
     let is_moment = |kinds: &Cells| kinds.moments > kinds.numbers && kinds.moments > kinds.words;
     for (column, kinds) in columns.iter_mut().zip(kinds) {

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// Most significant digits that are kept: further digits are below the resolution of any instrument.
+/// Most significant digits that are kept: further digits are below the resolution of any
+/// instrument.
 const MAX_DIGITS: usize = 34;
 /// Significant digits of each factor when their product exceeds 38 digits.
 const PRODUCT_DIGITS: u32 = 18;
@@ -17,7 +18,8 @@ const POWERS: [f64; 23] = [
 
 /// A decimal number: `digits` times ten to the power of `exponent`, with a sign.
 ///
-/// A product of decimals is exact, and [`Decimal::to_f64`] rounds once. Therefore `0.0012 kN` is exactly `1.2 N`.
+/// A product of decimals is exact, and [`Decimal::to_f64`] rounds once. Therefore `0.0012 kN` is
+/// exactly `1.2 N`.
 ///
 /// ```
 /// use pinswitch_import::Decimal;
@@ -78,7 +80,8 @@ impl Decimal {
         has_digit.then_some(number)
     }
 
-    /// Creates the decimal number with the shortest text that has this value; `None` if it is not finite.
+    /// Creates the decimal number with the shortest text that has this value; `None` if it is not
+    /// finite.
     pub fn from_f64(value: f64) -> Option<Self> {
         value.is_finite().then(|| Self::parse(&format!("{value:e}"))).flatten()
     }
@@ -130,7 +133,8 @@ impl Decimal {
 
     /// Returns the nearest binary number.
     pub fn to_f64(self) -> f64 {
-        // Both are exact as binary numbers, so that one rounding gives the nearest (W. D. Clinger, PLDI 1990).
+        // Both are exact as binary numbers, so that one rounding gives the nearest (W. D. Clinger,
+        // PLDI 1990).
         if self.digits < 1 << 53
             && let Some(power) = POWERS.get(self.exponent.unsigned_abs() as usize)
         {

@@ -31,6 +31,8 @@ const DELIMITERS: [(Delimiter, &str); 6] = [
 const SAMPLE_LINES: usize = 300;
 /// Bytes of a text in which these lines are.
 const SAMPLE_BYTES: usize = 1 << 16;
+/// Most bytes of a line: rows of the most cells that are read, of a kilobyte each.
+const MAX_LINE: usize = 2 << 20;
 /// Difference of scores below which the preferred delimiter wins.
 const CLEAR_LEAD: f64 = 0.05;
 
@@ -61,8 +63,8 @@ impl Delimiter {
     }
 }
 
-/// Splits the delimiter that a first line `sep=;` declares from the rest of the text, and returns the lines that were
-/// removed.
+/// Splits the delimiter that a first line `sep=;` declares from the rest of the text, and returns
+/// the lines that were removed.
 pub(crate) fn declared(text: &str) -> (Option<Delimiter>, &str, usize) {
     let first = text.lines().next().unwrap_or_default();
     let word = first.trim_matches(|c: char| c == '"' || c == '\r');
@@ -105,8 +107,8 @@ fn sample(text: &str) -> Vec<&str> {
     lines
 }
 
-/// Returns how consistent the cells are: the share of lines with the usual number of cells, times the share of their
-/// cells that are numbers or words.
+/// Returns how consistent the cells are: the share of lines with the usual number of cells, times
+/// the share of their cells that are numbers or words.
 fn score(lines: &[&str], delimiter: Delimiter) -> f64 {
     let rows: Vec<Vec<String>> = lines.iter().map(|line| split_line(line, delimiter)).collect();
     let mut counts: Vec<usize> = rows.iter().map(Vec::len).collect();
@@ -168,6 +170,15 @@ fn split_line(line: &str, delimiter: Delimiter) -> Vec<String> {
 /// # Errors
 /// A [`Diagnostic`] for a text that is too large.
 pub(crate) fn cells(text: &str, delimiter: Delimiter, first_line: usize) -> Result<Sheet, Diagnostic> {
+    let longest = text.lines().enumerate().max_by_key(|(_, line)| line.len());
+    if let Some((i, line)) = longest.filter(|(_, line)| line.len() > MAX_LINE) {
+        return Err(Diagnostic::new(format!(
+            "line {}: {} bytes, at most {MAX_LINE} are read",
+            first_line + i + 1,
+            line.len()
+        ))
+        .with_help("give a text with one row in each line"));
+    }
     let mut sheet = Sheet::default();
     let Delimiter::Sign(sign) = delimiter else {
         for (i, line) in text.lines().enumerate() {

@@ -47,7 +47,8 @@ impl FileReading {
     /// Reads a file and finds out what it contains.
     ///
     /// # Errors
-    /// A [`Diagnostic`] if it cannot be read, has no numbers or no names, or has a row that is neither used nor skipped.
+    /// A [`Diagnostic`] if it cannot be read, has no numbers or no names, or has a row that is
+    /// neither used nor skipped.
     pub(crate) fn read(name: &str, bytes: &[u8], map: &Map) -> Result<Self, Diagnostic> {
         let recording = Recording::read(bytes, map).map_err(|d| d.or_in_file(name))?;
         let sheet = &recording.sheet;
@@ -116,7 +117,8 @@ impl FileReading {
         self.columns.iter().filter(|column| column.quantity == Quantity::Force)
     }
 
-    /// Returns the converted number of a cell; `None` for an empty cell and for one that is not a number.
+    /// Returns the converted number of a cell; `None` for an empty cell and for one that is not a
+    /// number.
     pub(crate) fn value(&self, row: usize, column: &Column) -> Option<Decimal> {
         let cell = self.recording.sheet.cell(row, column.index);
         if column.is_clock {
@@ -185,7 +187,8 @@ impl FileReading {
             }
             (true, false, _) => DecimalSign::Point,
             (false, true, _) => DecimalSign::Comma,
-            // Whole numbers of four digits and more have no thousands separator, so the comma is none either.
+            // Whole numbers of four digits and more have no thousands separator, so the comma is
+            // none either.
             (false, false, true) if counts[2] == 0 && has_long_whole => DecimalSign::Comma,
             (false, false, true) => {
                 let cell = first[3].as_ref().map_or("", |(_, cell)| cell.as_str());

@@ -67,7 +67,8 @@ pub(crate) fn is_data(sheet: &Sheet, row: usize) -> bool {
             && !has(neighbour, CellKind::Value))
 }
 
-/// Whether a row has the units of the names above: most cells are known units, and none is the name of a quantity.
+/// Whether a row has the units of the names above: most cells are known units, and none is the name
+/// of a quantity.
 pub(crate) fn is_units_row(sheet: &Sheet, row: usize) -> bool {
     let (mut has_known, mut units, mut others) = (false, 0, 0);
     for cell in sheet.row(row) {
@@ -86,7 +87,8 @@ pub(crate) fn is_units_row(sheet: &Sheet, row: usize) -> bool {
     has_known && units > others
 }
 
-/// Whether a cell of a row of units looks like a unit that is not known, such as `(m/s^2)` or `degC`.
+/// Whether a cell of a row of units looks like a unit that is not known, such as `(m/s^2)` or
+/// `degC`.
 fn is_other_unit(cell: &str) -> bool {
     const WORDS: [&str; 20] = [
         "1", "c", "degc", "k", "bar", "pa", "kpa", "mpa", "hz", "khz", "rpm", "a", "ohm", "nm", "ncm",
@@ -159,7 +161,8 @@ fn candidate(sheet: &Sheet, row: usize) -> Option<(Header, usize)> {
     Some((Header { names_row: Some(row), units_row, first_data, names, units }, score))
 }
 
-/// Returns the names in a row, without the sign of a comment and with the load of a row of groups above.
+/// Returns the names in a row, without the sign of a comment and with the load of a row of groups
+/// above.
 fn names(sheet: &Sheet, row: usize, width: usize) -> Vec<String> {
     let mut names: Vec<String> =
         sheet.row(row).map(|cell| cell.split_whitespace().collect::<Vec<_>>().join(" ")).collect();

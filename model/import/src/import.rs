@@ -17,8 +17,6 @@ use crate::understanding::{FileUnderstanding, Understanding};
 const PREVIEW_ROWS: usize = 3;
 /// Most readings of a table.
 const MAX_READINGS: usize = 1_000_000;
-/// Columns that a reader of plateau tables required before some became optional.
-const COMPLETE: usize = 13;
 
 /// A file to import.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +67,8 @@ pub struct Import {
 /// Imports files with a map.
 ///
 /// # Errors
-/// A [`Diagnostic`] for a file that cannot be read. What has two readings is not an error but a [`Question`].
+/// A [`Diagnostic`] for a file that cannot be read. What has two readings is not an error but a
+/// [`Question`].
 pub fn import(sources: &[Source<'_>], map: &Map) -> Result<Import, Diagnostic> {
     import_with_pattern(sources, map, None)
 }
@@ -171,7 +170,6 @@ fn build_table(
     understanding.constants = constants.collect();
     understanding.notes.append(&mut table.notes);
     let csv = table.lines(usize::MAX);
-    let header = csv.lines().next().unwrap_or_default();
     if table.lacks_wrap_angle() {
         understanding
             .notes
@@ -182,13 +180,9 @@ fn build_table(
             Diagnostic::new("no row has a load, a direction and a force").with_location(Location::file(name))
         );
     }
-    // Values outside the bounds of a plateau table.
-    if questions.is_empty()
-        && header.split(',').count() >= COMPLETE
-        && let Err(error) = PlateauTable::read(csv.as_bytes(), "the imported table")
-        && !matches!(error, pinswitch_measurements::table::TableError::MissingColumn { .. })
-    {
-        return Err(Diagnostic::from(error));
+    // Values outside the bounds of a plateau table, and repeated readings.
+    if questions.is_empty() {
+        PlateauTable::read(csv.as_bytes(), "the imported table").map_err(Diagnostic::from)?;
     }
     Ok(Output::Table(csv))
 }
@@ -307,7 +301,8 @@ impl Map {
     /// Reads a raw log with this map. `name` is that of the file in errors.
     ///
     /// # Errors
-    /// A [`Diagnostic`] for a file that cannot be read, has no force or time, or leaves a question open.
+    /// A [`Diagnostic`] for a file that cannot be read, has no force or time, or leaves a question
+    /// open.
     pub fn read_log(&self, bytes: &[u8], name: &str) -> Result<LogColumns, Diagnostic> {
         let map = Self { kind: Some(Kind::Log), ..self.clone() };
         let file = FileReading::read(name, bytes, &map).map_err(|diagnostic| diagnostic.or_in_file(name))?;

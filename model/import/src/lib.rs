@@ -1,8 +1,10 @@
 //! Import of friction measurements: any laboratory's file becomes a plateau table or a log.
 //!
-//! 1. [`import`] reads the bytes of one or several files with a [`Map`] of decisions that were taken before.
+//! 1. [`import`] reads the bytes of one or several files with a [`Map`] of decisions that were
+//!    taken before.
 //! 2. The [`Import`] contains an [`Understanding`]: what was recognised, ignored and left open.
-//! 3. Without open questions it also contains the [`Output`] and a complete map, which gives the same output again.
+//! 3. Without open questions it also contains the [`Output`] and a complete map, which gives the
+//!    same output again.
 //!
 //! The crate reads no files. `model/doc/import.md` describes it for users.
 //!

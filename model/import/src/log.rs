@@ -31,7 +31,8 @@ pub struct LogColumns {
 }
 
 impl LogColumns {
-    /// Writes the log as CSV with the columns that it has. A value that is not known is an empty cell.
+    /// Writes the log as CSV with the columns that it has. A value that is not known is an empty
+    /// cell.
     pub fn to_csv(&self) -> String {
         self.lines(self.time_s.len())
     }

@@ -1,4 +1,5 @@
-//! The map of a file: every decision of an import, as a person may write it and as it is written next to a table.
+//! The map of a file: every decision of an import, as a person may write it and as it is written
+//! next to a table.
 
 use std::collections::BTreeMap;
 

@@ -110,7 +110,8 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
         (None, by_unit) if possible.is_empty() || unit.is_some_and(is_force) => by_unit,
         _ => None,
     };
-    // A column that is named by its direction, load or trial alone: "pull", "2 kg up", "Trial 3 [N]".
+    // A column that is named by its direction, load or trial alone: "pull", "2 kg up", "Trial 3
+    // [N]".
     let number = words.iter().find_map(|word| word.parse::<u32>().ok()).filter(|n| (1..=1000).contains(n));
     let is_reading = unit.is_none_or(|unit| Quantity::Force.dimensions().contains(&unit.dimension));
     let quantity = match quantity {

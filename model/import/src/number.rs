@@ -87,7 +87,8 @@ pub(crate) fn parse(cell: &str, sign: DecimalSign) -> Option<(Decimal, Option<&'
     Some((Decimal::parse(&plain)?, unit))
 }
 
-/// Appends the digits of a whole number without its thousands separators; `None` if a group has other than three digits.
+/// Appends the digits of a whole number without its thousands separators; `None` if a group has
+/// other than three digits.
 fn push_grouped(plain: &mut String, whole: &str, sign: DecimalSign) -> Option<()> {
     if whole.bytes().all(|b| b.is_ascii_digit()) {
         plain.push_str(whole);

@@ -40,7 +40,8 @@ struct Field {
 }
 
 impl Pattern {
-    /// Parses a pattern. A field is a name in braces, such as `{load_kg}`, `{direction}` or `{trial}`; `{_}` is ignored.
+    /// Parses a pattern. A field is a name in braces, such as `{load_kg}`, `{direction}` or
+    /// `{trial}`; `{_}` is ignored.
     ///
     /// # Errors
     /// A [`Diagnostic`] for an unknown field and for braces without a partner.
@@ -109,8 +110,8 @@ fn field(name: &str) -> Option<Field> {
     }
 }
 
-/// Matches the parts against a text. Each field takes the shortest text that lets the rest match; every field is followed by
-/// a text, so that the work is bounded by the lengths of both.
+/// Matches the parts against a text. Each field takes the shortest text that lets the rest match;
+/// every field is followed by a text, so that the work is bounded by the lengths of both.
 fn matches(parts: &[Part], text: &str, values: &mut BTreeMap<String, String>) -> bool {
     match parts {
         [] => text.is_empty(),

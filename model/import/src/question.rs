@@ -3,7 +3,8 @@
 use pinswitch_diagnostic::Diagnostic;
 use serde::Serialize;
 
-/// A decision that the file leaves open: two or more readings, and the option that decides for each.
+/// A decision that the file leaves open: two or more readings, and the option that decides for
+/// each.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Question {
     /// What is uncertain.

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use crate::{Import, Map, Output, Source, import};
 
-/// A reading: load in hundredths of a newton, whether the load is pulled, force in ten-thousandths of a newton, position
-/// in hundredths of a millimetre, time in hundredths of a second.
+/// A reading: load in hundredths of a newton, whether the load is pulled, force in ten-thousandths
+/// of a newton, position in hundredths of a millimetre, time in hundredths of a second.
 type Reading = (i64, bool, i64, i64, i64);
 
 /// How a table is written.
@@ -135,7 +135,8 @@ fn table(import: &Import) -> &str {
     }
 }
 
-/// Readings whose forces agree with their directions: the force is 0.5 to 0.9 or 1.1 to 1.5 of the load.
+/// Readings whose forces agree with their directions: the force is 0.5 to 0.9 or 1.1 to 1.5 of the
+/// load.
 fn readings() -> impl Strategy<Value = Vec<Reading>> {
     let reading = (1_i64..2_000, 1_i64..4_000, -20_000_i64..20_000);
     prop::collection::vec(reading, 4..40).prop_map(|all| {

@@ -9,7 +9,8 @@ const MAX_CELL: usize = 20_000;
 /// Most rows: a day at a kilohertz has 86 million, but not in one text.
 const MAX_ROWS: usize = 50_000_000;
 
-/// The cells of a file. They share one text, so that a long log takes little more memory than its bytes.
+/// The cells of a file. They share one text, so that a long log takes little more memory than its
+/// bytes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
     text: String,

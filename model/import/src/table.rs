@@ -78,7 +78,8 @@ fn position(quantity: Quantity) -> usize {
 }
 
 impl Table {
-    /// Whether a reading is on a plain contact, whose wrap angle has no default, without a wrap angle.
+    /// Whether a reading is on a plain contact, whose wrap angle has no default, without a wrap
+    /// angle.
     pub(crate) fn lacks_wrap_angle(&self) -> bool {
         let is_plain = |row: &Row| row.cells[position(Quantity::Substrate)] == "plain";
         self.rows.iter().any(|row| is_plain(row) && row.cells[position(Quantity::WrapAngle)].is_empty())
@@ -472,7 +473,8 @@ fn direction(
     words.get(word).map(|(direction, is_decided)| (*direction, word.to_owned(), *is_decided))
 }
 
-/// Returns the load of a reading in newtons and, if it is a mass, in grams, with its text in the unit of the file.
+/// Returns the load of a reading in newtons and, if it is a mass, in grams, with its text in the
+/// unit of the file.
 fn load(
     file: &FileReading,
     map: &Map,
@@ -542,7 +544,8 @@ fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
     }
 }
 
-/// Compares the words with the forces: at the same load, the force is higher while the load is pulled.
+/// Compares the words with the forces: at the same load, the force is higher while the load is
+/// pulled.
 fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questions: &mut Vec<Question>) {
     let is_sign_open = map.force_sign.is_none() && negative_share(table) > REVERSED_SHARE;
     if is_sign_open {

@@ -10,8 +10,8 @@ use crate::quantity::Quantity;
 const DAY_S: u128 = 86_400;
 const MIDNIGHT_STEP_S: f64 = -43_200.0;
 
-/// Returns the time of each row in seconds, as the file counts it, and whether it is that of a clock; `None` without a
-/// column of times.
+/// Returns the time of each row in seconds, as the file counts it, and whether it is that of a
+/// clock; `None` without a column of times.
 pub(crate) fn times(file: &FileReading, map: &Map) -> Option<(Vec<Option<Decimal>>, bool)> {
     let Some(time) = file.column(Quantity::Time) else {
         let rate = map.sample_rate_hz?;

@@ -139,7 +139,8 @@ const UNITS: [Unit; 45] = [
 ];
 
 impl Unit {
-    /// Finds the unit with this symbol or name; `None` if there is none. Case decides only between `mN` and `MN`.
+    /// Finds the unit with this symbol or name; `None` if there is none. Case decides only between
+    /// `mN` and `MN`.
     pub fn parse(text: &str) -> Option<&'static Self> {
         let text =
             text.trim().trim_matches(['[', ']', '(', ')', '{', '}', '<', '>']).trim().trim_end_matches('.');

@@ -4,8 +4,8 @@ use pinswitch_friction::Direction;
 
 use crate::quantity::Quantity;
 
-/// Splits a name into lower-case words without accents. Words end at signs, at `camelCase` and between letters and
-/// digits.
+/// Splits a name into lower-case words without accents. Words end at signs, at `camelCase` and
+/// between letters and digits.
 pub(crate) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut previous = ' ';
@@ -274,7 +274,8 @@ pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
         possible.extend(words.iter().filter_map(compound));
     }
     let has = |possible: &[Quantity], quantity| possible.contains(&quantity);
-    // "load mass", "test time", "direction of force": the noun decides, and it is first in the list above.
+    // "load mass", "test time", "direction of force": the noun decides, and it is first in the list
+    // above.
     if has(&possible, Quantity::Direction) && has(&possible, Quantity::Position) {
         possible.retain(|q| *q != Quantity::Position);
     }
@@ -434,7 +435,8 @@ pub(crate) fn direction(cell: &str) -> Option<Direction> {
 
 /// Returns the direction in the words of a column name, such as `F_heben`.
 pub(crate) fn direction_in_name(words: &[String]) -> Option<Direction> {
-    // Words that mean other things in names: "in" an inch or an input, "load" the load, "pos" a position.
+    // Words that mean other things in names: "in" an inch or an input, "load" the load, "pos" a
+    // position.
     const OTHER: [&str; 6] = ["in", "out", "load", "pos", "1", "vor"];
     let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| !OTHER.contains(word)).collect();
     let mut all: Vec<_> = words.iter().filter_map(|word| direction(word)).collect();

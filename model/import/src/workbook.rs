@@ -32,7 +32,8 @@ mod reader {
     /// Reads a sheet of a workbook: the named one, or the first with numbers.
     ///
     /// # Errors
-    /// A [`Diagnostic`] for a damaged workbook, and for a sheet that does not exist or has no numbers.
+    /// A [`Diagnostic`] for a damaged workbook, and for a sheet that does not exist or has no
+    /// numbers.
     pub(crate) fn read(bytes: &[u8], sheet: Option<&str>) -> Result<Recording, Diagnostic> {
         if bytes.len() > MAX_BYTES || unpacked_bytes(bytes) > MAX_UNPACKED {
             return Err(Diagnostic::new("the workbook is too large").with_help("export the sheet as CSV"));
@@ -115,7 +116,8 @@ mod reader {
         }
     }
 
-    /// Returns the sum of the unpacked sizes that the directory of a ZIP archive declares (APPNOTE.TXT 4.3.12).
+    /// Returns the sum of the unpacked sizes that the directory of a ZIP archive declares
+    /// (APPNOTE.TXT 4.3.12).
     fn unpacked_bytes(bytes: &[u8]) -> u64 {
         const ENTRY: &[u8] = b"PK\x01\x02";
         let mut sum = 0_u64;

@@ -40,6 +40,10 @@ pub(crate) struct Column {
     pub(crate) reason: &'static str,
     /// Whether a word of the name names the quantity.
     is_named: bool,
+    /// Whether another column has the same name.
+    is_repeated: bool,
+    /// Whether the unit follows from the values.
+    pub(crate) is_assumed: bool,
     /// Whether the user decided the quantity.
     pub(crate) is_decided: bool,
     /// Whether the user gave the factor.
@@ -176,6 +180,8 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
             "not a quantity of a table or log"
         },
         is_named: reading.is_named || name.is_empty(),
+        is_repeated: header.names.iter().filter(|other| *other == name).count() > 1,
+        is_assumed: false,
         is_decided: choice.quantity.is_some(),
         has_factor: choice.factor.is_some(),
     };
@@ -305,7 +311,7 @@ fn remove_duplicates(columns: &mut [Column], questions: &mut Vec<Question>) {
         }
         let all: Vec<&Column> = columns.iter().filter(|column| column.quantity == quantity).collect();
         if all.len() > 1 {
-            let names: Vec<String> = all.iter().map(|column| format!("'{}'", column.name)).collect();
+            let names: Vec<String> = all.iter().map(|column| shown(column)).collect();
             let problem = format!(
                 "{} columns may be the {}: {}",
                 all.len(),
@@ -316,16 +322,21 @@ fn remove_duplicates(columns: &mut [Column], questions: &mut Vec<Question>) {
                 let others = all.iter().filter(|other| other.index != column.index);
                 let option: Vec<String> =
                     others.map(|other| format!("column.{}=ignore", reference(other))).collect();
-                (format!("'{}' is it", column.name), option.join("\n"))
+                (format!("{} is it", shown(column)), option.join("\n"))
             });
             questions.push(Question::new(problem, readings));
         }
     }
 }
 
+/// Name of a column in a message; its number if another column has the same name.
+fn shown(column: &Column) -> String {
+    if column.is_repeated { format!("column {}", column.index + 1) } else { format!("'{}'", column.name) }
+}
+
 /// Name of a column in an option; its number if it has none.
 pub(crate) fn reference(column: &Column) -> String {
-    if column.name.is_empty() || column.name.contains(['=', '\'', '\n']) {
+    if column.name.is_empty() || column.is_repeated || column.name.contains(['=', '\'', '\n']) {
         (column.index + 1).to_string()
     } else {
         column.name.clone()
@@ -339,7 +350,9 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
         return;
     }
     let given = map.force_unit.filter(|_| quantity == Quantity::Force);
-    let Some(unit) = column.unit.or(given).or_else(|| assumed_unit(column, sheet, header)) else {
+    let named = column.unit.or(given);
+    column.is_assumed = named.is_none();
+    let Some(unit) = named.or_else(|| assumed_unit(column, sheet, header)) else {
         let question = unknown_unit(column);
         if !questions.contains(&question) {
             questions.push(question);

@@ -131,6 +131,10 @@ impl FileReading {
         Some(value.times(column.factor).plus(column.offset))
     }
 
+    fn is_semicolon(&self) -> bool {
+        self.recording.delimiter == Some(crate::dialect::Delimiter::Sign(b';'))
+    }
+
     /// Decides between decimal point and comma by all cells of the columns that are used.
     fn decide_sign(&mut self) -> DecimalSign {
         let sheet = &self.recording.sheet;
@@ -169,12 +173,6 @@ impl FileReading {
         let shown = |at: usize| {
             first[at].as_ref().map_or_else(String::new, |(line, cell)| format!("'{cell}' in line {line}"))
         };
-        let options = |comma: &str, point: &str| {
-            vec![
-                (comma.to_owned(), "decimal=comma".to_owned()),
-                (point.to_owned(), "decimal=point".to_owned()),
-            ]
-        };
         match (counts[0] > 0, counts[1] > 0, counts[3] > 0) {
             (true, true, _) => {
                 let problem = format!(
@@ -182,7 +180,7 @@ impl FileReading {
                     shown(0),
                     shown(1)
                 );
-                self.questions.push(Question::new(problem, options("decimal comma", "decimal point")));
+                self.questions.push(Question::new(problem, sign_answers("decimal comma", "decimal point")));
                 DecimalSign::Point
             }
             (true, false, _) => DecimalSign::Point,
@@ -191,18 +189,13 @@ impl FileReading {
             // none either.
             (false, false, true) if counts[2] == 0 && has_long_whole => DecimalSign::Comma,
             (false, false, true) => {
-                let cell = first[3].as_ref().map_or("", |(_, cell)| cell.as_str());
-                let value =
-                    |sign| number::parse(cell, sign).map_or_else(String::new, |(value, _)| value.to_string());
-                let readings = options(
-                    &format!("it is {}", value(DecimalSign::Comma)),
-                    &format!("it is {}", value(DecimalSign::Point)),
-                );
-                self.questions.push(Question::new(
-                    format!("{} has a decimal comma or a thousands separator", shown(3)),
-                    readings,
-                ));
+                self.questions.push(separator_question(first[3].as_ref(), "comma"));
                 DecimalSign::Comma
+            }
+            // Semicolons are the delimiter where commas are the decimal sign.
+            (false, false, false) if counts[2] > 0 && !has_long_whole && self.is_semicolon() => {
+                self.questions.push(separator_question(first[2].as_ref(), "point"));
+                DecimalSign::Point
             }
             (false, false, false) => DecimalSign::Point,
         }
@@ -424,6 +417,21 @@ impl FileReading {
             return;
         }
     }
+}
+
+fn sign_answers(comma: &str, point: &str) -> [(String, String); 2] {
+    [(comma.to_owned(), "decimal=comma".to_owned()), (point.to_owned(), "decimal=point".to_owned())]
+}
+
+/// Returns the question about a number with one separator before three digits.
+fn separator_question(first: Option<&(usize, String)>, separator: &str) -> Question {
+    let (line, cell) = first.map_or((0, ""), |(line, cell)| (*line, cell.as_str()));
+    let value = |sign| {
+        let value = number::parse(cell, sign).map_or_else(String::new, |(value, _)| value.to_string());
+        format!("it is {value}")
+    };
+    let problem = format!("'{cell}' in line {line} has a decimal {separator} or a thousands separator");
+    Question::new(problem, sign_answers(&value(DecimalSign::Comma), &value(DecimalSign::Point)))
 }
 
 /// What a row is.

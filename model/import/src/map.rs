@@ -394,9 +394,7 @@ impl Map {
     pub(crate) fn column(&self, name: &str, number: usize) -> Option<&ColumnChoice> {
         let number = number.to_string();
         let named = self.columns.iter().find(|(other, _)| other == name);
-        let same = |other: &str| {
-            crate::vocabulary::words(other) == crate::vocabulary::words(name) && !name.is_empty()
-        };
+        let same = |other: &str| !name.is_empty() && letters(other) == letters(name);
         let similar = || self.columns.iter().find(|(other, _)| same(other));
         named
             .or_else(similar)
@@ -466,6 +464,12 @@ impl Map {
         }
         out
     }
+}
+
+/// Returns the letters, digits and signs of a name, without case, blanks and brackets.
+fn letters(name: &str) -> String {
+    let is_kept = |c: &char| c.is_alphanumeric() || matches!(c, '+' | '-' | '%' | '°');
+    name.chars().filter(is_kept).flat_map(char::to_lowercase).collect()
 }
 
 /// Writes a number as TOML, with a fraction or an exponent.

@@ -72,6 +72,8 @@ pub struct ColumnUnderstanding {
     pub quantity: &'static str,
     /// Unit in the file.
     pub unit: &'static str,
+    /// Whether the unit follows from the values, because the file names none.
+    pub assumed: bool,
     /// Factor to the unit that is written.
     pub factor: f64,
     /// Reading at zero, in the unit that is written.
@@ -119,6 +121,7 @@ impl ColumnUnderstanding {
             } else {
                 column.unit.filter(|_| is_read).map_or("", |unit| unit.name)
             },
+            assumed: column.is_assumed && column.unit.is_some() && is_read,
             factor: column.factor.to_f64(),
             offset: column.offset.to_f64(),
             written_unit: column.quantity.base_unit(),
@@ -202,7 +205,7 @@ fn write_file(f: &mut fmt::Formatter<'_>, file: &FileUnderstanding) -> fmt::Resu
                 "" => column.quantity.replace('_', " "),
                 readings => format!("{}, {readings}", column.quantity),
             },
-            column.unit.to_owned(),
+            if column.assumed { format!("{} (assumed)", column.unit) } else { column.unit.to_owned() },
             conversion(column),
         ]);
     }

@@ -24,6 +24,7 @@ mod fit;
 mod formats;
 mod golden;
 mod implausible_tables;
+mod import;
 mod input_files;
 mod inverse;
 mod laboratories;

@@ -22,7 +22,7 @@ const PROGRAM: &[u8] = b"pinswitch";
 /// Digits of a hash that an error shows.
 const SHOWN_DIGITS: usize = 8;
 /// Commands whose files are out of date once their inputs change. Plans and simulated tables stay valid.
-const DERIVING: [&str; 2] = ["segment", "calibrate"];
+const DERIVING: [&str; 3] = ["import", "segment", "calibrate"];
 
 /// The content of a manifest.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

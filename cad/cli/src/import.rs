@@ -181,11 +181,12 @@ fn read_unpacked(path: &Path) -> Result<Vec<u8>, Failure> {
 /// Prompts for confirmation on a terminal. Scripts cannot answer: without a terminal, everything is
 /// certain here.
 fn is_confirmed(arguments: &Arguments) -> Result<bool, Failure> {
-    let is_terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
+    let is_terminal = std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
     if arguments.yes || arguments.json || !is_terminal {
         return Ok(true);
     }
-    print_text("Write this? [y/N] ")?;
+    // Standard output keeps a line without its end back.
+    print_line("write this? [y/N]");
     let mut answer = String::new();
     let read = std::io::stdin().lock().read_line(&mut answer);
     read.map_err(|e| Failure::failed(Diagnostic::new("cannot read the answer").with_source(e)))?;

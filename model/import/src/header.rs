@@ -29,7 +29,7 @@ pub(crate) struct Header {
 /// Whether a row is a comment.
 pub(crate) fn is_comment(sheet: &Sheet, row: usize) -> bool {
     let first = sheet.cell(row, 0);
-    first.starts_with(['#', '%', '!']) || first.starts_with("//")
+    first.starts_with(['#', '%', '!']) || first.starts_with("//") || is_rule(sheet, row)
 }
 
 /// What a cell shows about its row.
@@ -40,6 +40,12 @@ enum CellKind {
     /// A number with a unit: a reading, or a load in a name.
     WithUnit,
     Other,
+}
+
+/// Whether a row is a horizontal line under the names, such as `----,----`.
+fn is_rule(sheet: &Sheet, row: usize) -> bool {
+    let is_line = |cell: &str| cell.chars().all(|c| matches!(c, '-' | '=' | '_' | ':' | '+'));
+    sheet.row(row).all(is_line) && sheet.row(row).any(|cell| cell.len() >= 3)
 }
 
 fn cell_kind(cell: &str) -> CellKind {
@@ -242,6 +248,8 @@ mod tests {
             "Time,Force,Temp,Cell\nhh:mm:ss.f,N,degC,Wheatstone\n0:00:01.5,1.2,20,1\n0:00:01.6,1.3,20,1\n",
         );
         assert_eq!((format.names_row, format.units_row, format.first_data), (Some(0), Some(1), 2));
+        let rule = header("load_N,force_N\n-----,-----\n10,12\n");
+        assert_eq!((rule.names_row, rule.units_row, rule.first_data), (Some(0), None, 2));
         let comment = header("# rig 3\n# t,F\n0.0,1.2\n0.1,1.3\n");
         assert_eq!(
             (comment.names_row, comment.names.as_slice()),

@@ -256,6 +256,12 @@ const COMPOUNDS: [(&str, Quantity); 10] = [
 
 /// Returns the quantities that the words of a name may mean, most specific first.
 pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
+    // A torque, or how fast or how well something is measured.
+    const OTHER: [&str; 9] =
+        ["torque", "moment", "drehmoment", "couple", "coppia", "rate", "error", "uncertainty", "std"];
+    if words.iter().any(|word| OTHER.contains(&word.as_str())) {
+        return Vec::new();
+    }
     let joined = words.join(" ");
     // A load cell reads force; "x value" is the time axis of LVM.
     if joined.contains("load cell") {
@@ -502,7 +508,9 @@ mod tests {
         ] {
             assert_eq!(quantities(&words(name)).first(), Some(&quantity), "{name}");
         }
-        assert!(quantities(&words("Humidity")).is_empty());
+        for name in ["Humidity", "Load torque", "Sample rate"] {
+            assert!(quantities(&words(name)).is_empty(), "{name}");
+        }
     }
 
     #[test]

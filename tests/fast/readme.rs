@@ -1,5 +1,5 @@
-//! Runs every block of README and of cad/doc/tutorial.md, in order and in one folder, and compares
-//! its output.
+//! Runs every block of README, of cad/doc/tutorial.md and of model/doc/any-rig.md, in order and in
+//! one folder, and compares its output.
 
 use std::path::Path;
 
@@ -60,6 +60,11 @@ fn readme_blocks_match_their_output() {
     follow("README.md", 15, None);
 }
 
+#[test]
+fn rigs_of_the_document_have_their_friction_coefficients() {
+    follow("model/doc/any-rig.md", 9, None);
+}
+
 /// Uses a substitute slicer, for speed. The tutorial shows the table of the real one as text, which
 /// is not compared.
 #[cfg(unix)]
@@ -80,6 +85,9 @@ fn follow(document: &str, least: usize, slicer: Option<&Path>) {
         if entry.path().is_file() {
             std::fs::copy(entry.path(), folder.path().join("templates").join(entry.file_name())).unwrap();
         }
+    }
+    for entry in std::fs::read_dir(repository("model/doc/examples")).unwrap().map(Result::unwrap) {
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
     }
     let shown = commands(&readme);
     assert!(shown.len() >= least, "{document} shows {} commands", shown.len());

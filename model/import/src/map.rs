@@ -396,8 +396,13 @@ impl Map {
         let named = self.columns.iter().find(|(other, _)| other == name);
         let same = |other: &str| !name.is_empty() && letters(other) == letters(name);
         let similar = || self.columns.iter().find(|(other, _)| same(other));
+        // The name alone, of a column that is named with its unit: "torque" for "torque [Nm]".
+        let stem = name.split(['[', '(', '/']).next().unwrap_or_default();
+        let is_stem = |other: &str| !letters(stem).is_empty() && letters(other) == letters(stem);
+        let by_stem = || self.columns.iter().find(|(other, _)| is_stem(other));
         named
             .or_else(similar)
+            .or_else(by_stem)
             .or_else(|| self.columns.iter().find(|(other, _)| *other == number))
             .map(|(_, c)| c)
     }

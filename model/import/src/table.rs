@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pinswitch_friction::Direction;
 
-use crate::column::Column;
+use crate::column::{Column, reference};
 use crate::decimal::Decimal;
 use crate::file::FileReading;
 use crate::map::Map;
@@ -194,9 +194,37 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
             let readings = vec![
                 ("in newtons, the same in all rows".to_owned(), "load_N=10".to_owned()),
                 ("a mass, the same in all rows".to_owned(), "load_kg=1".to_owned()),
-                ("in a column".to_owned(), "column.NAME=load".to_owned()),
             ];
+            // A column of weights whose name is not known.
+            let is_weight = |c: &&Column| {
+                let known = c.unit.is_some_and(|unit| Quantity::Load.dimensions().contains(&unit.dimension));
+                c.quantity == Quantity::Ignore && known
+            };
+            let weights = file.columns.iter().filter(is_weight).map(reference);
+            let mut columns: Vec<String> = weights.collect();
+            if columns.is_empty() {
+                columns.push("NAME".to_owned());
+            }
+            let in_column =
+                columns.iter().map(|name| (format!("in column {name}"), format!("column.{name}=load")));
+            let readings = in_column.chain(readings);
             questions.push(Question::new(format!("{}: the load is not known", file.name), readings));
+        }
+        let is_angle = |c: &&Column| {
+            c.quantity == Quantity::Ignore && c.unit.is_some_and(|unit| unit.dimension == Dimension::Angle)
+        };
+        let has_angle = has(Quantity::WrapAngle)
+            || constant(file, map, "wrap_angle_deg").is_some()
+            || file.forces().all(|c| c.angle.is_some());
+        if let Some(column) =
+            file.columns.iter().find(|c| is_angle(c) && !c.is_decided).filter(|_| !has_angle)
+        {
+            let name = reference(column);
+            let readings = vec![
+                ("the wrap angle of the tendon".to_owned(), format!("column.{name}=wrap_angle")),
+                ("another angle, which does not matter".to_owned(), format!("column.{name}=ignore")),
+            ];
+            questions.push(Question::new(format!("column '{}' is an angle", column.name), readings));
         }
         let has_direction = has(Quantity::Direction)
             || constant(file, map, "direction").is_some()

@@ -55,6 +55,7 @@ mod design;
 mod design_search;
 mod facts;
 mod files;
+mod measurement_file;
 #[cfg(target_arch = "wasm32")]
 mod module;
 pub mod page;
@@ -124,6 +125,7 @@ impl Engine {
             Request::Zip { design } => self.with_files(&design, FileSet::zip),
             Request::Search(request) => design_search::answer(&request),
             Request::Model { toml, file } => Answer::json(&calibration::check_model(&toml, &file)),
+            Request::Import { data, file, set } => measurement_file::answer(&data, &file, &set),
             Request::Calibrate { csv, file } => calibration::answer(&csv, &file),
         }
     }

@@ -43,6 +43,8 @@ pub(crate) enum Request {
     Search(SearchRequest),
     /// Whether a text is a calibrated model.
     Model { toml: String, file: String },
+    /// What a dropped file of measurements contains: its bytes in base64, and values of its map.
+    Import { data: String, file: String, set: Vec<String> },
     /// A calibration with a table of measured plateaus.
     Calibrate { csv: String, file: String },
 }

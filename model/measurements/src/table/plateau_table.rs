@@ -157,6 +157,14 @@ impl PlateauTable {
         Ok(Self { rows, header, cells })
     }
 
+    /// Whether the first line of a text names the required columns of a plateau table.
+    pub fn has_header(text: &str) -> bool {
+        let first = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
+        let names: Vec<&str> = first.split(',').map(|name| name.trim().trim_matches('"')).collect();
+        let is_optional = |column: &str| Optional::ALL.iter().any(|quantity| quantity.column() == column);
+        COLUMNS.iter().all(|column| is_optional(column) || names.contains(column))
+    }
+
     /// Returns the columns that no calibration reads, in file order.
     pub fn ignored_columns(&self) -> Vec<String> {
         let known = |name: &str| COLUMNS.contains(&name) || LABELS.contains(&name) || name == WRAP_ANGLE;

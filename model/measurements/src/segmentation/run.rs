@@ -7,11 +7,14 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
 use serde::Serialize;
 
+use super::clock::SessionClock;
 use super::finding::Finding;
-use super::log::Log;
-use super::plateaus::{Segmented, segment};
+use super::log::{DeclaredLoad, Log};
+use super::moves::Source;
+use super::plateaus::{Motion, Segmented, segment};
 use super::run_plan::{RunPlan, SeriesPlan};
-use crate::table::{Labels, PlateauRow, Unknown};
+use crate::median::median;
+use crate::table::{Labels, Optional, PlateauRow, Sweep, Unknown};
 
 /// Name and version of the report's format.
 const SCHEMA: &str = "pinswitch.segmentation/1";
@@ -25,6 +28,10 @@ pub struct SegmentedSeries {
     pub eccentric: usize,
     /// Number of plateaus after a pull of the load.
     pub concentric: usize,
+    /// Kind of the motion.
+    pub motion: Motion,
+    /// Column that shows the moves.
+    pub source: Source,
     /// Defects of the log.
     pub findings: Vec<Finding>,
 }
@@ -32,6 +39,7 @@ pub struct SegmentedSeries {
 impl fmt::Display for SegmentedSeries {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {} eccentric, {} concentric", self.file, self.eccentric, self.concentric)?;
+        write!(f, "; {} by {}", self.motion.as_str(), self.source.as_str())?;
         self.findings.iter().try_for_each(|finding| write!(f, "; {finding}"))
     }
 }
@@ -60,52 +68,155 @@ pub struct RunSegmentation<'a> {
     plan: &'a RunPlan,
     rows: Vec<PlateauRow>,
     series: Vec<SegmentedSeries>,
-    /// Total duration in seconds of the logs added so far.
-    start_s: f64,
+    clock: SessionClock,
+    /// Names of the logs added so far.
+    files: Vec<String>,
+    /// Number of series in the table so far.
+    numbers: usize,
+    /// Start of the earliest log in seconds of the session.
+    first_s: f64,
 }
+
+/// Relative departure of a measured load or speed from the declared one that is a finding.
+const DEPARTURE: f64 = 0.05;
 
 impl<'a> RunSegmentation<'a> {
     /// Starts a segmentation.
     pub fn new(plan: &'a RunPlan) -> Self {
-        Self { plan, rows: Vec::new(), series: Vec::new(), start_s: 0.0 }
+        Self {
+            plan,
+            rows: Vec::new(),
+            series: Vec::new(),
+            clock: SessionClock::default(),
+            files: Vec::new(),
+            numbers: 0,
+            first_s: 0.0,
+        }
     }
 
-    /// Adds the log of the next series, in the order of the plan. Returns the log and its plateaus,
-    /// for a plot. `file` is the name of the log in errors.
+    /// Adds the logs of the next series, in the order of the plan: the text of each, and its name in
+    /// errors. Returns the joined log and its plateaus, for a plot.
     ///
     /// # Errors
-    /// As [`Log::parse`].
+    /// As [`Log::parse`] and [`segment`]; if the clock of a log overlaps that of another one; or if
+    /// neither the plan nor the log has a load.
     pub fn add(
         &mut self,
         series: &SeriesPlan,
-        text: &[u8],
-        file: &str,
+        logs: &[(Vec<u8>, String)],
     ) -> Result<(Log, Segmented), Diagnostic> {
-        let log = Log::parse(text, file)?;
-        let segmented = segment(&log, &self.plan.rig);
-        let number = self.series.len();
-        self.rows.extend(rows(self.plan, series, number, &segmented, self.start_s));
-        self.start_s += log.time_s.last().copied().unwrap_or(0.0);
+        let mut joined: Option<(Log, f64)> = None;
+        for (text, file) in logs {
+            let log = Log::parse_at(text, file, self.plan.rig.sample_rate_hz)?;
+            let start_s = self.start_s(&log, file)?;
+            match &mut joined {
+                None => joined = Some((log, start_s)),
+                Some((first, first_s)) => {
+                    let end_s = *first_s + first.time_s.last().copied().unwrap_or_default();
+                    // Two logs of one clock share no stamp.
+                    first.append(&log, (start_s - *first_s).max(end_s - *first_s + log.period_s()));
+                }
+            }
+        }
+        let file = logs.first().map_or("", |(_, file)| file);
+        let Some((log, start_s)) = joined else {
+            return Err(Diagnostic::new("the series has no log").with_location(Location::file(series.name())));
+        };
+        let segmented = self.add_parts(series, &log, start_s).map_err(|e| e.or_in_file(file))?;
         let count = |direction| segmented.plateaus.iter().filter(|p| p.direction == direction).count();
         self.series.push(SegmentedSeries {
-            file: series.file.clone(),
+            file: series.name().to_owned(),
             eccentric: count(Direction::Eccentric),
             concentric: count(Direction::Concentric),
+            motion: segmented.motion,
+            source: segmented.source,
             findings: segmented.findings.clone(),
         });
         Ok((log, segmented))
+    }
+
+    /// Returns the start of a log in seconds of the session.
+    fn start_s(&mut self, log: &Log, file: &str) -> Result<f64, Diagnostic> {
+        let length_s = log.time_s.last().copied().unwrap_or_default();
+        let start_s = self.clock.add(log.start_s, length_s).map_err(|overlap| {
+            let other = self.files.get(overlap.with).map_or("", String::as_str);
+            Diagnostic::new(format!("the clock overlaps that of '{other}'"))
+                .with_location(Location::file(file))
+                .with_help("list each log once, with stamps of one clock")
+        })?;
+        self.files.push(file.to_owned());
+        self.first_s = self.first_s.min(start_s);
+        Ok(start_s)
+    }
+
+    /// Segments a log, part by part if it has several loads, and adds the rows.
+    fn add_parts(&mut self, series: &SeriesPlan, log: &Log, start_s: f64) -> Result<Segmented, Diagnostic> {
+        let rig = &self.plan.rig;
+        let declared = series.load_mass_g.map(DeclaredLoad::MassG);
+        let parts: Vec<(Log, Option<DeclaredLoad>)> = if log.parts.is_empty() {
+            vec![(log.clone(), declared)]
+        } else {
+            log.parts.iter().map(|part| (log.part(part.samples.clone()), Some(part.load))).collect()
+        };
+        let mut all = Segmented { findings: log.clock.clone(), ..Segmented::default() };
+        for (part, load) in &parts {
+            if load.is_none() && part.load_n.is_none() {
+                return Err(Diagnostic::new("the load is missing").with_help(
+                    "give load_mass_g of the series, or a column load_mass_g, load_N or load_measured_N",
+                ));
+            }
+            let load = load.map(|load| load.with_hook(rig.hook_mass_g));
+            let mut segmented = segment(part, rig, load.map(|l| l.1))?;
+            let mut measured: Vec<f64> = segmented.plateaus.iter().filter_map(|p| p.load_n).collect();
+            let comparisons = [
+                ("load_N", load.map(|l| l.1), (!measured.is_empty()).then(|| median(&mut measured))),
+                (
+                    "speed_pct",
+                    series.speed_pct,
+                    segmented.speed_mm_s.zip(rig.full_speed_mm_s).map(|(speed, full)| 100.0 * speed / full),
+                ),
+            ];
+            for (field, declared, measured) in comparisons {
+                if let (Some(declared), Some(measured)) = (declared, measured)
+                    && (measured - declared).abs() > DEPARTURE * declared
+                {
+                    segmented.findings.push(Finding::Departure { field, declared, measured });
+                }
+            }
+            let sweep = series.sweep.map_or_else(|| self.sweep(load), Some);
+            self.rows.extend(rows(self.plan, series, self.numbers, &segmented, (start_s, load, sweep)));
+            self.numbers += 1;
+            all.plateaus.append(&mut segmented.plateaus);
+            all.moves.append(&mut segmented.moves);
+            all.findings.append(&mut segmented.findings);
+            (all.motion, all.source, all.speed_mm_s) =
+                (segmented.motion, segmented.source, segmented.speed_mm_s);
+        }
+        // The lines that are not samples belong to no part.
+        if !log.parts.is_empty() && log.unusable > 0 {
+            all.findings.push(Finding::UnusableLines { lines: log.unusable });
+        }
+        Ok(all)
+    }
+
+    /// Returns the order of the loads from the previous row; `None` for the first series.
+    fn sweep(&self, load: Option<(f64, f64)>) -> Option<Sweep> {
+        let (last, (_, load_n)) = self.rows.last().zip(load)?;
+        Some(if load_n < last.load_n { Sweep::Down } else { Sweep::Up })
     }
 
     /// Returns the table and the report. `file` is the name of the run's description in errors.
     ///
     /// # Errors
     /// If no log contains a plateau.
-    pub fn finish(self, file: &str) -> Result<SegmentedRun, Diagnostic> {
+    pub fn finish(mut self, file: &str) -> Result<SegmentedRun, Diagnostic> {
         if self.rows.is_empty() {
             return Err(Diagnostic::new("no log contains a plateau")
                 .with_location(Location::file(file))
-                .with_help("check that power_W exceeds 2 W while the actuator runs"));
+                .with_help("give logs with moves and rests, or with full cycles, that the power, the position or the force shows"));
         }
+        // The session starts with its earliest log, which need not be the first one of the plan.
+        self.rows.iter_mut().for_each(|row| row.time_s -= self.first_s);
         let report = SegmentationReport { schema: SCHEMA, series: self.series };
         Ok(SegmentedRun { rows: self.rows, report })
     }
@@ -158,39 +269,59 @@ pub fn segment_run<E: Error + Send + Sync + 'static>(
     let plan = RunPlan::parse(text, file)?;
     let mut run = RunSegmentation::new(&plan);
     for series in &plan.series {
-        let text = read(&series.file)
-            .map_err(|e| Diagnostic::from_error(e).with_location(Location::file(&series.file)))?;
-        run.add(series, &text, &series.file)?;
+        let mut logs = Vec::new();
+        for file in series.file_names() {
+            let text =
+                read(file).map_err(|e| Diagnostic::from_error(e).with_location(Location::file(file)))?;
+            logs.push((text, file.to_owned()));
+        }
+        run.add(series, &logs)?;
     }
     run.finish(file)
 }
 
-/// Converts the plateaus of one log to rows of the table; `start_s` is the start of the log in the
-/// session.
+/// Start of a log in seconds of the session, its declared load in grams and newtons, and the order
+/// of the loads.
+type Context = (f64, Option<(f64, f64)>, Option<Sweep>);
+
+/// Converts the plateaus of one log to rows of the table.
 fn rows<'a>(
     plan: &'a RunPlan,
     series: &'a SeriesPlan,
     number: usize,
     segmented: &'a Segmented,
-    start_s: f64,
+    (start_s, load, sweep): Context,
 ) -> impl Iterator<Item = PlateauRow> + 'a {
-    segmented.plateaus.iter().map(move |p| PlateauRow {
-        series: number.to_string(),
-        substrate: series.substrate,
-        pins: series.pins.clone(),
-        sweep: series.sweep,
-        load_mass_g: series.load_mass_g,
-        load_n: series.load_n(&plan.rig),
-        speed_pct: series.speed_pct,
-        dwell_s: plan.rig.dwell_s,
-        direction: p.direction,
-        repetition: p.repetition,
-        position_mm: p.position_mm,
-        time_s: start_s + p.time_s,
-        force_n: p.force_n,
-        wrap_angle_deg: plan.rig.wrap_angle_deg,
-        labels: Labels::default(),
-        unknown: Unknown::default(),
+    segmented.plateaus.iter().map(move |p| {
+        let mut unknown = Unknown::default();
+        for (quantity, is_known) in [
+            (Optional::Sweep, sweep.is_some()),
+            (Optional::LoadMass, load.is_some()),
+            (Optional::Speed, series.speed_pct.is_some()),
+            (Optional::Position, p.position_mm.is_some()),
+        ] {
+            if !is_known {
+                unknown = unknown.with(quantity);
+            }
+        }
+        PlateauRow {
+            series: number.to_string(),
+            substrate: series.substrate,
+            pins: series.pins.clone(),
+            sweep: sweep.unwrap_or(Sweep::Up),
+            load_mass_g: load.map_or(0.0, |l| l.0),
+            load_n: p.load_n.or(load.map(|l| l.1)).unwrap_or_default(),
+            speed_pct: series.speed_pct.unwrap_or_default(),
+            dwell_s: p.dwell_s,
+            direction: p.direction,
+            repetition: p.repetition,
+            position_mm: p.position_mm.unwrap_or_default(),
+            time_s: start_s + p.time_s,
+            force_n: p.force_n,
+            wrap_angle_deg: plan.rig.wrap_angle_deg,
+            labels: Labels::default(),
+            unknown,
+        }
     })
 }
 

@@ -1,0 +1,105 @@
+//! Continuous cycles: strokes without rests, such as triangles and sines.
+
+use super::log::Log;
+use super::moves::{Move, moving};
+use super::two_levels::{noise, without_spikes};
+use crate::median::median;
+
+/// Share of the time in motion from which a log has cycles.
+const MOVING_SHARE: f64 = 0.8;
+/// Most motions per half-cycle: strokes in steps have more.
+const MOTIONS_PER_HALF_CYCLE: f64 = 1.5;
+/// Reversal of the position, as a share of its range, that ends a half-cycle.
+const REVERSAL_SHARE: f64 = 0.1;
+/// Part of the stroke over which the force is averaged: its middle half.
+const MIDDLE: (f64, f64) = (0.25, 0.75);
+
+/// Middle part of a half-cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct HalfCycle {
+    /// Whole half-cycle.
+    pub(super) stroke: Move,
+    /// Samples in the middle part of the stroke.
+    pub(super) middle: std::ops::Range<usize>,
+    /// Travel in millimetres.
+    pub(super) travel_mm: f64,
+    /// Position at the centre of the middle part in millimetres.
+    pub(super) centre_mm: f64,
+}
+
+/// Returns the half-cycles of a log, or `None` if its strokes have rests.
+///
+/// All half-cycles have the same middle part, so that both branches are read at the same positions.
+/// A half-cycle that does not cover it, such as the first one, is left out.
+pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
+    let position_mm = log.position_mm.as_ref()?;
+    let is_moving = moving(log, position_mm)?;
+    let (first, last) = (is_moving.iter().position(|m| *m)?, is_moving.iter().rposition(|m| *m)?);
+    let moving_count = is_moving[first..=last].iter().filter(|m| **m).count();
+    let motions = is_moving.windows(2).filter(|w| !w[0] && w[1]).count() + usize::from(is_moving[0]);
+    let position = without_spikes(position_mm);
+    let turns = turning_points(&position[first..=last]);
+    let strokes: Vec<Move> =
+        turns.windows(2).map(|w| Move { from: first + w[0], to: first + w[1] + 1 }).collect();
+    let is_continuous = moving_count as f64 > MOVING_SHARE * (last + 1 - first) as f64;
+    if !is_continuous || strokes.len() < 2 || motions as f64 > MOTIONS_PER_HALF_CYCLE * strokes.len() as f64 {
+        return None;
+    }
+    let ends = |is_high: bool| {
+        let mut ends: Vec<f64> = (strokes.iter())
+            .map(|s| (position[s.from], position[s.to - 1]))
+            .map(|(a, b)| if is_high { a.max(b) } else { a.min(b) })
+            .collect();
+        median(&mut ends)
+    };
+    let (low, high) = (ends(false), ends(true));
+    let (from_mm, to_mm) = (low + MIDDLE.0 * (high - low), low + MIDDLE.1 * (high - low));
+    let halves = strokes.into_iter().filter_map(|stroke| {
+        let (start_mm, end_mm) = (position[stroke.from], position[stroke.to - 1]);
+        if start_mm.min(end_mm) > from_mm || start_mm.max(end_mm) < to_mm {
+            return None;
+        }
+        let is_inside = |i: &usize| (from_mm..=to_mm).contains(&position[*i]);
+        let from = (stroke.from..stroke.to).find(is_inside)?;
+        let to = (stroke.from..stroke.to).rfind(is_inside)? + 1;
+        let centre_mm = 0.5 * (from_mm + to_mm);
+        Some(HalfCycle { stroke, middle: from..to, travel_mm: end_mm - start_mm, centre_mm })
+    });
+    Some(halves.collect())
+}
+
+/// Returns the indices of the first and last value and of the reversals between them.
+fn turning_points(position_mm: &[f64]) -> Vec<usize> {
+    let low = position_mm.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = position_mm.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let bound = (REVERSAL_SHARE * (high - low)).max(6.0 * noise(position_mm));
+    let mut turns = vec![0];
+    let (mut lowest, mut highest, mut rises) = (0, 0, None);
+    for (i, x) in position_mm.iter().enumerate() {
+        if *x > position_mm[highest] {
+            highest = i;
+        }
+        if *x < position_mm[lowest] {
+            lowest = i;
+        }
+        if rises != Some(false) && position_mm[highest] - x > bound {
+            if rises.is_some() || highest > 0 {
+                turns.push(highest);
+            }
+            (rises, lowest) = (Some(false), i);
+        } else if rises != Some(true) && x - position_mm[lowest] > bound {
+            if rises.is_some() || lowest > 0 {
+                turns.push(lowest);
+            }
+            (rises, highest) = (Some(true), i);
+        }
+        match rises {
+            Some(true) => lowest = i,
+            Some(false) => highest = i,
+            None => {}
+        }
+    }
+    turns.push(position_mm.len() - 1);
+    turns.dedup();
+    turns
+}

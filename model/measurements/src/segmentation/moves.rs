@@ -1,0 +1,232 @@
+//! Moves of the actuator, from its power, its position, or the force alone.
+
+use serde::Serialize;
+
+use super::change_points::{change_points, is_relaxation};
+use super::log::Log;
+use super::two_levels::{noise, two_levels, without_spikes};
+use crate::median::median;
+
+/// Column from which the moves of a log were found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Power of the actuator.
+    Power,
+    /// Position of the actuator.
+    Position,
+    /// Force.
+    #[default]
+    Force,
+}
+
+impl Source {
+    /// Returns the word of reports.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Power => "power",
+            Self::Position => "position",
+            Self::Force => "force",
+        }
+    }
+}
+
+/// An interval in which the actuator runs: sample indices, with the end excluded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Move {
+    pub(super) from: usize,
+    pub(super) to: usize,
+}
+
+/// Least share of the variance between two levels: 0.75 is that of a uniform distribution.
+const TWO_LEVELS_SHARE: f64 = 0.8;
+/// Least distance of two levels in standard deviations of the noise.
+const LEVELS_NOISE: f64 = 6.0;
+/// Gaps in a move, as a share of the usual length, that are closed; shorter moves are dropped.
+const GAP_SHARE: f64 = 0.2;
+const SHORTEST_SHARE: f64 = 0.4;
+/// Length in seconds over which the force is averaged before its change points are located.
+const BLOCK_S: f64 = 0.05;
+/// Most blocks of a log.
+const MAX_BLOCKS: usize = 40_000;
+/// Shortest rest in seconds, and fewest blocks of one, that the force can show.
+const SHORTEST_REST_S: f64 = 0.3;
+const SHORTEST_REST_BLOCKS: usize = 4;
+/// Share of the usual rest below which a steady interval belongs to the settling after a move.
+const SETTLING_SHARE: f64 = 0.4;
+
+/// Returns the moves of a log, and the column that shows them.
+pub(super) fn moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> (Vec<Move>, Source) {
+    let by_position = log.position_mm.as_ref().and_then(|x| position_moves(log, x));
+    let by_power = log.power_w.as_ref().and_then(|w| power_moves(log, w));
+    match (by_power, by_position) {
+        (Some(power), Some(position)) => {
+            // A column that does not follow the actuator, such as the power of another device.
+            let position_mm = log.position_mm.as_deref().unwrap_or_default();
+            let travel = |moves: &[Move]| moves.iter().map(|m| travelled(position_mm, *m)).sum::<f64>();
+            if travel(&power) >= 0.5 * travel(&position) {
+                (power, Source::Power)
+            } else {
+                (position, Source::Position)
+            }
+        }
+        (Some(power), None) => (power, Source::Power),
+        (None, Some(position)) => (position, Source::Position),
+        (None, None) => (force_moves(log, on_s, dwell_s), Source::Force),
+    }
+}
+
+/// Returns the length of the way between the neighbours of a move in millimetres.
+fn travelled(position_mm: &[f64], m: Move) -> f64 {
+    (position_mm[m.to.min(position_mm.len() - 1)] - position_mm[m.from.saturating_sub(1)]).abs()
+}
+
+/// Returns the moves by a power above the threshold between its two levels; `None` without two
+/// levels.
+fn power_moves(log: &Log, power_w: &[f64]) -> Option<Vec<Move>> {
+    let power: Vec<f64> = without_spikes(power_w).into_iter().map(f64::abs).collect();
+    let levels = two_levels(&power)?;
+    let is_clear =
+        levels.between_share > TWO_LEVELS_SHARE && levels.high - levels.low > LEVELS_NOISE * noise(&power);
+    let moves = is_clear.then(|| intervals(log, |i| power[i] > levels.threshold))?;
+    (!moves.is_empty()).then_some(moves)
+}
+
+/// Returns the moves by the speed of the position; `None` if it does not move.
+fn position_moves(log: &Log, position_mm: &[f64]) -> Option<Vec<Move>> {
+    let is_moving = moving(log, position_mm)?;
+    let moves = intervals(log, |i| is_moving[i]);
+    (!moves.is_empty()).then_some(moves)
+}
+
+/// Half windows in seconds of a speed: the first over which the position visibly moves is used.
+const HALF_WINDOWS_S: [f64; 3] = [0.05, 0.2, 0.8];
+/// Least share of the samples with a visible motion.
+const MOVING_SAMPLES: f64 = 0.002;
+/// Share of the usual speed above which the position moves.
+const SLOW_SHARE: f64 = 0.2;
+
+/// Returns whether the position moves at each sample; `None` if it never does.
+pub(super) fn moving(log: &Log, position_mm: &[f64]) -> Option<Vec<bool>> {
+    let position = without_spikes(position_mm);
+    let bound = LEVELS_NOISE * std::f64::consts::SQRT_2 * noise(&position);
+    let last = position.len() - 1;
+    HALF_WINDOWS_S.into_iter().find_map(|half_s| {
+        let half = samples_in(log, half_s);
+        let step = |i: usize| (position[(i + half).min(last)] - position[i.saturating_sub(half)]).abs();
+        let steps: Vec<f64> = (0..position.len()).map(step).collect();
+        let mut fast: Vec<f64> = steps.iter().copied().filter(|d| *d > bound).collect();
+        if (fast.len() as f64) < (MOVING_SAMPLES * steps.len() as f64).max(2.0) {
+            return None;
+        }
+        let threshold = bound.max(SLOW_SHARE * median(&mut fast));
+        Some(steps.iter().map(|d| *d > threshold).collect())
+    })
+}
+
+/// Returns the number of samples in a time, at least one.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive and limited")]
+fn samples_in(log: &Log, seconds: f64) -> usize {
+    (seconds / log.period_s().max(1e-9)).round().clamp(1.0, 1e6) as usize
+}
+
+/// Returns the intervals in which the actuator runs; short interruptions are closed and short
+/// bursts are dropped, in terms of the usual length.
+fn intervals(log: &Log, runs: impl Fn(usize) -> bool) -> Vec<Move> {
+    let mut moves: Vec<Move> = Vec::new();
+    for i in (0..log.time_s.len()).filter(|i| runs(*i)) {
+        match moves.last_mut() {
+            Some(last) if last.to == i && !log.breaks.contains(&i) => last.to = i + 1,
+            _ => moves.push(Move { from: i, to: i + 1 }),
+        }
+    }
+    // The samples that a logger loses while the motor starts belong to the move.
+    let length_s = |m: &Move| stop_s(log, *m) - log.time_s[m.from.saturating_sub(1)];
+    let mut usual_s = usual(moves.iter().map(length_s).collect());
+    for _ in 0..2 {
+        let mut closed: Vec<Move> = Vec::new();
+        for m in &moves {
+            match closed.last_mut() {
+                Some(last)
+                    if log.time_s[m.from] - log.time_s[last.to - 1] < GAP_SHARE * usual_s
+                        && !log.breaks.iter().any(|b| (last.to..=m.from).contains(b)) =>
+                {
+                    last.to = m.to;
+                }
+                _ => closed.push(*m),
+            }
+        }
+        moves = closed;
+        usual_s = usual(moves.iter().map(length_s).collect());
+    }
+    moves.retain(|m| length_s(m) > SHORTEST_SHARE * usual_s);
+    moves
+}
+
+/// Returns the time in seconds at which a move has ended: that of the first sample after it, unless
+/// samples are lost there.
+pub(super) fn stop_s(log: &Log, m: Move) -> f64 {
+    let last_s = log.time_s[m.to - 1];
+    let next_s = log.time_s.get(m.to).copied().filter(|_| !log.breaks.contains(&m.to)).unwrap_or(last_s);
+    if next_s - last_s < 5.0 * log.period_s() { next_s } else { last_s }
+}
+
+/// Returns the median of lengths, weighted by the lengths: half of the total is in longer ones.
+fn usual(mut lengths: Vec<f64>) -> f64 {
+    lengths.sort_by(f64::total_cmp);
+    let half = 0.5 * lengths.iter().sum::<f64>();
+    let mut sum = 0.0;
+    lengths
+        .iter()
+        .copied()
+        .find(|length| {
+            sum += length;
+            sum >= half
+        })
+        .unwrap_or(0.0)
+}
+
+/// Returns the moves by the change points of the force. The end of a move is not visible in the
+/// force: it ends `on_s` after its start, if that is declared, and otherwise where the force is
+/// steady.
+fn force_moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> Vec<Move> {
+    let force = without_spikes(&log.force_n);
+    let size = samples_in(log, BLOCK_S).max(force.len().div_ceil(MAX_BLOCKS));
+    let blocks: Vec<f64> = force.chunks(size).map(|b| b.iter().sum::<f64>() / b.len() as f64).collect();
+    let noise_n = noise(&blocks).max(1e-6);
+    let mut ends = change_points(&blocks, noise_n);
+    ends.push(blocks.len());
+    let time = |block: usize| log.time_s[(block * size).min(log.time_s.len() - 1)];
+    let is_steady = |from: usize, to: usize| {
+        to - from >= SHORTEST_REST_BLOCKS && time(to) - time(from) >= SHORTEST_REST_S
+    };
+    let mut rests: Vec<(usize, usize)> = Vec::new();
+    let mut from = 0;
+    for to in ends {
+        if is_steady(from, to) {
+            match rests.last_mut() {
+                Some(last)
+                    if last.1 == from && is_relaxation(&blocks[last.0..to], from - last.0, noise_n) =>
+                {
+                    last.1 = to;
+                }
+                _ => rests.push((from, to)),
+            }
+        }
+        from = to;
+    }
+    let length_s = |rest: &(usize, usize)| time(rest.1) - time(rest.0);
+    let usual_s = usual(rests.iter().map(length_s).collect()).min(dwell_s.unwrap_or(f64::INFINITY));
+    rests.retain(|rest| length_s(rest) >= SETTLING_SHARE * usual_s);
+    let mut moves = Vec::new();
+    for pair in rests.windows(2) {
+        let from = (pair[0].1 * size).min(log.time_s.len() - 1);
+        let steady = (pair[1].0 * size).clamp(from + 1, log.time_s.len());
+        let to = on_s.map_or(steady, |on_s| {
+            let end_s = log.time_s[from] + on_s;
+            log.time_s.partition_point(|t| *t < end_s).clamp(from + 1, (pair[1].1 * size).max(from + 1))
+        });
+        moves.push(Move { from, to: to.min(log.time_s.len()) });
+    }
+    moves
+}

@@ -7,8 +7,10 @@ use crate::median::median;
 
 /// Share of the time in motion from which a log has cycles.
 const MOVING_SHARE: f64 = 0.8;
-/// Most motions per half-cycle: strokes in steps have more.
-const MOTIONS_PER_HALF_CYCLE: f64 = 1.5;
+/// Most stops per half-cycle, and the least share of one that a stop takes: strokes in steps have
+/// more.
+const STOPS_PER_HALF_CYCLE: f64 = 1.5;
+const STOP_SHARE: f64 = 0.02;
 /// Reversal of the position, as a share of its range, that ends a half-cycle.
 const REVERSAL_SHARE: f64 = 0.1;
 /// Part of the stroke over which the force is averaged: its middle half.
@@ -36,13 +38,16 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
     let is_moving = moving(log, position_mm)?;
     let (first, last) = (is_moving.iter().position(|m| *m)?, is_moving.iter().rposition(|m| *m)?);
     let moving_count = is_moving[first..=last].iter().filter(|m| **m).count();
-    let motions = is_moving.windows(2).filter(|w| !w[0] && w[1]).count() + usize::from(is_moving[0]);
     let position = without_spikes(position_mm);
     let turns = turning_points(&position[first..=last]);
     let strokes: Vec<Move> =
         turns.windows(2).map(|w| Move { from: first + w[0], to: first + w[1] + 1 }).collect();
     let is_continuous = moving_count as f64 > MOVING_SHARE * (last + 1 - first) as f64;
-    if !is_continuous || strokes.len() < 2 || motions as f64 > MOTIONS_PER_HALF_CYCLE * strokes.len() as f64 {
+    let mut lengths: Vec<f64> = strokes.iter().map(|s| (s.to - s.from) as f64).collect();
+    let shortest = STOP_SHARE * median(&mut lengths);
+    let stops = is_moving[first..=last].chunk_by(|a, b| a == b);
+    let stops = stops.filter(|run| !run[0] && run.len() as f64 > shortest).count();
+    if !is_continuous || strokes.len() < 2 || stops as f64 > STOPS_PER_HALF_CYCLE * strokes.len() as f64 {
         return None;
     }
     let ends = |is_high: bool| {

@@ -71,6 +71,11 @@ pub enum Finding {
         /// Measured value.
         measured: f64,
     },
+    /// Moves that leave the force unchanged, and are where the declared schedule has them.
+    ScheduledMoves {
+        /// Number of moves.
+        moves: usize,
+    },
     /// A position that decreases when the load is released.
     ReversedPosition,
     /// Plateaus without load, which are left out.
@@ -127,6 +132,9 @@ impl fmt::Display for Finding {
             }
             Self::Departure { field, declared, measured } => {
                 write!(f, "{field} = {declared} declared, {measured:.4} measured")
+            }
+            Self::ScheduledMoves { moves } => {
+                write!(f, "{moves} moves placed by rig.on_s and rig.dwell_s: the force does not show them")
             }
             Self::ReversedPosition => write!(f, "the position decreases when the load is released"),
             Self::Unloaded { plateaus } => write!(f, "{plateaus} plateaus without load left out"),

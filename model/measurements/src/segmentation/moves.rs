@@ -55,11 +55,29 @@ const SHORTEST_REST_BLOCKS: usize = 4;
 /// Share of the usual rest below which a steady interval belongs to the settling after a move.
 const SETTLING_SHARE: f64 = 0.4;
 
-/// Returns the moves of a log, and the column that shows them.
-pub(super) fn moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> (Vec<Move>, Source) {
+/// Declared lengths of a move and of the rest after it, in seconds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Schedule {
+    pub(super) on_s: Option<f64>,
+    pub(super) dwell_s: Option<f64>,
+}
+
+/// Moves of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Moves {
+    /// Moves in the order of time.
+    pub(super) all: Vec<Move>,
+    /// Column that shows them.
+    pub(super) source: Source,
+    /// Number of moves that only the declared schedule shows.
+    pub(super) scheduled: usize,
+}
+
+/// Finds the moves of a log.
+pub(super) fn moves(log: &Log, schedule: Schedule) -> Moves {
     let by_position = log.position_mm.as_ref().and_then(|x| position_moves(log, x));
     let by_power = log.power_w.as_ref().and_then(|w| power_moves(log, w));
-    match (by_power, by_position) {
+    let (all, source) = match (by_power, by_position) {
         (Some(power), Some(position)) => {
             // A column that does not follow the actuator, such as the power of another device.
             let position_mm = log.position_mm.as_deref().unwrap_or_default();
@@ -72,8 +90,14 @@ pub(super) fn moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> (Vec<
         }
         (Some(power), None) => (power, Source::Power),
         (None, Some(position)) => (position, Source::Position),
-        (None, None) => (force_moves(log, on_s, dwell_s), Source::Force),
-    }
+        (None, None) => {
+            let visible = force_moves(log, schedule);
+            let all = scheduled_moves(log, &visible, schedule);
+            let scheduled = all.len() - visible.len();
+            return Moves { all, source: Source::Force, scheduled };
+        }
+    };
+    Moves { all, source, scheduled: 0 }
 }
 
 /// Returns the length of the way between the neighbours of a move in millimetres.
@@ -189,7 +213,7 @@ fn usual(mut lengths: Vec<f64>) -> f64 {
 /// Returns the moves by the change points of the force. The end of a move is not visible in the
 /// force: it ends `on_s` after its start, if that is declared, and otherwise where the force is
 /// steady.
-fn force_moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> Vec<Move> {
+fn force_moves(log: &Log, schedule: Schedule) -> Vec<Move> {
     let force = without_spikes(&log.force_n);
     let size = samples_in(log, BLOCK_S).max(force.len().div_ceil(MAX_BLOCKS));
     let blocks: Vec<f64> = force.chunks(size).map(|b| b.iter().sum::<f64>() / b.len() as f64).collect();
@@ -216,17 +240,107 @@ fn force_moves(log: &Log, on_s: Option<f64>, dwell_s: Option<f64>) -> Vec<Move> 
         from = to;
     }
     let length_s = |rest: &(usize, usize)| time(rest.1) - time(rest.0);
-    let usual_s = usual(rests.iter().map(length_s).collect()).min(dwell_s.unwrap_or(f64::INFINITY));
+    let usual_s = usual(rests.iter().map(length_s).collect()).min(schedule.dwell_s.unwrap_or(f64::INFINITY));
     rests.retain(|rest| length_s(rest) >= SETTLING_SHARE * usual_s);
     let mut moves = Vec::new();
+    // A log that starts with the motor has a step before its first rest.
+    if let Some((start, end)) = rests.first().filter(|rest| rest.0 > 0) {
+        let level = blocks[*start..*end].iter().sum::<f64>() / (end - start) as f64;
+        if (blocks[0] - level).abs() > LEVELS_NOISE * noise_n {
+            moves.push(Move { from: 0, to: (start * size).clamp(1, log.time_s.len()) });
+        }
+    }
     for pair in rests.windows(2) {
         let from = (pair[0].1 * size).min(log.time_s.len() - 1);
         let steady = (pair[1].0 * size).clamp(from + 1, log.time_s.len());
-        let to = on_s.map_or(steady, |on_s| {
+        let to = schedule.on_s.map_or(steady, |on_s| {
             let end_s = log.time_s[from] + on_s;
             log.time_s.partition_point(|t| *t < end_s).clamp(from + 1, (pair[1].1 * size).max(from + 1))
         });
         moves.push(Move { from, to: to.min(log.time_s.len()) });
     }
     moves
+}
+
+/// Departure of an interval between visible moves from a multiple of the declared period, as a share
+/// of the period, up to which it contains moves without a pause.
+const SCHEDULE_SLACK: f64 = 0.2;
+
+/// Share of the scheduled moves that is visible: from the first on, a longer interval is a missing
+/// move, and from the second on, an irregular interval is a pause.
+const ALL_VISIBLE: f64 = 0.88;
+const MOST_VISIBLE: f64 = 0.6;
+/// Share of the intervals that may depart from the schedule, in addition to one at the reversal.
+const IRREGULAR_SHARE: f64 = 0.25;
+
+/// Adds the moves that leave the force unchanged, where the declared schedule has them: between two
+/// visible moves, before the first and after the last. Before the first, the time of a rest is left
+/// for the start of the log and a pause at the reversal.
+fn scheduled_moves(log: &Log, visible: &[Move], schedule: Schedule) -> Vec<Move> {
+    let (Some(on_s), Some(dwell_s)) = (schedule.on_s, schedule.dwell_s) else { return visible.to_vec() };
+    let (Some(first), Some(end_s)) = (visible.first(), log.time_s.last()) else { return Vec::new() };
+    let period_s = on_s + dwell_s;
+    let start_s = |m: &Move| log.time_s[m.from];
+    let ends_s: Vec<f64> = visible.iter().map(start_s).chain([*end_s]).collect();
+    let visible_share = visible_share(&ends_s, period_s);
+    if visible_share > ALL_VISIBLE {
+        return visible.to_vec();
+    }
+    let mut moves = Vec::new();
+    let mut add = |start_s: f64| {
+        let from = log.time_s.partition_point(|t| *t < start_s);
+        let to = log.time_s.partition_point(|t| *t < start_s + on_s).max(from + 1);
+        if to < log.time_s.len() && !log.breaks.iter().any(|b| (from..=to).contains(b)) {
+            moves.push(Move { from, to });
+        }
+    };
+    let fills_pauses = visible_share < MOST_VISIBLE;
+    let lead_s = start_s(first) - log.time_s[0] - dwell_s;
+    for i in (1..=whole(lead_s / period_s)).rev().filter(|_| fills_pauses) {
+        add(start_s(first) - f64::from(i) * period_s);
+    }
+    for (i, pair) in ends_s.windows(2).enumerate() {
+        let periods = (pair[1] - pair[0]) / period_s;
+        let is_last = i + 2 == ends_s.len();
+        let (count, step_s) = if is_regular(periods) && !is_last {
+            (whole(periods.round()), (pair[1] - pair[0]) / periods.round())
+        } else if fills_pauses {
+            (whole(periods + SCHEDULE_SLACK), period_s)
+        } else {
+            continue;
+        };
+        for j in 1..count {
+            add(pair[0] + f64::from(j) * step_s);
+        }
+    }
+    moves.extend_from_slice(visible);
+    moves.sort_by_key(|m| m.from);
+    moves.dedup_by_key(|m| m.from);
+    moves
+}
+
+/// Whether an interval is a multiple of the declared period.
+fn is_regular(periods: f64) -> bool {
+    periods > 0.5 && (periods - periods.round()).abs() <= SCHEDULE_SLACK
+}
+
+/// Returns the share of the scheduled moves that is visible, from the starts of the visible moves
+/// and the end of the log; 1 if they contradict the schedule.
+fn visible_share(ends_s: &[f64], period_s: f64) -> f64 {
+    let intervals: Vec<f64> = ends_s.windows(2).map(|w| (w[1] - w[0]) / period_s).collect();
+    let Some((last, between)) = intervals.split_last() else { return 1.0 };
+    let regular: Vec<f64> = between.iter().filter(|p| is_regular(**p)).map(|p| p.round()).collect();
+    let irregular = (between.len() - regular.len()) as f64;
+    if irregular > 1.0 + IRREGULAR_SHARE * between.len() as f64 {
+        return 1.0;
+    }
+    // The last move is visible.
+    let scheduled = regular.iter().sum::<f64>() + f64::from(whole(last + SCHEDULE_SLACK).max(1));
+    (regular.len() as f64 + 1.0) / scheduled
+}
+
+/// Returns the whole part of a positive number; zero for others.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive and limited")]
+fn whole(number: f64) -> u32 {
+    number.clamp(0.0, 1e6).floor() as u32
 }

@@ -11,7 +11,7 @@ use super::cycles::{HalfCycle, half_cycles};
 use super::direction::{ACCEPTED, Evidence, directions};
 use super::finding::Finding;
 use super::log::Log;
-use super::moves::{Move, Source, moves, stop_s};
+use super::moves::{Move, Moves, Schedule, Source, moves, stop_s};
 use super::run_plan::Rig;
 use super::two_levels::noise;
 use crate::median::median;
@@ -145,9 +145,13 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
         out.source = Source::Position;
         cycle_readings(log, &halves, &mut spikes, &mut out.findings)
     } else {
-        let (all, source) = moves(log, rig.on_s, rig.dwell_s);
+        let Moves { all, source, scheduled } = moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
         out.source = source;
+        if scheduled > 0 {
+            out.findings.push(Finding::ScheduledMoves { moves: scheduled });
+        }
         let usual_s = usual_rest(log, &all, rig);
+        refuse_hidden_moves(log, rig, &all, source, usual_s)?;
         declared_times(log, rig, &all, usual_s, source, &mut out.findings);
         let noise_mm = log.position_mm.as_ref().map_or(0.0, |x| noise(x));
         let rest = Rests { log, moves: &all, usual_s, source, noise_mm };
@@ -250,6 +254,32 @@ fn usual_rest(log: &Log, moves: &[Move], rig: &Rig) -> Option<f64> {
 fn rest_before_s(log: &Log, from: usize) -> f64 {
     let last_s = log.time_s[from.saturating_sub(1)];
     log.time_s[from].min(last_s + 1.5 * log.period_s())
+}
+
+/// Share of the declared moves that the force must show if its moves are irregular.
+const VISIBLE_MOVES: f64 = 0.7;
+
+/// Refuses a log whose force does not show enough of the declared moves.
+fn refuse_hidden_moves(
+    log: &Log,
+    rig: &Rig,
+    moves: &[Move],
+    source: Source,
+    usual_s: Option<f64>,
+) -> Result<(), Diagnostic> {
+    let (Some(on_s), Some(dwell_s), Some(end_s)) = (rig.on_s, rig.dwell_s, log.time_s.last()) else {
+        return Ok(());
+    };
+    let scheduled = ((end_s - log.time_s[0]) / (on_s + dwell_s)).floor();
+    let is_regular = usual_s.is_some() && moves.len() > 3;
+    if source != Source::Force || is_regular || moves.len() as f64 >= VISIBLE_MOVES * scheduled {
+        return Ok(());
+    }
+    Err(Diagnostic::new(format!(
+        "the force shows {} moves, rig.on_s and rig.dwell_s declare about {scheduled}: the others leave it unchanged",
+        moves.len()
+    ))
+    .with_help("add a column position_mm or power_W to the log"))
 }
 
 /// Compares the declared times with the measured ones.

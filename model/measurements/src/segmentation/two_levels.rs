@@ -58,13 +58,19 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     (1.4826 * median(&mut steps) / std::f64::consts::SQRT_2).max(floor)
 }
 
-/// Returns the values after a running median of three, which removes single spikes.
+/// Distance of a spike from the median of its neighbourhood, in standard deviations of the noise.
+const SPIKE: f64 = 5.0;
+
+/// Returns the values without single spikes: a value far from the median of three is replaced by it.
+/// Other values stay, since a running median would correlate their noise.
 pub(super) fn without_spikes(values: &[f64]) -> Vec<f64> {
+    let bound = SPIKE * noise(values);
     let at = |i: usize| values[i.min(values.len() - 1)];
     (0..values.len())
         .map(|i| {
             let (a, b, c) = (at(i.saturating_sub(1)), at(i), at(i + 1));
-            a.max(b).min(a.min(b).max(c))
+            let middle = a.max(b).min(a.min(b).max(c));
+            if (b - middle).abs() > bound { middle } else { b }
         })
         .collect()
 }
@@ -84,7 +90,14 @@ mod tests {
 
     #[test]
     fn spikes_are_removed_and_steps_stay() {
-        assert_eq!(without_spikes(&[1.0, 9.0, 1.0, 1.0, 5.0, 5.0]), [1.0, 1.0, 1.0, 1.0, 5.0, 5.0]);
+        let mut values: Vec<f64> =
+            (0..40).map(|i| f64::from(i % 3) + if i < 20 { 0.0 } else { 50.0 }).collect();
+        let clean = values.clone();
+        values[7] = 90.0;
+        let mut expected = clean.clone();
+        expected[7] = 2.0;
+        assert_eq!(without_spikes(&values), expected);
+        assert_eq!(without_spikes(&clean), clean);
         assert!((noise(&[0.0, 1.0, 0.0, 1.0]) - 1.4826 / 2f64.sqrt()).abs() < 1e-12);
     }
 }

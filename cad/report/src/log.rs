@@ -20,6 +20,11 @@ const CONCENTRIC: RGBColor = RGBColor(0, 90, 156);
 const LEFT_OUT: RGBColor = RGBColor(200, 0, 60);
 /// Opacity of the band of a move, so that the curve remains visible.
 const BAND_OPACITY: f64 = 0.25;
+/// Distance of the crosses from the upper end of the figure, as a share of its height.
+const CROSS_SHARE: f64 = 0.06;
+/// Places of the legend in pixels.
+const LEGEND_X: [i32; 3] = [70, 160, 255];
+const LEGEND_Y: i32 = 20;
 /// Least width of the band of a move, as a share of the log.
 const MIN_BAND: f64 = 0.003;
 
@@ -57,7 +62,6 @@ fn draw(svg: &mut String, name: &str, log: &Log, segmented: &Segmented) -> Resul
     let pad = 0.25 * (most - least).abs().max(0.5);
     let (bottom, top) = (least - pad, most + pad);
     let end = log.time_s.last().copied().unwrap_or(1.0);
-    let left_out = segmented.moves.iter().filter(|m| m.direction.is_none()).count();
     let title = format!("{name}: {} by {}", segmented.motion.as_str(), segmented.source.as_str());
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
@@ -73,33 +77,29 @@ fn draw(svg: &mut String, name: &str, log: &Log, segmented: &Segmented) -> Resul
         Rectangle::new([(m.from_s, bottom), (to_s, top)], colour(m.direction).mix(BAND_OPACITY).filled())
     }))?;
     chart.draw_series(LineSeries::new(line, FORCE.stroke_width(1)))?;
-    for (direction, label) in [
-        (Some(Direction::Eccentric), "eccentric".to_owned()),
-        (Some(Direction::Concentric), "concentric".to_owned()),
-    ] {
-        let colour = colour(direction);
-        let own = segmented.plateaus.iter().filter(|p| Some(p.direction) == direction);
-        chart
-            .draw_series(own.map(|p| Circle::new((p.time_s, p.force_n), 3, colour.filled())))?
-            .label(label)
-            .legend(move |at| Circle::new((at.0 + 8, at.1), 4, colour.filled()));
+    chart.draw_series(
+        segmented
+            .plateaus
+            .iter()
+            .map(|p| Circle::new((p.time_s, p.force_n), 3, colour(Some(p.direction)).filled())),
+    )?;
+    let left_out: Vec<f64> =
+        segmented.moves.iter().filter(|m| m.direction.is_none()).map(|m| m.from_s).collect();
+    chart.draw_series(left_out.iter().map(|from_s| {
+        Cross::new((*from_s, top - CROSS_SHARE * (top - bottom)), 6, LEFT_OUT.stroke_width(2))
+    }))?;
+    let mut legend = vec![
+        ("eccentric".to_owned(), Some(Direction::Eccentric)),
+        ("concentric".to_owned(), Some(Direction::Concentric)),
+    ];
+    if !left_out.is_empty() {
+        legend.push((format!("left out ({})", left_out.len()), None));
     }
-    if left_out > 0 {
-        let crosses = segmented.moves.iter().filter(|m| m.direction.is_none());
-        chart
-            .draw_series(
-                crosses.map(|m| Cross::new((m.from_s, top - 0.3 * pad), 6, LEFT_OUT.stroke_width(2))),
-            )?
-            .label(format!("left out ({left_out})"))
-            .legend(|at| Cross::new((at.0 + 8, at.1), 4, LEFT_OUT.stroke_width(2)));
+    // Next to the title, where it hides no part of the curve.
+    for ((text, direction), x) in legend.into_iter().zip(LEGEND_X) {
+        root.draw(&Circle::new((x, LEGEND_Y), 4, colour(direction).filled()))?;
+        root.draw(&Text::new(text, (x + 9, LEGEND_Y - 7), ("sans-serif", 13)))?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE.mix(0.8))
-        .border_style(FORCE)
-        .label_font(("sans-serif", 13))
-        .draw()?;
     root.present()?;
     Ok(())
 }

@@ -584,6 +584,10 @@ fn missing_repetitions(readings: &[Reading], out: &mut Segmented) {
     let mut periods: Vec<f64> = readings.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
     let period_s = median(&mut periods);
     for pair in out.plateaus.windows(2) {
+        let between = pair[0].time_s..pair[1].time_s;
+        if out.moves.iter().any(|m| m.direction.is_none() && between.contains(&m.from_s)) {
+            continue; // The repetition is left out, not missing.
+        }
         // The experimenter may pause between the directions.
         if pair[0].direction == pair[1].direction && pair[1].time_s - pair[0].time_s > 1.6 * period_s {
             out.findings

@@ -63,6 +63,14 @@ pub const EXAMPLES: [(&str, &str); 5] = [
     ("rig", include_str!("rig/rig.toml")),
 ];
 
+/// Rigs without a switch, by the word that `pinswitch init rig --kind` takes, in the format of the example `rig`.
+pub const RIGS: [(&str, &str); 4] = [
+    ("capstan", include_str!("rig/rig-capstan.toml")),
+    ("bowden", include_str!("rig/rig-bowden.toml")),
+    ("cable-machine", include_str!("rig/rig-cable-machine.toml")),
+    ("geared-drive", include_str!("rig/rig-geared-drive.toml")),
+];
+
 /// The reference configuration: every parameter with its unit, range, default and reason. A test in the crate that knows
 /// the parameters keeps it up to date.
 pub const REFERENCE: &str = include_str!("reference.toml");

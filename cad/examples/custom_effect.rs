@@ -28,6 +28,7 @@ static CREEP: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["dwell_relaxation"],
     experiment: "dead weights with two pauses",
     invisible_because: "the dwell time never varies",

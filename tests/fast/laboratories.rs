@@ -52,6 +52,9 @@ fn drag_and_gain_are_named() {
         .collect();
     let has = |id: &str| names.iter().any(|ids| ids.contains(&id));
     assert!(names.len() == 2 && has("guide_drag") && has("load_cell_gain"), "{names:?}");
+    // Without a switch, adhesion of the contact is part of the drag, and not its rival.
+    let drag = report.effects.iter().find(|e| e.id == "guide_drag").unwrap();
+    assert!(drag.includes == ["adhesion"] && drag.rivals.iter().all(|r| r.id != "adhesion"), "{drag:?}");
     let gain = report.effects.iter().find(|e| e.id == "load_cell_gain").unwrap();
     let [low, high] = gain.parameters["g"].ci95;
     assert!(low < 0.15 && 0.15 < high, "{gain:?}");
@@ -79,6 +82,25 @@ fn a_capstan_has_its_friction_coefficient() {
     let mu = &report.augmented.parameters["mu"];
     let [low, high] = mu.ci95;
     assert!((mu.value - 0.18).abs() < 5e-4 && low < 0.18 && 0.18 < high + 1e-5, "{mu:?}");
+}
+
+/// One load at several angles is the oldest capstan experiment.
+#[test]
+fn one_load_at_many_angles_has_a_friction_coefficient() {
+    let mut rows = table("capstan-seven-angles.csv").rows;
+    let load_n = rows[0].load_n;
+    rows.retain(|row| row.load_n == load_n);
+    let one_load = PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap();
+    one_load.require_baseline("t.csv").unwrap();
+    let report = calibrate(&one_load.rows, &Vocabulary::built_in(), 1).unwrap().report;
+    let mu = &report.augmented.parameters["mu"];
+    assert!((mu.value - 0.18).abs() < 2e-3 && mu.ci95[0] < 0.18 && 0.18 < mu.ci95[1], "{mu:?}");
+    assert!(report.effects.is_empty(), "{:?}", report.effects);
+    // One angle of them determines nothing.
+    let wrap_deg = rows[0].wrap_angle_deg;
+    rows.retain(|row| row.wrap_angle_deg == wrap_deg);
+    let one_angle = PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap();
+    assert!(one_angle.require_baseline("t.csv").unwrap_err().to_string().contains("1 different load"));
 }
 
 /// Four stops along the stroke with nothing periodic between them: no structure is finer than the

@@ -40,7 +40,8 @@ pub(super) struct Arguments {
     /// Available time in minutes.
     #[arg(long, default_value_t = 60.0, value_parser = minutes)]
     minutes: f64,
-    /// Limits of the rig and the time that its steps take [default: the paper's rig].
+    /// Limits of the rig and the time that its steps take [default: the paper's rig, or for plain
+    /// contacts the settings of the table].
     #[arg(long, value_name = "TOML")]
     rig: Option<PathBuf>,
     /// Folder for the plan.
@@ -66,15 +67,18 @@ fn minutes(text: &str) -> Result<f64, Diagnostic> {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = &arguments.calibration;
     let rig = match &arguments.rig {
-        None => RigLimits::default(),
-        Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
-            .map_err(Failure::bad_input)?,
+        None => None,
+        Some(path) => Some(
+            RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
+                .map_err(Failure::bad_input)?,
+        ),
     };
     let report = report(folder)?;
     let (model, _) = read_model(&folder.join("model.toml"))?;
     let path = folder.join("residuals.csv");
     let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
         .map_err(Failure::bad_input)?;
+    let rig = rig.or_else(|| RigLimits::of_plain_table(&table.rows)).unwrap_or_default();
     let name = folder.display().to_string();
     let vocabulary = with_form(arguments.effects.vocabulary()?, folder, &report)?;
     if let Some(id) = undefined_effect(&report, &model, &vocabulary) {

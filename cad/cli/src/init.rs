@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
-use pinswitch_switch::templates::{EXAMPLES, names};
+use pinswitch_switch::templates::{EXAMPLES, RIGS, names};
 
 use super::source::read_text;
 use super::{Failure, print_data};
@@ -15,12 +15,16 @@ use crate::write::write_file;
 #[command(after_help = "Examples:
   pinswitch init three-double --out my-switch.toml
   pinswitch init effects --out mine.toml
+  pinswitch init rig --kind capstan --out rig.toml
   pinswitch init reference")]
 pub(super) struct Arguments {
     /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
     /// of other kinds: `sweep` for a batch, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
     /// raw logs, `rig` for the limits of a rig.
     name: String,
+    /// Kind of rig, with the name `rig` [default: the paper's].
+    #[arg(long, value_name = "KIND", value_parser = RIGS.map(|(kind, _)| kind))]
+    kind: Option<String>,
     /// File to write [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -56,7 +60,12 @@ fn unknown(name: &str) -> Failure {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.name.as_str();
-    let text = match EXAMPLES.iter().find(|starter| starter.0 == name) {
+    let kind = arguments.kind.as_deref().and_then(|kind| RIGS.iter().find(|rig| rig.0 == kind));
+    if kind.is_some() && name != "rig" {
+        let problem = Diagnostic::new("only `rig` has kinds").with_location(Location::file("--kind"));
+        return Err(Failure::bad_input(problem.with_help("use `pinswitch init rig --kind KIND`")));
+    }
+    let text = match kind.or_else(|| EXAMPLES.iter().find(|starter| starter.0 == name)) {
         Some((_, text)) => (*text).to_owned(),
         None => match read_text(name) {
             Ok((text, _)) => text,
@@ -82,6 +91,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rigs_without_a_switch_are_valid() {
+        for (kind, text) in RIGS {
+            let rig = pinswitch_calibration::experiment::RigLimits::parse(text, kind).unwrap();
+            assert!(!rig.silicone && rig.layouts.is_empty() && !rig.plain_wraps_deg.is_empty(), "{kind}");
+        }
+    }
 
     #[test]
     fn a_similar_name_is_suggested() {

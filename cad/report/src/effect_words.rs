@@ -40,6 +40,10 @@ pub fn effect_clause(id: &str) -> String {
 /// Returns a reported effect as a clause; unattributed structure with its covariate.
 pub fn reported_clause(effect: &EffectReport) -> String {
     match effect.side {
+        // On a rig without a switch only their sum is defined.
+        Some(_) if effect.id == "guide_drag" && !effect.includes.is_empty() => {
+            "the guides and the contact have a constant drag".to_owned()
+        }
         Some(_) => effect_clause(&effect.id),
         None => format!("an effect without a name acts over {}", effect.covariate),
     }
@@ -75,6 +79,17 @@ pub fn estimate_words(estimate: &Estimate) -> String {
     let decimals = if digits.is_finite() { digits.clamp(0.0, MAX_DECIMALS) as usize } else { 4 };
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
     format!("{value:.decimals$}{unit} [{low:.decimals$}, {high:.decimals$}]")
+}
+
+/// Returns the friction of a `plain` contact, such as `mu = 0.180 [0.178, 0.182]`; without wrap angles
+/// only the exponent is known. `None` for a switch.
+pub fn friction_words(report: &Report) -> Option<String> {
+    let constants = &report.augmented.parameters;
+    let mu = constants.get("mu").map(|mu| format!("mu = {}", estimate_words(mu)));
+    let exponent = |x: &Estimate| {
+        format!("friction exponent = {} (mu times the wrap; for mu, give wrap_angle_deg)", estimate_words(x))
+    };
+    mu.or_else(|| constants.get("x").map(exponent))
 }
 
 /// Returns identifiable effects and structures with a probability above `least` that are neither reported

@@ -11,7 +11,7 @@
 //! | [`pareto_svg`] | threshold and friction of searched layouts, with the Pareto front |
 //! | [`log_svg`] | a raw log with its moves and plateaus |
 //! | [`plots`], [`page`] | figures and page of a [calibration](pinswitch_calibration::Calibration) |
-//! | [`reported_clause`], [`effect_clause`], [`constants_words`] | effects in words |
+//! | [`friction_words`], [`reported_clause`], [`effect_clause`], [`constants_words`] | friction and effects in words |
 //! | [`published_plot`], [`published_page`] | figure and page of the calibration with the paper's seven maxima |
 //! | [`run_sheet`] | the runs of a proposed experiment, to print |
 //!
@@ -75,7 +75,8 @@ pub use calibration::{Plot, plots};
 pub use calibration_page::page;
 pub use contact::contact_svg;
 pub use effect_words::{
-    constants_words, effect_clause, estimate_words, other_probabilities, parameters_words, reported_clause,
+    constants_words, effect_clause, estimate_words, friction_words, other_probabilities, parameters_words,
+    reported_clause,
 };
 pub use finger::{FingerLayout, finger_svg};
 pub use friction::friction_svg;

@@ -2,7 +2,7 @@
 
 use crate::config::reference_toml;
 
-pub use pinswitch_templates::{EXAMPLES, TEMPLATES, Template, TemplateKind};
+pub use pinswitch_templates::{EXAMPLES, RIGS, TEMPLATES, Template, TemplateKind};
 
 /// Returns the text of the template called `name`; `reference` shows every parameter.
 pub fn text(name: &str) -> Option<String> {

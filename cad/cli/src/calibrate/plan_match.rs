@@ -81,7 +81,7 @@ fn difference(run: &PlannedRun, of: &[&PlateauRow]) -> Option<f64> {
     };
     let allowed = |(fixed, share): (f64, f64), planned: f64| f64::max(fixed, share * planned);
     let of_row = |row: &&PlateauRow| {
-        let is_alike = row.substrate == Some(run.substrate) && row.pins == run.pins && row.sweep == run.sweep;
+        let is_alike = row.substrate == run.substrate && row.pins == run.pins && row.sweep == run.sweep;
         if !is_alike {
             return None;
         }
@@ -129,7 +129,7 @@ mod tests {
 
     fn run(load_mass_g: f64, speed_pct: f64, dwell_s: f64) -> PlannedRun {
         PlannedRun {
-            substrate: Substrate::Silicone,
+            substrate: Some(Substrate::Silicone),
             pins: vec![5, 8, 11],
             sweep: Sweep::Up,
             load_mass_g,
@@ -161,7 +161,7 @@ mod tests {
             (run(1003.2, 40.0, 3.7), false),
             (PlannedRun { sweep: Sweep::Down, ..planned.clone() }, false),
             (PlannedRun { pins: vec![5, 8], ..planned.clone() }, false),
-            (PlannedRun { substrate: Substrate::Abs, ..planned.clone() }, false),
+            (PlannedRun { substrate: Some(Substrate::Abs), ..planned.clone() }, false),
         ] {
             assert_eq!(is_made(made.clone()), as_planned, "{made:?}");
         }

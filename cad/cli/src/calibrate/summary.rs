@@ -5,7 +5,7 @@ use pinswitch_calibration::{
 };
 use pinswitch_diagnostic::neutral_line;
 use pinswitch_report::{
-    constants_words, effect_clause, estimate_words, other_probabilities, parameters_words, reported_clause,
+    constants_words, effect_clause, friction_words, other_probabilities, parameters_words, reported_clause,
 };
 
 /// Most series, effects and columns that a line lists.
@@ -106,11 +106,7 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
 
 /// Formats the friction coefficient of a plain contact.
 fn friction(report: &Report) -> String {
-    report
-        .augmented
-        .parameters
-        .get("mu")
-        .map_or_else(String::new, |mu| format!("mu = {}\n", estimate_words(mu)))
+    friction_words(report).map_or_else(String::new, |words| format!("{words}\n"))
 }
 
 /// Formats a probability, never as 0 or 1: it depends on the priors.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use pinswitch_calibration::{Answer, EffectReport, PlanQuestion, Report, SessionPlan, TrialReport, Verdict};
 
 use super::super::effect_words::{
-    constants_words, effect_clause, estimate_words, other_probabilities, reported_clause,
+    constants_words, effect_clause, friction_words, other_probabilities, reported_clause,
 };
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
@@ -36,11 +36,7 @@ pub(super) fn conclusion(report: &Report) -> String {
 
 /// Returns the friction coefficient of a plain contact.
 fn friction(report: &Report) -> String {
-    report
-        .augmented
-        .parameters
-        .get("mu")
-        .map_or_else(String::new, |mu| format!("<p><b>mu = {}</b></p>", estimate_words(mu)))
+    friction_words(report).map_or_else(String::new, |words| format!("<p><b>{}</b></p>", escape(&words)))
 }
 
 /// Returns the reported effects with their probabilities and rivals.

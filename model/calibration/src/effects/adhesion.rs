@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: false,
     confused_with: &["guide_drag"],
     experiment: "a pins-only run or a blank run without the switch",
     invisible_because: "no silicone, or only one direction",

@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: false,
     confused_with: &["coating_stiffening", "polygon_bending"],
     experiment: "pins-only runs over load and pin count",
     invisible_because: "no condition with pins",

@@ -25,6 +25,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: false,
     confused_with: &["polygon_bending", "coating_ploughing"],
     experiment: "pins-only runs over load and pin count",
     invisible_because: "no condition with pins, or only one load",

@@ -133,6 +133,8 @@ pub struct Description {
     pub bends: bool,
     /// Whether the predicted change is proportional to the first constant, to first order.
     pub scales: bool,
+    /// Whether it can act on a rig that has `plain` contacts only, and is not another effect there.
+    pub on_plain: bool,
     /// Ids of effects that may look the same.
     pub confused_with: &'static [&'static str],
     /// Experiment that separates it from those.

@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["load_cell_gain"],
     experiment: "silicone and pins-only runs at the same loads: a gain does not scale with friction",
     invisible_because: "only one direction",

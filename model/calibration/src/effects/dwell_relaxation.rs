@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &[],
     experiment: "one silicone run with dwells of 0.3, 3 and 30 s",
     invisible_because: "the dwell never varies, or there is no silicone",

@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["rate_dependence", "substrate_saturation"],
     experiment: "a dial gauge on the mount, or several speeds at one load",
     invisible_because: "only one load",

@@ -25,6 +25,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: false,
     scales: true,
+    on_plain: true,
     confused_with: &["adhesion"],
     experiment: "a pins-only run or a blank run without the switch",
     invisible_because: "only one direction",

@@ -23,6 +23,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: false,
     scales: false,
+    on_plain: false,
     confused_with: &["load_cell_offset"],
     experiment: "weigh the hook",
     invisible_because: "",

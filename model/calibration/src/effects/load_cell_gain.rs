@@ -23,6 +23,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: false,
     scales: true,
+    on_plain: true,
     confused_with: &["direction_asymmetry", "load_cell_nonlinearity"],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "only one direction",

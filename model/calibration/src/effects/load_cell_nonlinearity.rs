@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["load_cell_gain", "load_cell_saturation"],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "only one direction, or one load",

@@ -23,6 +23,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: false,
     scales: true,
+    on_plain: true,
     confused_with: &["hook_omitted"],
     experiment: "a zero reading of the unloaded cell",
     invisible_because: "too few loads",

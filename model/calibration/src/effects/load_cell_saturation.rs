@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: false,
+    on_plain: true,
     confused_with: &["load_cell_nonlinearity"],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "no reading is near the limit of the load cell",

@@ -28,6 +28,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: false,
     confused_with: &["coating_ploughing"],
     experiment: "the same number of loads on a layout with another number of pins",
     invisible_because: "all pins-only and device layouts have the same number of pins",

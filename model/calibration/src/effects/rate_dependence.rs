@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["fixture_compliance", "substrate_saturation"],
     experiment: "several speeds at one load",
     invisible_because: "the speed never varies",

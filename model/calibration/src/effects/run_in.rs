@@ -32,6 +32,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["stroke_position"],
     experiment: "a series started in the middle of the stroke",
     invisible_because: "one repetition per series, or no silicone",

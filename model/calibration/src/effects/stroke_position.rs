@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["run_in"],
     experiment: "both directions over the whole stroke",
     invisible_because: "the position never varies",

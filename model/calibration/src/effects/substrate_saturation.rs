@@ -28,6 +28,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["rate_dependence", "fixture_compliance"],
     experiment: "several loads at one speed",
     invisible_because: "no silicone, or only one load",

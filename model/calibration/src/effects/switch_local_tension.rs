@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: false,
+    on_plain: false,
     confused_with: &["switching_hysteresis", "direction_asymmetry"],
     experiment: "both directions on a device at loads near its threshold",
     invisible_because: "no device, or no load near its threshold",

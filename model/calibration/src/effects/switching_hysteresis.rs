@@ -25,6 +25,7 @@ static DESCRIPTION: Description = Description {
     one_sided: true,
     bends: true,
     scales: true,
+    on_plain: false,
     confused_with: &["switch_local_tension"],
     experiment: "a descending sweep of loads on a device",
     invisible_because: "no device, or loads never descend",

@@ -23,6 +23,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["wear_drift"],
     experiment: "a zero reading before and after the session",
     invisible_because: "the session is too short to drift",

@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     one_sided: false,
     bends: true,
     scales: true,
+    on_plain: true,
     confused_with: &["thermal_drift"],
     experiment: "repeat the first series at the end of the session",
     invisible_because: "the session is too short to drift",

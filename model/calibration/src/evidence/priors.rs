@@ -86,7 +86,7 @@ impl EffectPrior {
     /// Returns the priors of a vocabulary for a table, whose readings are at most `highest_n`.
     /// Forces are `force_unit` times larger than on the paper's rig. Effects that are `forms` of a
     /// library have one shape, since the library has an effect for each. An effect over a covariate
-    /// that is unknown has none.
+    /// that is unknown has none, and on a rig of `plain` contacts one of the switch.
     pub(super) fn of_vocabulary(
         vocabulary: &Vocabulary,
         frame: &Frame,
@@ -95,12 +95,15 @@ impl EffectPrior {
         forms: &BTreeSet<&str>,
         unknown: Unknown,
     ) -> Vec<Self> {
-        let is_unknown = |effect: &dyn Effect| {
-            effect.description().covariate.column().is_some_and(|q| unknown.contains(q))
+        let is_plain = frame.is_plain();
+        let is_candidate = |effect: &dyn Effect| {
+            let description = effect.description();
+            let is_unknown = description.covariate.column().is_some_and(|q| unknown.contains(q));
+            !is_unknown && (description.on_plain || !is_plain)
         };
         vocabulary
             .effects()
-            .filter(|effect| !is_unknown(*effect))
+            .filter(|effect| is_candidate(*effect))
             .map(|effect| {
                 if effect.id() == LIMIT {
                     let typical_size = Some(LIMIT_SIZE_N * force_unit);

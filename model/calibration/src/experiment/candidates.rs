@@ -89,8 +89,8 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     let mut loads_g = rig.loads_g.clone();
     loads_g.sort_by(f64::total_cmp);
     let mut all = Vec::new();
-    for (substrate, pins) in rig.contacts() {
-        let runs = loads_g.iter().map(|load_g| PlannedRun::usual(substrate, &pins, *load_g, rig));
+    for contact in rig.contacts() {
+        let runs = loads_g.iter().map(|load_g| PlannedRun::usual(&contact, *load_g, rig));
         let of_contact = runs.map(|run| Candidate { run, late: false, after_g: 0.0 }).collect();
         let mut of_contact = within_cell_only(of_contact, model, rig);
         let loads: Vec<f64> = of_contact.iter().map(|c| c.run.load_mass_g).collect();
@@ -184,7 +184,7 @@ pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
     let (mut runs, mut spent): (Vec<PlannedRun>, f64) = (Vec::new(), 0.0);
     let mut loads = rig.loads_g.clone();
     loads.sort_by(f64::total_cmp);
-    for (mount, (substrate, pins)) in rig.contacts().into_iter().enumerate() {
+    for (mount, contact) in rig.contacts().iter().enumerate() {
         for (i, load_mass_g) in loads.iter().enumerate() {
             // 47 to 57 %, as in the paper.
             let speed_pct = 47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64;
@@ -192,7 +192,7 @@ pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
                 speed_pct: speed_pct.clamp(rig.speeds_pct[0], rig.speeds_pct[1]),
                 repetitions: PAPER_REPETITIONS,
                 mount: mount + 1,
-                ..PlannedRun::usual(substrate, &pins, *load_mass_g, rig)
+                ..PlannedRun::usual(contact, *load_mass_g, rig)
             };
             let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
             let takes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;

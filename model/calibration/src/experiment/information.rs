@@ -43,12 +43,22 @@ pub(super) enum Contribution {
     },
 }
 
+/// Share of the size at which the change of the readings is linear.
+const SMALL: f64 = 1e-3;
+
 impl Contribution {
     fn column(&self, model: &Model, points: &[Point], constants: &[Vec<f64>]) -> Vec<f64> {
+        let mut scale = 1.0;
         let (with, without) = match self {
             Self::Term { term } => (model.predict(points), model.without_term(*term).predict(points)),
             Self::Added { effect, values } => {
-                (model.with_term(Term::Named(*effect), values).predict(points), model.predict(points))
+                // The refit is linear: a constant must absorb what is proportional to it at any size.
+                let mut values = values.clone();
+                if let Some(size) = values.first_mut().filter(|_| effect.description().scales) {
+                    scale = SMALL;
+                    *size *= scale;
+                }
+                (model.with_term(Term::Named(*effect), &values).predict(points), model.predict(points))
             }
             Self::NewSession { constant } => return constants[*constant].clone(),
             Self::AboveLoads { from_n, to_n } => {
@@ -57,7 +67,7 @@ impl Contribution {
                 return points.iter().zip(friction).map(|(p, friction)| share(p) * friction).collect();
             }
         };
-        with.iter().zip(&without).map(|(with, without)| with - without).collect()
+        with.iter().zip(&without).map(|(with, without)| (with - without) / scale).collect()
     }
 }
 

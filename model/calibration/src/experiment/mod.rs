@@ -290,9 +290,7 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnos
 /// once, with ascending and then descending loads. Includes their durations.
 fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &RigLimits) -> Vec<PlannedRun> {
     let contacts = rig.contacts();
-    let place = |run: &PlannedRun| {
-        contacts.iter().position(|(substrate, pins)| *substrate == run.substrate && *pins == run.pins)
-    };
+    let place = |run: &PlannedRun| contacts.iter().position(|contact| *contact == run.contact());
     let mut ordered: Vec<(Candidate, String)> =
         chosen.map(|(candidate, asks)| (candidate.clone(), asks)).collect();
     for place in 0..ordered.len() {

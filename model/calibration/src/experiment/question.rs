@@ -240,7 +240,8 @@ impl Agenda {
         }
         // Curves and designs extend beyond the recorded loads.
         let to_n = published::heaviest_load_n();
-        if highest_n <= COVERED * to_n {
+        // A part without a switch has no curve.
+        if highest_n <= COVERED * to_n && !model.frame.is_plain() {
             let column = agenda.add(Contribution::AboveLoads { from_n: highest_n, to_n });
             let id = format!("{FRICTION_ABOVE}{highest_n:.0}_N");
             agenda.questions.push(Question::presence(&id, STRUCTURE_PROBABILITY, None, column, fitted));

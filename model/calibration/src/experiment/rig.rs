@@ -5,7 +5,7 @@ use pinswitch_friction::{Substrate, published};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
+use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG, Optional, PlateauRow};
 use pinswitch_measurements::{locate_field, toml_error};
 
 /// Advice for every invalid file.
@@ -29,7 +29,13 @@ pub struct RigLimits {
     pub silicone: bool,
     /// Whether the layouts can be measured on the rigid proxy.
     pub proxy: bool,
-    /// Wrap angle in degrees; `None` for that of the calibrated table.
+    /// Wrap angles of a `plain` contact in degrees; empty if the rig has none.
+    pub plain_wraps_deg: Vec<f64>,
+    /// Mass of the hook in grams, which is part of each load; `None` for the paper's on a switch, and
+    /// for no hook on a `plain` contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hook_mass_g: Option<f64>,
+    /// Wrap angle of a switch in degrees; `None` for that of the calibrated table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrap_angle_deg: Option<f64>,
     /// Length of the stroke, in millimetres.
@@ -55,6 +61,8 @@ impl Default for RigLimits {
             layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
             silicone: true,
             proxy: true,
+            plain_wraps_deg: Vec::new(),
+            hook_mass_g: None,
             wrap_angle_deg: None,
             stroke_mm: published::STROKE_MM,
             seconds_per_repetition: 1.5,
@@ -76,6 +84,20 @@ const MOST: usize = 40;
 /// Number of steps of the fine grid of speeds, and the fine grid of dwells in seconds.
 const FINE_STEPS: usize = 6;
 const FINE_DWELLS_S: [f64; 6] = [0.3, 1.0, 2.0, published::DWELL_S, 5.0, 10.0];
+
+/// Range of the load cell over the largest reading, if the rig's file gives none.
+const CELL_MARGIN: f64 = 1.5;
+
+/// A contact that can be mounted.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Contact {
+    /// What the tendon touches; `None` for `plain`.
+    pub(super) substrate: Option<Substrate>,
+    /// Occupied grooves, ascending.
+    pub(super) pins: Vec<usize>,
+    /// Wrap angle in degrees where it differs from the paper's.
+    pub(super) wrap_angle_deg: Option<f64>,
+}
 
 /// An invalid field with its value and the problem.
 type Invalid = (&'static str, String, &'static str);
@@ -137,16 +159,27 @@ impl RigLimits {
         if let Some(layout) = repeated(&self.layouts) {
             return Some(("layouts", format!("{layout:?}"), "the layout is listed twice"));
         }
-        if !self.silicone && self.layouts.is_empty() {
+        let wraps = &self.plain_wraps_deg;
+        if wraps.len() > MOST {
+            return Some(("plain_wraps_deg", format!("{} angles", wraps.len()), "at most 40 are possible"));
+        }
+        if let Some(degrees) = wraps.iter().find(|x| !inside(**x, MIN_WRAP_DEG, MAX_WRAP_DEG)) {
+            return Some(("plain_wraps_deg", degrees.to_string(), WRAPS));
+        }
+        if let Some(degrees) = repeated(wraps) {
+            return Some(("plain_wraps_deg", degrees.to_string(), "the angle is listed twice"));
+        }
+        if !self.silicone && self.layouts.is_empty() && wraps.is_empty() {
             return Some((
                 "silicone",
                 "false".to_owned(),
-                "must be true without layouts, since there is nothing else to measure",
+                "must be true without layouts and plain_wraps_deg, since there is nothing else to measure",
             ));
         }
         let usual = published::WRAP_ANGLE_DEG;
         let single = [
             ("wrap_angle_deg", self.wrap_angle_deg.unwrap_or(usual), MIN_WRAP_DEG, MAX_WRAP_DEG, WRAPS),
+            ("hook_mass_g", self.hook_mass_g.unwrap_or(0.0), 0.0, 1e6, "outside 0 to 1000000 g"),
             ("stroke_mm", self.stroke_mm, 1.0, 1e4, "outside 1 to 10000 mm"),
             ("seconds_per_repetition", self.seconds_per_repetition, 0.01, 600.0, "outside 0.01 to 600 s"),
             ("minutes_per_load_change", self.minutes_per_load_change, 0.0, 600.0, "outside 0 to 600 min"),
@@ -157,18 +190,91 @@ impl RigLimits {
         wrong.map(|(field, x, _, _, problem)| (field, x.to_string(), problem))
     }
 
-    /// Returns the contacts that can be mounted: silicone without pins, then each layout on the
-    /// proxy and on silicone.
-    pub(super) fn contacts(&self) -> Vec<(Substrate, Vec<usize>)> {
+    /// Returns the rig of a table without a switch: its loads, angles, speeds and dwells. `None` for a
+    /// table with silicone or pins, which the paper's rig can measure.
+    pub fn of_plain_table(rows: &[PlateauRow]) -> Option<Self> {
+        if rows.is_empty() || rows.iter().any(|row| row.substrate.is_some()) {
+            return None;
+        }
+        let values = |value: fn(&PlateauRow) -> f64| {
+            let mut all: Vec<f64> = rows.iter().map(value).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        let range = |quantity: Optional, value: fn(&PlateauRow) -> f64, neutral: f64| {
+            let is_known = rows.iter().all(|row| !row.unknown.contains(quantity) && value(row) > 0.0);
+            let all = values(value);
+            match (is_known, all.first(), all.last()) {
+                (true, Some(least), Some(most)) => [*least, *most],
+                _ => [neutral, neutral],
+            }
+        };
+        let has_masses = rows.iter().all(|r| !r.unknown.contains(Optional::LoadMass) && r.load_mass_g > 0.0);
+        let tenths = |grams: f64| (10.0 * grams).round() / 10.0;
+        let mut loads_g = if has_masses {
+            values(|row| row.load_mass_g)
+        } else {
+            values(|row| row.load_n).into_iter().map(|n| tenths(1e3 * n / published::GRAVITY_M_S2)).collect()
+        };
+        loads_g.dedup();
+        let mut wraps_deg = values(|row| row.wrap_angle_deg);
+        for all in [&mut loads_g, &mut wraps_deg] {
+            let step = all.len().div_ceil(MOST).max(1);
+            *all = all.iter().copied().step_by(step).collect();
+        }
+        let highest_n = rows.iter().map(|row| row.force_n.abs()).fold(0.1, f64::max);
+        let clamped =
+            |[low, high]: [f64; 2], least: f64, most: f64| [low.clamp(least, most), high.clamp(least, most)];
+        Some(Self {
+            loads_g,
+            speeds_pct: clamped(
+                range(Optional::Speed, |row| row.speed_pct, 50.0),
+                MIN_SPEED_PCT,
+                MAX_SPEED_PCT,
+            ),
+            dwells_s: clamped(range(Optional::Dwell, |row| row.dwell_s, published::DWELL_S), 0.01, 3600.0),
+            layouts: Vec::new(),
+            silicone: false,
+            proxy: false,
+            plain_wraps_deg: wraps_deg,
+            cell_limit_n: CELL_MARGIN * highest_n,
+            ..Self::default()
+        })
+    }
+
+    /// Returns the contacts that can be mounted: silicone without pins, each layout on the proxy and on
+    /// silicone, and each angle of a `plain` contact.
+    pub(super) fn contacts(&self) -> Vec<Contact> {
+        let on = |substrate: Substrate, pins: &[usize]| Contact {
+            substrate: Some(substrate),
+            pins: pins.to_vec(),
+            wrap_angle_deg: self.other_wrap_deg(),
+        };
         let mut all = Vec::new();
         if self.silicone {
-            all.push((Substrate::Silicone, Vec::new()));
+            all.push(on(Substrate::Silicone, &[]));
         }
         if self.proxy {
-            all.extend(self.layouts.iter().map(|pins| (Substrate::Abs, pins.clone())));
+            all.extend(self.layouts.iter().map(|pins| on(Substrate::Abs, pins)));
         }
-        all.extend(self.layouts.iter().map(|pins| (Substrate::Silicone, pins.clone())));
+        all.extend(self.layouts.iter().map(|pins| on(Substrate::Silicone, pins)));
+        let plain = |degrees: &f64| Contact {
+            substrate: None,
+            pins: Vec::new(),
+            wrap_angle_deg: Some(*degrees).filter(|degrees| *degrees != published::WRAP_ANGLE_DEG),
+        };
+        all.extend(self.plain_wraps_deg.iter().map(plain));
         all
+    }
+
+    /// Returns the load in newtons of a weight on a contact.
+    pub(super) fn load_n(&self, substrate: Option<Substrate>, mass_g: f64) -> f64 {
+        let hook_g = match substrate {
+            Some(_) => self.hook_mass_g.unwrap_or(published::HOOK_MASS_G),
+            None => self.hook_mass_g.unwrap_or(0.0),
+        };
+        (mass_g + hook_g) * 1e-3 * published::GRAVITY_M_S2
     }
 
     /// Returns the rig with a wrap angle in degrees, unless its file gives one.
@@ -240,6 +346,7 @@ mod tests {
             ("layouts = [[16]]", "layouts = [16]: not an ascending list of grooves 1..15"),
             ("layouts = [[8, 5]]", "layouts = [8, 5]: not an ascending list"),
             ("layouts = []\nsilicone = false", "rig.toml:2:12: silicone = false: must be true"),
+            ("plain_wraps_deg = [90, 800]", "rig.toml:1:19: plain_wraps_deg = 800: outside 1 to 720 degrees"),
             ("wrap_angle_deg = 0", "rig.toml:1:18: wrap_angle_deg = 0: outside 1 to 720 degrees"),
             ("stroke_mm = nan", "stroke_mm = NaN: outside"),
             ("cell_limit_n = 0", "cell_limit_n = 0: outside"),
@@ -257,6 +364,27 @@ mod tests {
             assert!(error.to_string().contains(words), "{error}");
             assert!(error.help().is_some_and(|help| help.contains("init rig")), "{error}");
         }
+    }
+
+    /// A rig without silicone and pins is not asked for them.
+    #[test]
+    fn rigs_of_plain_tables_have_their_angles_and_loads() {
+        let mut rows = crate::test_session::session(1);
+        assert_eq!(RigLimits::of_plain_table(&rows), None);
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.substrate = None;
+            row.pins.clear();
+            row.wrap_angle_deg = if i % 2 == 0 { 90.0 } else { 180.0 };
+            row.load_n = row.load_mass_g * 1e-3 * published::GRAVITY_M_S2;
+        }
+        let rig = RigLimits::of_plain_table(&rows).unwrap();
+        assert_eq!(rig.invalid_field(), None);
+        assert_eq!(rig.plain_wraps_deg, [90.0, 180.0]);
+        assert_eq!(rig.loads_g, [251.2, 1003.2, 2005.0, 3007.2, 4007.8, 5002.5]);
+        assert!(rig.contacts().iter().all(|contact| contact.substrate.is_none()));
+        assert_eq!(rig.load_n(None, 1000.0), 9.80665);
+        rows.iter_mut().for_each(|row| row.unknown = row.unknown.with(Optional::LoadMass));
+        assert_eq!(RigLimits::of_plain_table(&rows).unwrap().loads_g, rig.loads_g);
     }
 
     #[test]

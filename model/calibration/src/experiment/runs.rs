@@ -6,14 +6,14 @@ use std::collections::HashMap;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{Direction, Substrate, published};
 
-use super::rig::{MAX_SPEED_PCT, MIN_SPEED_PCT, RigLimits, WRAPS};
+use super::rig::{Contact, MAX_SPEED_PCT, MIN_SPEED_PCT, RigLimits, WRAPS};
 use crate::table::{Labels, MAX_WRAP_DEG, MIN_WRAP_DEG, PlateauRow, Sweep, Unknown, substrate_word};
 
 /// One series to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedRun {
-    /// What the tendon touches.
-    pub substrate: Substrate,
+    /// What the tendon touches; `None` for `plain`.
+    pub substrate: Option<Substrate>,
     /// Occupied grooves, ascending.
     pub pins: Vec<usize>,
     /// Order of the loads.
@@ -38,10 +38,10 @@ pub struct PlannedRun {
 
 impl PlannedRun {
     /// Returns a run with one repetition at the middle speed and the paper's dwell.
-    pub(super) fn usual(substrate: Substrate, pins: &[usize], load_mass_g: f64, rig: &RigLimits) -> Self {
+    pub(super) fn usual(contact: &Contact, load_mass_g: f64, rig: &RigLimits) -> Self {
         Self {
-            substrate,
-            pins: pins.to_vec(),
+            substrate: contact.substrate,
+            pins: contact.pins.clone(),
             sweep: Sweep::Up,
             load_mass_g,
             speed_pct: rig.speeds_pct[0].midpoint(rig.speeds_pct[1]),
@@ -50,7 +50,7 @@ impl PlannedRun {
             mount: 1,
             minutes: 0.0,
             asks: String::new(),
-            wrap_angle_deg: rig.other_wrap_deg(),
+            wrap_angle_deg: contact.wrap_angle_deg,
         }
     }
 
@@ -60,9 +60,14 @@ impl PlannedRun {
             / 60.0
     }
 
+    /// Returns its contact.
+    pub(super) fn contact(&self) -> Contact {
+        Contact { substrate: self.substrate, pins: self.pins.clone(), wrap_angle_deg: self.wrap_angle_deg }
+    }
+
     /// Returns whether another run has the same contact.
     pub(super) fn is_mounted_as(&self, other: &Self) -> bool {
-        self.substrate == other.substrate && self.pins == other.pins
+        self.contact() == other.contact()
     }
 }
 
@@ -99,7 +104,7 @@ pub fn write_runs(runs: &[PlannedRun]) -> String {
         let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
         let cells = [
             (i + 1).to_string(),
-            run.substrate.as_str().to_owned(),
+            substrate_word(run.substrate).to_owned(),
             pins.join(";"),
             run.sweep.as_str().to_owned(),
             run.load_mass_g.to_string(),
@@ -176,9 +181,10 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
         };
         let run = PlannedRun {
             substrate: match cell(1) {
-                "silicone" => Substrate::Silicone,
-                "abs" => Substrate::Abs,
-                _ => return Err(refuse(1, "expected silicone or abs")),
+                "silicone" => Some(Substrate::Silicone),
+                "abs" => Some(Substrate::Abs),
+                "plain" => None,
+                _ => return Err(refuse(1, "expected silicone, abs or plain")),
             },
             pins: pins
                 .filter(is_layout)
@@ -201,7 +207,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
             asks: cell(11).to_owned(),
             wrap_angle_deg,
         };
-        if run.substrate == Substrate::Abs && run.pins.is_empty() {
+        if run.substrate == Some(Substrate::Abs) && run.pins.is_empty() {
             return Err(refuse(2, "abs needs at least one groove"));
         }
         if run.repetitions == [0, 0] {
@@ -251,11 +257,11 @@ pub(super) fn append(
             let position = if direction == Direction::Eccentric { share } else { 1.0 - share };
             rows.push(PlateauRow {
                 series: series.to_owned(),
-                substrate: Some(run.substrate),
+                substrate: run.substrate,
                 pins: run.pins.clone(),
                 sweep: run.sweep,
                 load_mass_g: run.load_mass_g,
-                load_n: published::load_n(run.load_mass_g),
+                load_n: rig.load_n(run.substrate, run.load_mass_g),
                 speed_pct: run.speed_pct,
                 dwell_s: run.dwell_s,
                 direction,
@@ -312,7 +318,7 @@ pub fn by_contact(runs: &[PlannedRun]) -> Vec<String> {
 /// deg`.
 pub fn contact_words(run: &PlannedRun) -> String {
     let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
-    let contact = format!("{} {}", substrate_word(Some(run.substrate)), pins.join(";"));
+    let contact = format!("{} {}", substrate_word(run.substrate), pins.join(";"));
     let wrap = run.wrap_angle_deg.map_or_else(String::new, |degrees| format!(", wrap {degrees} deg"));
     format!("{}{wrap}", contact.trim_end())
 }
@@ -323,7 +329,7 @@ mod tests {
 
     fn run(load_mass_g: f64) -> PlannedRun {
         PlannedRun {
-            substrate: Substrate::Silicone,
+            substrate: Some(Substrate::Silicone),
             pins: vec![5, 8, 11],
             sweep: Sweep::Down,
             load_mass_g,
@@ -380,7 +386,7 @@ mod tests {
     fn invalid_cells_are_located() {
         let good = write_runs(&[run(251.2)]);
         for (from, to, words) in [
-            ("silicone", "glass", "r.csv:2:3: substrate = glass: expected silicone or abs"),
+            ("silicone", "glass", "r.csv:2:3: substrate = glass: expected silicone, abs or plain"),
             ("5;8;11", "5;16", "r.csv:2:12: pins = 5;16: expected ascending grooves 1..15"),
             ("251.2", "nan", "r.csv:2:24: load_mass_g = nan: outside 0 to 1000000 g"),
             (",4,5,", ",0,0,", "r.csv:2:35: repetitions_eccentric = 0: zero repetitions"),

@@ -101,6 +101,9 @@ pub struct EffectReport {
     pub error_after_n: f64,
     /// Other effects that explain the data equally well.
     pub rivals: Vec<RivalReport>,
+    /// Effects that are the same on every run of a rig of `plain` contacts, and are part of the size.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub includes: Vec<String>,
     /// Formula derived from unattributed structure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<FormReport>,

@@ -93,10 +93,17 @@ pub(super) fn invisible(evidence: &Evidence, baseline: &Fitted) -> Vec<Invisible
 }
 
 /// Returns the effects over covariates that the table lacks.
-pub(super) fn without_covariate(vocabulary: &Vocabulary, lacking: &[Optional]) -> Vec<Invisible> {
+pub(super) fn without_covariate(
+    vocabulary: &Vocabulary,
+    lacking: &[Optional],
+    is_plain: bool,
+) -> Vec<Invisible> {
     let effects = vocabulary.effects().filter_map(|effect| {
         let description = effect.description();
         let column = description.covariate.column().filter(|column| lacking.contains(column))?;
+        if is_plain && !description.on_plain {
+            return None;
+        }
         Some(Invisible {
             id: description.id.to_owned(),
             why: format!("the table has no complete column {}", column.column()),

@@ -51,6 +51,7 @@ pub(crate) struct Findings<'a> {
 pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
     let Findings { rows, evidence, baseline, augmented, vocabulary, lacking, .. } = &findings;
     let posterior = evidence.posterior();
+    let is_plain = baseline.model.frame.is_plain();
     let best = posterior.window.first()?;
     let held = held_out(evidence, best)?;
     let held_baseline = held_out(evidence, &posterior.baseline)?;
@@ -102,7 +103,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         aliasing: aliasing(rows),
         ignored_columns: Vec::new(),
         unknown_columns: lacking.iter().map(|quantity| quantity.column().to_owned()).collect(),
-        invisible: [invisible(evidence, baseline), without_covariate(vocabulary, lacking)].concat(),
+        invisible: [invisible(evidence, baseline), without_covariate(vocabulary, lacking, is_plain)].concat(),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(evidence, rows),
         effects,

@@ -224,6 +224,11 @@ impl Point {
 }
 
 impl Frame {
+    /// Whether all contacts are `plain`: the rig has neither silicone nor pins.
+    pub fn is_plain(&self) -> bool {
+        self.conditions.iter().all(|condition| condition.substrate.is_none())
+    }
+
     /// Returns the frame of a table.
     pub fn new(rows: &[PlateauRow]) -> Self {
         let max = |f: fn(&PlateauRow) -> f64| rows.iter().map(f).fold(0.0f64, f64::max);

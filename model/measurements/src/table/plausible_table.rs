@@ -24,7 +24,7 @@ impl PlateauTable {
     /// odd condition or series is left to the fit, which detects it.
     ///
     /// # Errors
-    /// [`TableError::TooFewLoads`] with fewer than two loads above zero,
+    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, unless a `plain` contact has two angles,
     /// [`TableError::SwappedColumns`] if two columns are swapped, [`TableError::Unrelated`] if the
     /// readings do not follow the loads in most conditions, [`TableError::LoadUnit`] if loads and
     /// masses contradict each other, [`TableError::NoFriction`] if the directions differ nowhere,
@@ -32,9 +32,16 @@ impl PlateauTable {
     /// variants for units and directions of tables without masses or without a second direction,
     /// and for single series.
     pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
-        let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).filter(|n| *n > 0.0).collect();
-        loads.sort_by(f64::total_cmp);
-        loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+        let distinct = |mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+            values.len()
+        };
+        let loaded = self.rows.iter().filter(|r| r.load_n > 0.0);
+        let loads = distinct(loaded.clone().map(|r| r.load_n).collect());
+        // One load at several angles determines the friction coefficient of a capstan.
+        let plain = loaded.filter(|r| r.substrate.is_none());
+        let wraps = distinct(plain.map(|r| r.wrap_angle_deg).collect());
         let needed = 2;
         let file = file.to_owned();
         let swapped = |Swapped { first, second, evidence }| TableError::SwappedColumns {
@@ -46,9 +53,9 @@ impl PlateauTable {
         if let Some(columns) = evident(&self.rows) {
             return Err(swapped(columns));
         }
-        if loads.len() < needed {
+        if loads.max(wraps) < needed {
             let last_line = self.rows.len() + 1;
-            return Err(TableError::TooFewLoads { file, last_line, found: loads.len(), needed });
+            return Err(TableError::TooFewLoads { file, last_line, found: loads, needed });
         }
         if let Some(error) = self.contradiction(&file) {
             return Err(repairing(&self.rows).map_or(error, swapped));

@@ -338,7 +338,9 @@ impl TableError {
             Self::NoFriction { .. } => {
                 "check that force_N is the load cell behind the switch, and not a copy of load_N"
             }
-            Self::LoadUnit { .. } => "convert the loads to newtons (kilograms x 9.80665), and leave load_mass_g empty if it is unknown",
+            Self::LoadUnit { .. } => {
+                "convert the loads to newtons (kilograms x 9.80665), and leave load_mass_g empty if it is unknown"
+            }
             Self::ImplausibleLoads { .. } => {
                 "give newtons: divide grams by 101.97, multiply kilonewtons by 1000"
             }
@@ -353,8 +355,8 @@ impl TableError {
             }
             Self::ScatteredWraps { .. } => "give the nominal angle of each mount",
             Self::TooFewLoads { .. } => {
-                "add series with other weights: one load does not determine how friction grows with load, the threshold, or \
-                 any effect along load"
+                "add series with other weights, or with other wrap angles of a plain contact: one load at one angle does not \
+                 determine how friction grows"
             }
         };
         fixed.to_owned()

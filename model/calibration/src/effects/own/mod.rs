@@ -169,6 +169,7 @@ impl OwnEffect {
             // A constant force or a scale is exact and leaves no residual of its own.
             bends: self.formula.reads(|v| !["direction", variable::TENSION].contains(&v.name)),
             scales: true,
+            on_plain: true,
             confused_with: names.leak(),
             experiment,
             invisible_because,

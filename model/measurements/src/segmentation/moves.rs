@@ -40,7 +40,7 @@ pub(super) struct Move {
 
 /// Least share of the variance between two levels: 0.75 is that of a uniform distribution.
 const TWO_LEVELS_SHARE: f64 = 0.8;
-/// Least distance of two levels in standard deviations of the noise.
+/// Least distance of two levels, or of a move, in standard deviations of the noise.
 const LEVELS_NOISE: f64 = 6.0;
 /// Gaps in a move, as a share of the usual length, that are closed; shorter moves are dropped.
 const GAP_SHARE: f64 = 0.2;
@@ -111,7 +111,7 @@ fn power_moves(log: &Log, power_w: &[f64]) -> Option<Vec<Move>> {
     let power: Vec<f64> = without_spikes(power_w).into_iter().map(f64::abs).collect();
     let levels = two_levels(&power)?;
     let is_clear =
-        levels.between_share > TWO_LEVELS_SHARE && levels.high - levels.low > LEVELS_NOISE * noise(&power);
+        levels.between_share > TWO_LEVELS_SHARE && levels.high - levels.low > LEVELS_NOISE * levels.within;
     let moves = is_clear.then(|| intervals(log, |i| power[i] > levels.threshold))?;
     (!moves.is_empty()).then_some(moves)
 }

@@ -71,10 +71,12 @@ pub struct RunSegmentation<'a> {
     clock: SessionClock,
     /// Names of the logs added so far.
     files: Vec<String>,
-    /// Number of series in the table so far.
+    /// Number of series in the table so far; logs of one move each form one series.
     numbers: usize,
     /// Start of the earliest log in seconds of the session.
     first_s: f64,
+    /// The previous entry of the plan, if its log has one move.
+    single_move: Option<SeriesPlan>,
 }
 
 /// Relative departure of a measured load or speed from the declared one that is a finding.
@@ -91,6 +93,7 @@ impl<'a> RunSegmentation<'a> {
             files: Vec::new(),
             numbers: 0,
             first_s: 0.0,
+            single_move: None,
         }
     }
 
@@ -184,8 +187,15 @@ impl<'a> RunSegmentation<'a> {
                 }
             }
             let sweep = series.sweep.map_or_else(|| self.sweep(load), Some);
-            self.rows.extend(rows(self.plan, series, self.numbers, &segmented, (start_s, load, sweep)));
-            self.numbers += 1;
+            let is_single = parts.len() == 1 && segmented.moves.len() == 1;
+            if is_single && self.single_move.as_ref().is_some_and(|last| last.has_same_condition(series)) {
+                self.continue_series(&mut segmented);
+            } else {
+                self.numbers += 1;
+            }
+            self.single_move = is_single.then(|| series.clone());
+            let number = self.numbers - 1;
+            self.rows.extend(rows(self.plan, series, number, &segmented, (start_s, load, sweep)));
             all.plateaus.append(&mut segmented.plateaus);
             all.moves.append(&mut segmented.moves);
             all.findings.append(&mut segmented.findings);
@@ -197,6 +207,16 @@ impl<'a> RunSegmentation<'a> {
             all.findings.push(Finding::UnusableLines { lines: log.unusable });
         }
         Ok(all)
+    }
+
+    /// Numbers the repetitions of a log of one move after those of its series.
+    fn continue_series(&self, segmented: &mut Segmented) {
+        let series = (self.numbers - 1).to_string();
+        for plateau in &mut segmented.plateaus {
+            let same = self.rows.iter().rev().take_while(|row| row.series == series);
+            let last = same.filter(|row| row.direction == plateau.direction).map(|row| row.repetition).max();
+            plateau.repetition += last.unwrap_or_default();
+        }
     }
 
     /// Returns the order of the loads from the previous row; `None` for the first series.
@@ -340,5 +360,92 @@ mod tests {
         });
         let none = segment_run(text, "run.toml", |_| Ok::<_, std::io::Error>(still.clone().into_bytes()));
         assert!(none.unwrap_err().to_string().starts_with("run.toml: no log contains a plateau"));
+    }
+
+    /// A log of moves between two levels; each move takes 0.5 s and each rest 3 s.
+    fn log(start_s: f64, directions: &[Direction], columns: &str) -> String {
+        let mut text = format!("time_s,{columns}\n");
+        let (mut position_mm, mut force_n) = (0.0, 10.0);
+        for i in 0..50 * (2 + 4 * directions.len()) {
+            let t = i as f64 / 50.0;
+            let phase = (t - 2.0) % 3.5;
+            let at = ((t - 2.0) / 3.5).floor();
+            let is_move = t >= 2.0 && phase < 0.5 && at < directions.len() as f64;
+            if is_move {
+                let direction = directions[at as usize];
+                position_mm -= 0.4 * direction.sign();
+                force_n = 10.0 + 3.0 * direction.sign();
+            }
+            let noise = 0.02 * libm::sin(37.0 * (i * i) as f64);
+            text += &format!("{},{}", start_s + t, force_n + noise);
+            for column in columns.split(',').skip(1) {
+                text += &match column {
+                    "position_mm" => format!(",{position_mm}"),
+                    "power_W" => if is_move { ",8" } else { ",0" }.to_owned(),
+                    _ => ",10.5".to_owned(),
+                };
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    const PLAIN: &str = "substrate=\"plain\"\npins=[]\nload_mass_g=1019.7\n";
+    const RIG: &str = "[rig]\nwrap_angle_deg=90\n";
+
+    #[test]
+    fn single_moves_form_one_series() {
+        let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");
+        let text = format!("{RIG}{}{}{}", entry("0"), entry("1"), entry("2"));
+        let moves = [Direction::Eccentric, Direction::Concentric, Direction::Concentric];
+        let run = segment_run(&text, "run.toml", |file| {
+            let at: usize = file.parse().unwrap();
+            Ok::<_, std::io::Error>(log(0.0, &moves[at..=at], "force_N,position_mm,power_W").into_bytes())
+        })
+        .unwrap();
+        let rows: Vec<_> = run.rows.iter().map(|r| (r.series.as_str(), r.direction, r.repetition)).collect();
+        let expected = [("0", moves[0], 1), ("0", moves[1], 1), ("0", moves[2], 2)];
+        assert_eq!(rows, expected);
+        assert!(run.rows.windows(2).all(|w| w[0].time_s < w[1].time_s));
+    }
+
+    #[test]
+    fn files_of_a_series_are_joined() {
+        let text = format!("{RIG}[[series]]\nfiles=[\"0\", \"1\"]\n{PLAIN}");
+        let run = segment_run(&text, "run.toml", |file| {
+            let (start_s, direction) =
+                if file == "0" { (0.0, Direction::Eccentric) } else { (500.0, Direction::Concentric) };
+            Ok::<_, std::io::Error>(log(start_s, &[direction; 3], "force_N").into_bytes())
+        })
+        .unwrap();
+        let directions: String = run.rows.iter().map(|r| &r.direction.as_str()[..1]).collect();
+        assert!(directions.starts_with('e') && directions.ends_with('c'), "{directions}");
+        assert!(run.rows.last().unwrap().time_s > 500.0);
+        assert!(run.rows[0].unknown.contains(Optional::Position));
+    }
+
+    #[test]
+    fn measured_loads_replace_declared_ones() {
+        let text = format!("{RIG}[[series]]\nfile=\"0\"\n{PLAIN}");
+        let moves = [[Direction::Eccentric; 3], [Direction::Concentric; 3]].concat();
+        let read = |columns: &'static str| {
+            let log = log(0.0, &moves, columns).into_bytes();
+            segment_run(&text, "run.toml", move |_| Ok::<_, std::io::Error>(log.clone())).unwrap()
+        };
+        assert!((read("force_N,power_W").rows[0].load_n - 10.0).abs() < 1e-3);
+        let measured = read("force_N,power_W,load_measured_N");
+        assert_eq!((measured.rows[0].load_n, measured.rows.len()), (10.5, 6));
+    }
+
+    #[test]
+    fn overlapping_logs_are_refused() {
+        let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");
+        let moves = [[Direction::Eccentric; 3], [Direction::Concentric; 3]].concat();
+        let read = |file: &str| {
+            let start_s = if file == "0" { 1000.0 } else { 1020.0 };
+            Ok::<_, std::io::Error>(log(start_s, &moves, "force_N,power_W").into_bytes())
+        };
+        let error = segment_run(&format!("{RIG}{}{}", entry("0"), entry("1")), "run.toml", read).unwrap_err();
+        assert_eq!(error.to_string().split(';').next(), Some("1: the clock overlaps that of '0'"));
     }
 }

@@ -66,6 +66,12 @@ impl SeriesPlan {
         if self.files.is_empty() { vec![&self.file] } else { self.files.iter().map(String::as_str).collect() }
     }
 
+    /// Whether another entry has the same condition, load, speed and sweep.
+    pub fn has_same_condition(&self, other: &Self) -> bool {
+        (self.substrate, &self.pins, self.load_mass_g) == (other.substrate, &other.pins, other.load_mass_g)
+            && (self.speed_pct, self.sweep) == (other.speed_pct, other.sweep)
+    }
+
     /// Returns the name of the series in reports: its first log.
     pub fn name(&self) -> &str {
         self.files.first().unwrap_or(&self.file)

@@ -2,11 +2,13 @@
 
 use super::log::Log;
 use super::moves::{Move, moving};
-use super::two_levels::{noise, without_spikes};
+use super::two_levels::{noise_about_slope, without_spikes};
 use crate::median::median;
 
-/// Share of the time in motion from which a log has cycles.
-const MOVING_SHARE: f64 = 0.8;
+/// Share of the time in motion from which a log has cycles. A sine is slow for 9 % of the time.
+const MOVING_SHARE: f64 = 0.85;
+/// The same for a log of one cycle: steps that are blurred by a long window also reverse once.
+const MOVING_SHARE_OF_ONE: f64 = 0.97;
 /// Most stops per half-cycle, and the least share of one that a stop takes: strokes in steps have
 /// more.
 const STOPS_PER_HALF_CYCLE: f64 = 1.5;
@@ -42,7 +44,8 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
     let turns = turning_points(&position[first..=last]);
     let strokes: Vec<Move> =
         turns.windows(2).map(|w| Move { from: first + w[0], to: first + w[1] + 1 }).collect();
-    let is_continuous = moving_count as f64 > MOVING_SHARE * (last + 1 - first) as f64;
+    let share = if strokes.len() > 2 { MOVING_SHARE } else { MOVING_SHARE_OF_ONE };
+    let is_continuous = moving_count as f64 > share * (last + 1 - first) as f64;
     let mut lengths: Vec<f64> = strokes.iter().map(|s| (s.to - s.from) as f64).collect();
     let shortest = STOP_SHARE * median(&mut lengths);
     let stops = is_moving[first..=last].chunk_by(|a, b| a == b);
@@ -77,7 +80,7 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
 fn turning_points(position_mm: &[f64]) -> Vec<usize> {
     let low = position_mm.iter().copied().fold(f64::INFINITY, f64::min);
     let high = position_mm.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let bound = (REVERSAL_SHARE * (high - low)).max(6.0 * noise(position_mm));
+    let bound = (REVERSAL_SHARE * (high - low)).max(6.0 * noise_about_slope(position_mm));
     let mut turns = vec![0];
     let (mut lowest, mut highest, mut rises) = (0, 0, None);
     for (i, x) in position_mm.iter().enumerate() {

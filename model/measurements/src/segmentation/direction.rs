@@ -100,7 +100,8 @@ const REPEATABILITY: f64 = 0.01;
 /// Shares of the load from which a plateau is near or far.
 const NEAR_SHARE: f64 = 0.03;
 const FAR_SHARE: f64 = 0.1;
-/// A step below this share of the force is not a witness.
+/// A step below this share of the force, or below half the distance of separate levels, is not a
+/// witness.
 const STEP_SHARE: f64 = 0.03;
 
 /// Log odds of a witness for the concentric direction.
@@ -125,8 +126,7 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
     let position: Vec<f64> =
         moves.iter().map(|m| m.travel_mm.map_or(0.0, |mm| log_odds(POSITION, mm < 0.0))).collect();
     let orders = orders(moves.len(), protocol);
-    // Weight of each combination of the common unknowns, and the concentric probabilities in it.
-    let mut combinations: Vec<(f64, bool, Vec<f64>)> = Vec::new();
+    let mut combinations: Vec<Combination> = Vec::new();
     for (is_reversed, sign_share) in [(false, POSITION_SIGN), (true, 1.0 - POSITION_SIGN)] {
         for (cell, cell_share) in [(1.0, CELL), (0.0, 1.0 - CELL)] {
             let odds: Vec<f64> = (0..moves.len())
@@ -136,33 +136,33 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
                     sum + sign * position[i] + cell * by_load[i]
                 })
                 .collect();
-            // A cell that is wrong shifts all plateaus to one side: one event, not one for each move.
+            // A wrong cell shifts all plateaus to one side: this is one event, not one for each move.
             let one_shift = by_load.iter().map(|o| 0.5 * o.abs()).sum::<f64>() - std::f64::consts::LN_2;
             let base = libm::log(sign_share * cell_share) + (1.0 - cell) * one_shift;
             for (share, pattern) in &orders {
-                let mut weight = base + libm::log(*share);
+                let mut log_weight = base + libm::log(*share);
                 let mut concentric = Vec::with_capacity(moves.len());
                 for (i, odds) in odds.iter().enumerate() {
                     let prior = pattern.prior(i);
                     let (up, down) = (libm::log(prior) + 0.5 * odds, libm::log(1.0 - prior) - 0.5 * odds);
                     let both = up.max(down) + libm::log1p(libm::exp(-(up - down).abs()));
-                    weight += both;
+                    log_weight += both;
                     concentric.push(libm::exp(up - both));
                 }
-                combinations.push((weight, is_reversed, concentric));
+                combinations.push(Combination { log_weight, is_reversed, concentric });
             }
         }
     }
-    let top = combinations.iter().map(|c| c.0).fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = combinations.iter().map(|c| libm::exp(c.0 - top)).sum();
-    let mean = |value: &dyn Fn(&(f64, bool, Vec<f64>)) -> f64| {
-        combinations.iter().map(|c| libm::exp(c.0 - top) * value(c)).sum::<f64>() / total
+    let top = combinations.iter().map(|c| c.log_weight).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = combinations.iter().map(|c| libm::exp(c.log_weight - top)).sum();
+    let mean = |value: &dyn Fn(&Combination) -> f64| {
+        combinations.iter().map(|c| libm::exp(c.log_weight - top) * value(c)).sum::<f64>() / total
     };
     let is_position_reversed =
-        position.iter().any(|p| *p != 0.0) && mean(&|c| if c.1 { 1.0 } else { 0.0 }) > 0.5;
+        position.iter().any(|p| *p != 0.0) && mean(&|c| if c.is_reversed { 1.0 } else { 0.0 }) > 0.5;
     let verdicts = (0..moves.len())
         .map(|i| {
-            let concentric = mean(&|c| c.2[i]);
+            let concentric = mean(&|c| c.concentric[i]);
             let is_concentric = concentric > 0.5;
             let mut all = fixed[i].clone();
             all.push(Witness { name: "position", log_odds: position[i] });
@@ -175,6 +175,16 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
         })
         .collect();
     Directions { verdicts, is_position_reversed }
+}
+
+/// One combination of the unknowns that are common to a log.
+struct Combination {
+    /// Logarithm of its weight.
+    log_weight: f64,
+    /// Whether the position decreases when the load is released.
+    is_reversed: bool,
+    /// Probability of each move to be concentric.
+    concentric: Vec<f64>,
 }
 
 /// Order of the directions in one combination.
@@ -269,7 +279,8 @@ fn witnesses(m: &Evidence, levels: Option<TwoLevels>, power: Option<TwoLevels>) 
     }
     if let Some(before_n) = m.before_n {
         let step_n = m.force_n - before_n;
-        if step_n.abs() > STEP_SHARE * m.force_n.abs().max(before_n.abs()) {
+        let settling_n = levels.map_or(0.0, |levels| 0.5 * (levels.high - levels.low));
+        if step_n.abs() > settling_n.max(STEP_SHARE * m.force_n.abs().max(before_n.abs())) {
             add("step", STEP, step_n > 0.0);
         }
     }

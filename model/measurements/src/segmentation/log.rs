@@ -82,8 +82,8 @@ const DIRECTION: usize = 4;
 const MARK: usize = 7;
 const FORCE_IN: usize = 8;
 const FORCE_OUT: usize = 9;
-/// Fewest usable samples of a log: two seconds at 10 Hz.
-const MIN_SAMPLES: usize = 20;
+/// Fewest usable samples of a log: three seconds at 10 Hz.
+const MIN_SAMPLES: usize = 30;
 /// Largest magnitude of a value: larger ones are not readings.
 const MAX_VALUE: f64 = 1e9;
 /// Fewest samples of a part with one declared load.
@@ -101,7 +101,7 @@ impl Log {
     /// Creates a log from columns of equal length. `file` is its name in errors.
     ///
     /// # Errors
-    /// If a column has another length than `time_s`, or there are fewer than 20 usable samples.
+    /// If a column has another length than `time_s`, or there are fewer than 30 usable samples.
     pub fn new(
         time_s: Vec<f64>,
         force_n: Vec<f64>,
@@ -130,7 +130,7 @@ impl Log {
     /// real logs have them.
     ///
     /// # Errors
-    /// If the text is UTF-16, the column of time or force is missing, or there are fewer than 20
+    /// If the text is UTF-16, the column of time or force is missing, or there are fewer than 30
     /// usable samples.
     pub fn parse(text: &[u8], file: &str) -> Result<Self, Diagnostic> {
         Self::parse_at(text, file, None)
@@ -150,7 +150,7 @@ impl Log {
         }
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text);
-        let header = reader.byte_headers().map(Clone::clone).unwrap_or_default();
+        let header = reader.byte_headers().cloned().unwrap_or_default();
         let names: Vec<String> = header.iter().map(|n| String::from_utf8_lossy(n).into_owned()).collect();
         let position = |name: &str| names.iter().position(|n| n == name);
         let missing = |column: &str, help: &str| {
@@ -427,6 +427,6 @@ mod tests {
         assert_eq!(error.problem(), "column 'force_N' is missing");
         assert!(error.render("error").contains("a:1: column 'force_N' is missing\n  1 | time_s,power_W\n"));
         let empty = Log::parse(b"time_s,force_N,position_mm,power_W\n", "a").unwrap_err();
-        assert_eq!(empty.problem(), "0 usable samples, at least 20 are needed");
+        assert_eq!(empty.problem(), "0 usable samples, at least 30 are needed");
     }
 }

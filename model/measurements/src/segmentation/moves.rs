@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::change_points::{change_points, is_relaxation};
 use super::log::Log;
-use super::two_levels::{noise, two_levels, without_spikes};
+use super::two_levels::{noise, noise_about_slope, two_levels, without_spikes};
 use crate::median::median;
 
 /// Column from which the moves of a log were found.
@@ -130,22 +130,74 @@ const MOVING_SAMPLES: f64 = 0.002;
 /// Share of the usual speed above which the position moves.
 const SLOW_SHARE: f64 = 0.2;
 
+/// Usual speed, in terms of the least visible one, from which a half window is long enough.
+const CLEAR_SPEED: f64 = 2.0;
+
 /// Returns whether the position moves at each sample; `None` if it never does.
+///
+/// The speed is the difference of the means of the half windows after and before a sample.
 pub(super) fn moving(log: &Log, position_mm: &[f64]) -> Option<Vec<bool>> {
     let position = without_spikes(position_mm);
-    let bound = LEVELS_NOISE * std::f64::consts::SQRT_2 * noise(&position);
-    let last = position.len() - 1;
-    HALF_WINDOWS_S.into_iter().find_map(|half_s| {
+    let noise_mm = noise_about_slope(&position);
+    let (places, times) = (running_sums(&position), running_sums(&log.time_s));
+    let count = position.len();
+    let mut visible = None;
+    for half_s in HALF_WINDOWS_S {
         let half = samples_in(log, half_s);
-        let step = |i: usize| (position[(i + half).min(last)] - position[i.saturating_sub(half)]).abs();
-        let steps: Vec<f64> = (0..position.len()).map(step).collect();
-        let mut fast: Vec<f64> = steps.iter().copied().filter(|d| *d > bound).collect();
-        if (fast.len() as f64) < (MOVING_SAMPLES * steps.len() as f64).max(2.0) {
-            return None;
+        let difference = |sums: &[f64], i: usize| {
+            let mean = |from: usize, to: usize| (sums[to] - sums[from]) / (to - from) as f64;
+            mean(i, (i + half).min(count)) - mean(i.saturating_sub(half), i.max(1))
+        };
+        // Lost samples make a step longer, not faster.
+        let speed = |i: usize| (difference(&places, i) / difference(&times, i).max(1e-9)).abs();
+        // The means of short windows at the ends have more noise.
+        let certainty =
+            |i: usize| (2.0 * shorter(i, half, count) / (half as f64 + shorter(i, half, count))).sqrt();
+        let speeds: Vec<f64> =
+            (1..=count).map(|i| i.min(count - 1)).map(|i| speed(i) * certainty(i)).collect();
+        let bound = LEVELS_NOISE * noise_mm * (2.0 / half as f64).sqrt() / (half as f64 * log.period_s());
+        let mut fast: Vec<f64> = speeds.iter().copied().filter(|v| *v > bound).collect();
+        if (fast.len() as f64) < (MOVING_SAMPLES * count as f64).max(2.0) {
+            continue;
         }
-        let threshold = bound.max(SLOW_SHARE * median(&mut fast));
-        Some(steps.iter().map(|d| *d > threshold).collect())
-    })
+        let usual = median(&mut fast);
+        let threshold = bound.max(SLOW_SHARE * usual);
+        visible = Some(closed(speeds.iter().map(|v| *v > threshold).collect(), half));
+        if usual > CLEAR_SPEED * bound {
+            break;
+        }
+    }
+    visible
+}
+
+/// Returns the length of the shorter window before and after a sample.
+fn shorter(at: usize, half: usize, count: usize) -> f64 {
+    half.min(at).min(count - at).max(1) as f64
+}
+
+/// Returns the sums of the first values, relative to the first one.
+fn running_sums(values: &[f64]) -> Vec<f64> {
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    for value in values {
+        sum += value - values[0];
+        sums.push(sum);
+    }
+    sums
+}
+
+/// Closes the gaps that are shorter than a number of samples.
+fn closed(mut is_moving: Vec<bool>, length: usize) -> Vec<bool> {
+    let mut last = None;
+    for i in 0..is_moving.len() {
+        if is_moving[i] {
+            if let Some(last) = last.filter(|last| i - last <= length) {
+                is_moving[last..i].fill(true);
+            }
+            last = Some(i);
+        }
+    }
+    is_moving
 }
 
 /// Returns the number of samples in a time, at least one.
@@ -183,7 +235,8 @@ fn intervals(log: &Log, runs: impl Fn(usize) -> bool) -> Vec<Move> {
         moves = closed;
         usual_s = usual(moves.iter().map(length_s).collect());
     }
-    moves.retain(|m| length_s(m) > SHORTEST_SHARE * usual_s);
+    // A log may start within a move.
+    moves.retain(|m| length_s(m) > SHORTEST_SHARE * usual_s || (m.from == 0 && m.to > 1));
     moves
 }
 

@@ -13,7 +13,7 @@ use super::finding::Finding;
 use super::log::Log;
 use super::moves::{Move, Moves, Schedule, Source, moves, stop_s};
 use super::run_plan::Rig;
-use super::two_levels::noise;
+use super::two_levels::noise_about_slope;
 use crate::median::median;
 
 /// Kind of the motion in a log.
@@ -151,9 +151,9 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
             out.findings.push(Finding::ScheduledMoves { moves: scheduled });
         }
         let usual_s = usual_rest(log, &all, rig);
-        refuse_hidden_moves(log, rig, &all, source, usual_s)?;
+        refuse_hidden_moves(log, rig, &all, (source, scheduled), usual_s)?;
         declared_times(log, rig, &all, usual_s, source, &mut out.findings);
-        let noise_mm = log.position_mm.as_ref().map_or(0.0, |x| noise(x));
+        let noise_mm = log.position_mm.as_ref().map_or(0.0, |x| noise_about_slope(x));
         let rest = Rests { log, moves: &all, usual_s, source, noise_mm };
         (0..all.len())
             .filter_map(|i| match rest.reading(i, &mut spikes) {
@@ -258,13 +258,15 @@ fn rest_before_s(log: &Log, from: usize) -> f64 {
 
 /// Share of the declared moves that the force must show if its moves are irregular.
 const VISIBLE_MOVES: f64 = 0.7;
+/// Largest share of the moves that only the schedule shows.
+const MOST_PLACED: f64 = 0.67;
 
 /// Refuses a log whose force does not show enough of the declared moves.
 fn refuse_hidden_moves(
     log: &Log,
     rig: &Rig,
     moves: &[Move],
-    source: Source,
+    (source, placed): (Source, usize),
     usual_s: Option<f64>,
 ) -> Result<(), Diagnostic> {
     let (Some(on_s), Some(dwell_s), Some(end_s)) = (rig.on_s, rig.dwell_s, log.time_s.last()) else {
@@ -272,12 +274,14 @@ fn refuse_hidden_moves(
     };
     let scheduled = ((end_s - log.time_s[0]) / (on_s + dwell_s)).floor();
     let is_regular = usual_s.is_some() && moves.len() > 3;
-    if source != Source::Force || is_regular || moves.len() as f64 >= VISIBLE_MOVES * scheduled {
+    let is_complete = is_regular || moves.len() as f64 >= VISIBLE_MOVES * scheduled;
+    let is_visible = placed as f64 <= MOST_PLACED * moves.len() as f64;
+    if source != Source::Force || (is_complete && is_visible) {
         return Ok(());
     }
     Err(Diagnostic::new(format!(
         "the force shows {} moves, rig.on_s and rig.dwell_s declare about {scheduled}: the others leave it unchanged",
-        moves.len()
+        moves.len() - placed
     ))
     .with_help("add a column position_mm or power_W to the log"))
 }

@@ -58,6 +58,16 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     (1.4826 * median(&mut steps) / std::f64::consts::SQRT_2).max(floor)
 }
 
+/// Returns the standard deviation of the noise of a signal that may move at a constant speed most of
+/// the time, from the median of the absolute second differences.
+pub(super) fn noise_about_slope(values: &[f64]) -> f64 {
+    let mut bends: Vec<f64> = values.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs()).collect();
+    let resolution = bends.iter().copied().filter(|d| *d > 1e-9).fold(f64::INFINITY, f64::min);
+    let floor = if resolution.is_finite() { resolution / 3.0 } else { 0.0 };
+    // The variance of a second difference of independent values is six times theirs.
+    (1.4826 * median(&mut bends) / 6f64.sqrt()).max(floor)
+}
+
 /// Distance of a spike from the median of its neighbourhood, in standard deviations of the noise.
 const SPIKE: f64 = 5.0;
 
@@ -98,6 +108,8 @@ mod tests {
         expected[7] = 2.0;
         assert_eq!(without_spikes(&values), expected);
         assert_eq!(without_spikes(&clean), clean);
+        let ramp: Vec<f64> = (0..90).map(|i| f64::from(i) * 5.0 + 0.1 * f64::from(i % 2)).collect();
+        assert!(noise_about_slope(&ramp) < 0.2 && noise(&ramp) > 3.0);
         assert!((noise(&[0.0, 1.0, 0.0, 1.0]) - 1.4826 / 2f64.sqrt()).abs() < 1e-12);
     }
 }

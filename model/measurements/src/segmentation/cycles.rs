@@ -1,7 +1,7 @@
 //! Continuous cycles: strokes without rests, such as triangles and sines.
 
 use super::log::Log;
-use super::moves::{Move, moving};
+use super::moves::{Move, Speeds, speeds};
 use super::two_levels::{noise_about_slope, without_spikes};
 use crate::median::median;
 
@@ -13,6 +13,10 @@ const MOVING_SHARE_OF_ONE: f64 = 0.97;
 /// more.
 const STOPS_PER_HALF_CYCLE: f64 = 1.5;
 const STOP_SHARE: f64 = 0.02;
+/// Speed in the middle of a stroke, as a share of its median, below which it rests, and the largest
+/// share of such samples. A sine has at least 0.8 of its median there.
+const SLOW_SHARE: f64 = 0.65;
+const MAX_SLOW_SHARE: f64 = 0.03;
 /// Reversal of the position, as a share of its range, that ends a half-cycle.
 const REVERSAL_SHARE: f64 = 0.1;
 /// Part of the stroke over which the force is averaged: its middle half.
@@ -37,7 +41,7 @@ pub(super) struct HalfCycle {
 /// A half-cycle that does not cover it, such as the first one, is left out.
 pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
     let position_mm = log.position_mm.as_ref()?;
-    let is_moving = moving(log, position_mm)?;
+    let Speeds { is_in_motion: is_moving, mm_s, .. } = speeds(log, position_mm)?;
     let (first, last) = (is_moving.iter().position(|m| *m)?, is_moving.iter().rposition(|m| *m)?);
     let moving_count = is_moving[first..=last].iter().filter(|m| **m).count();
     let position = without_spikes(position_mm);
@@ -51,6 +55,10 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
     let stops = is_moving[first..=last].chunk_by(|a, b| a == b);
     let stops = stops.filter(|run| !run[0] && run.len() as f64 > shortest).count();
     if !is_continuous || strokes.len() < 2 || stops as f64 > STOPS_PER_HALF_CYCLE * strokes.len() as f64 {
+        return None;
+    }
+    let slow: usize = strokes.iter().map(|s| slow_samples(&mm_s[s.from..s.to])).sum();
+    if slow as f64 > MAX_SLOW_SHARE * lengths.iter().sum::<f64>() {
         return None;
     }
     let ends = |is_high: bool| {
@@ -74,6 +82,15 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
         Some(HalfCycle { stroke, middle: from..to, travel_mm: end_mm - start_mm, centre_mm })
     });
     Some(halves.collect())
+}
+
+/// Returns the number of samples in the middle of a stroke with a speed far below its median: rests
+/// that are blurred by the window of the speed.
+fn slow_samples(mm_s: &[f64]) -> usize {
+    let (from, to) = (mm_s.len() / 5, mm_s.len() - mm_s.len() / 5);
+    let middle = &mm_s[from..to];
+    let usual = median(&mut middle.to_vec());
+    middle.iter().filter(|v| **v < SLOW_SHARE * usual).count()
 }
 
 /// Returns the indices of the first and last value and of the reversals between them.

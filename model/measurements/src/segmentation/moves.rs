@@ -118,7 +118,7 @@ fn power_moves(log: &Log, power_w: &[f64]) -> Option<Vec<Move>> {
 
 /// Returns the moves by the speed of the position; `None` if it does not move.
 fn position_moves(log: &Log, position_mm: &[f64]) -> Option<Vec<Move>> {
-    let is_moving = moving(log, position_mm)?;
+    let is_moving = speeds(log, position_mm)?.is_moving;
     let moves = intervals(log, |i| is_moving[i]);
     (!moves.is_empty()).then_some(moves)
 }
@@ -127,16 +127,27 @@ fn position_moves(log: &Log, position_mm: &[f64]) -> Option<Vec<Move>> {
 const HALF_WINDOWS_S: [f64; 3] = [0.05, 0.2, 0.8];
 /// Least share of the samples with a visible motion.
 const MOVING_SAMPLES: f64 = 0.002;
-/// Share of the usual speed above which the position moves.
+/// Share of the usual speed above which the position moves; and in a window that blurs short rests.
 const SLOW_SHARE: f64 = 0.2;
+const BLURRED_SHARE: f64 = 0.5;
 
 /// Usual speed, in terms of the least visible one, from which a half window is long enough.
 const CLEAR_SPEED: f64 = 2.0;
 
-/// Returns whether the position moves at each sample; `None` if it never does.
+/// Motion of the position at each sample.
+pub(super) struct Speeds {
+    /// Whether the actuator moves, rather than rests.
+    pub(super) is_moving: Vec<bool>,
+    /// Whether it moves at least slowly, as at the reversals of a sine.
+    pub(super) is_in_motion: Vec<bool>,
+    /// Speed in millimetres per second.
+    pub(super) mm_s: Vec<f64>,
+}
+
+/// Returns the motion of the position; `None` if it never moves.
 ///
 /// The speed is the difference of the means of the half windows after and before a sample.
-pub(super) fn moving(log: &Log, position_mm: &[f64]) -> Option<Vec<bool>> {
+pub(super) fn speeds(log: &Log, position_mm: &[f64]) -> Option<Speeds> {
     let position = without_spikes(position_mm);
     let noise_mm = noise_about_slope(&position);
     let (places, times) = (running_sums(&position), running_sums(&log.time_s));
@@ -161,8 +172,12 @@ pub(super) fn moving(log: &Log, position_mm: &[f64]) -> Option<Vec<bool>> {
             continue;
         }
         let usual = median(&mut fast);
-        let threshold = bound.max(SLOW_SHARE * usual);
-        visible = Some(closed(speeds.iter().map(|v| *v > threshold).collect(), half));
+        let above = |share: f64| -> Vec<bool> {
+            let threshold = bound.max(share * usual);
+            closed(speeds.iter().map(|v| *v > threshold).collect(), half)
+        };
+        let is_moving = above(if half_s > HALF_WINDOWS_S[0] { BLURRED_SHARE } else { SLOW_SHARE });
+        visible = Some(Speeds { is_moving, is_in_motion: above(SLOW_SHARE), mm_s: speeds });
         if usual > CLEAR_SPEED * bound {
             break;
         }

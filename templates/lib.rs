@@ -55,12 +55,13 @@ pub const TEMPLATES: [Template; 10] = [
 ];
 
 /// Example files of other kinds, by the name that `pinswitch init` takes; each explains its keys and is valid unchanged.
-pub const EXAMPLES: [(&str, &str); 5] = [
+pub const EXAMPLES: [(&str, &str); 6] = [
     ("sweep", include_str!("batch/sweep.toml")),
     ("effects", include_str!("rig/effects.toml")),
     ("plan", include_str!("rig/plan.toml")),
     ("run", include_str!("rig/run.toml")),
     ("rig", include_str!("rig/rig.toml")),
+    ("import", include_str!("rig/import.toml")),
 ];
 
 /// Rigs without a switch, by the word that `pinswitch init rig --kind` takes, in the format of the example `rig`.

@@ -140,6 +140,7 @@ fn files_of_other_commands_are_recognised() {
         ("run", "segment"),
         ("rig", "experiment"),
         ("effects", "--effects"),
+        ("import", "import"),
     ] {
         let file = format!("{kind}.toml");
         done(folder.path(), &["-q", "init", kind, "--out", &file]);

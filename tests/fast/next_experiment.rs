@@ -60,7 +60,22 @@ fn proposed_runs_resolve_a_confounded_effect() {
     );
     let size = &report["effects"][0]["parameters"]["k"];
     let [low, high] = [0, 1].map(|i| size["ci95"][i].as_f64().unwrap());
-    assert!(low < 0.2 && 0.2 < high && high - low < 0.1, "{size}");
+    assert!(high - low < 0.1, "{size}");
+    // An interval misses the truth in one of twenty sessions: of three, at most one does.
+    let misses = ["5", "6", "7"].into_iter().filter(|seed| {
+        let second = format!("second-{seed}");
+        done(path, &[&["-q", "simulate"], &runs[..], &truth, &["--seed", seed, "--out", &second]].concat());
+        let table = format!("{second}/plateaus.csv");
+        done(path, &["-q", "calibrate", "first/plateaus.csv", &table, "--out", &format!("with-{seed}")]);
+        let report = json(&path.join(format!("with-{seed}/report.json")));
+        let size = &report["effects"][0]["parameters"]["k"]["ci95"];
+        assert_eq!(
+            (&report["verdict"], &report["effects"][0]["id"]),
+            (&"attributed".into(), &"rate_dependence".into())
+        );
+        !(size[0].as_f64() < Some(0.2) && Some(0.2) < size[1].as_f64())
+    });
+    assert!(misses.count() <= 1);
     let sessions = report["sessions"].as_array().unwrap();
     assert_eq!((sessions.len(), &sessions[1]["verdict"]), (2, &"attributed".into()));
     // Expected answers are compared with the actual ones: certain answers are given.

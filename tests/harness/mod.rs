@@ -3,6 +3,7 @@
 
 #![allow(dead_code)]
 
+pub(crate) mod flips;
 pub(crate) mod preview;
 #[path = "../../cad/solid/src/files/step/step_file/mod.rs"]
 pub(crate) mod step_file;

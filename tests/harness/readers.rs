@@ -20,6 +20,7 @@ use pinswitch_calibration::experiment::RigLimits;
 use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_friction::Substrate;
+use pinswitch_import::{Map, Output, Source, import};
 use pinswitch_simulation::{Plan, simulate};
 use pinswitch_solid::files::{read_stl, read_three_mf, stl_bytes};
 use pinswitch_solid::validity::{Expectation, examine};
@@ -48,7 +49,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 16] = [
+pub const READERS: [Reader; 18] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -65,6 +66,8 @@ pub const READERS: [Reader; 16] = [
     Reader { name: "three_mf", judge: three_mf },
     Reader { name: "shard_table", judge: shard_table },
     Reader { name: "batch_files", judge: batch_files },
+    Reader { name: "import", judge: import_file },
+    Reader { name: "import_map", judge: import_map },
 ];
 
 /// Reads bytes with the reader of that name.
@@ -93,6 +96,38 @@ fn refused(error: &impl std::fmt::Display) -> Result<Reading, String> {
 
 fn require(is_true: bool, fault: impl FnOnce() -> String) -> Result<(), String> {
     if is_true { Ok(()) } else { Err(fault()) }
+}
+
+/// A question is a refusal; a result is repeated by the map that it gives.
+fn import_file(bytes: &[u8]) -> Result<Reading, String> {
+    let of = |map: &Map| import(&[Source::new(FILE, bytes)], map);
+    let result = match of(&Map::default()) {
+        Ok(result) => result,
+        Err(e) => return refused(&e),
+    };
+    for question in &result.understanding.questions {
+        refused(&question.to_diagnostic())?;
+    }
+    let Some(output) = result.output else { return Ok(Reading::Refused) };
+    let text = result.map.to_toml();
+    let map = Map::parse(&text, "written").map_err(|e| format!("the written map is refused: {e}\n{text}"))?;
+    let again = of(&map).map_err(|e| format!("the written map cannot be used: {e}\n{text}"))?;
+    // As text: a log may have values that are not numbers.
+    let written = again.output.as_ref().map(Output::to_csv);
+    require(written == Some(output.to_csv()), || format!("the written map has another result:\n{text}"))?;
+    Ok(Reading::Accepted)
+}
+
+fn import_map(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let map = match Map::parse(text, FILE) {
+        Ok(map) => map,
+        Err(e) => return refused(&e),
+    };
+    let written = map.to_toml();
+    let again = Map::parse(&written, "written").map_err(|e| format!("the written map is refused: {e}"))?;
+    require(again == map, || format!("the written map has another content:\n{written}"))?;
+    Ok(Reading::Accepted)
 }
 
 fn configuration(bytes: &[u8]) -> Result<Reading, String> {

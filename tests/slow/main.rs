@@ -11,6 +11,7 @@ mod attributed;
 mod batch_kill;
 mod bounds;
 mod campaign;
+mod changed_digits;
 mod closed_loop;
 mod effects_aside;
 mod generate_kill;

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 
 use pinswitch_switch::config::to_toml;
-use pinswitch_switch::documents::SourceEntry;
+use pinswitch_switch::documents::{FileEntry as ManifestEntry, SourceEntry};
 use pinswitch_switch::formats::{ALL, named};
 use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::set::Set;
@@ -59,7 +59,11 @@ impl FileSet {
         let (built, prediction) = build(cache, configuration, design.model.as_deref())?;
         let formats = named(&[ALL])?;
         let set = Set::new(&built, &prediction, &formats).map_err(set_refusal)?;
-        let set = set.made_from(SourceEntry::new(source.name.clone())).map_err(set_refusal)?;
+        let mut set = set.made_from(SourceEntry::new(source.name.clone())).map_err(set_refusal)?;
+        if let Some(model) = &design.model {
+            let entry = ManifestEntry::of(&OutputFile::new("model.toml", model.clone().into_bytes()));
+            set = set.predicted_from(entry.sha256).map_err(set_refusal)?;
+        }
         let files = std::iter::once(source).chain(set.files).collect();
         Ok(Self { design: design.clone(), files })
     }

@@ -10,7 +10,7 @@ const KEY: &str = ",\n  \"checksum\": \"";
 const END: &str = "\"\n}\n";
 
 /// Appends the key `checksum` to an indented JSON object: the SHA-256 of all bytes before it.
-pub(super) fn with_checksum(mut json: Vec<u8>) -> Vec<u8> {
+pub fn with_checksum(mut json: Vec<u8>) -> Vec<u8> {
     while json.last().is_some_and(|b| b"\n}".contains(b)) {
         // The brace of an inner object at the end is indented, and stays.
         let is_last_brace = json.last() == Some(&b'}');
@@ -28,7 +28,7 @@ pub(super) fn with_checksum(mut json: Vec<u8>) -> Vec<u8> {
 }
 
 /// Returns whether these are unchanged bytes from [`with_checksum`].
-pub(super) fn has_valid_checksum(bytes: &[u8]) -> bool {
+pub fn has_valid_checksum(bytes: &[u8]) -> bool {
     let hash_length = 2 * Sha256::output_size();
     let Some(at) = bytes.len().checked_sub(KEY.len() + hash_length + END.len()) else { return false };
     let (json, rest) = bytes.split_at(at);

@@ -80,6 +80,7 @@ mod tally;
 mod variant;
 
 pub use axis::{Method, ParameterRef, SweepAxis, unit_points};
+pub use checksum::{has_valid_checksum, with_checksum};
 pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]

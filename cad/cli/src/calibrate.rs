@@ -11,7 +11,8 @@ use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ModelFile, SessionPlan, SessionReport, calibrate, calibrate_below, explain_published,
+    Calibration, ExternalInput, ModelFile, ProvenanceReport, SessionPlan, SessionReport, calibrate, calibrate_below,
+    explain_published,
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};
@@ -20,8 +21,8 @@ use pinswitch_switch::output::OutputFile;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, SEED, print_text};
-use crate::input::was_read;
-use crate::write::write_set;
+use crate::input::{InputFile, files_read, was_read};
+use crate::write::write_listed;
 use plans::{plans, with_forms};
 use spinner::Spinner;
 use summary::summary;
@@ -41,7 +42,7 @@ pub(super) struct Arguments {
     /// drift and mounts.
     #[arg(required_unless_present = "published", value_name = "TABLE")]
     tables: Vec<PathBuf>,
-    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
+    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml, provenance.json and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Calibrate on the seven maxima of the paper instead of a table.
@@ -58,11 +59,13 @@ pub(super) struct Arguments {
     effects: UserEffects,
 }
 
+/// Name of this command in a manifest.
+const COMMAND: &str = "calibrate";
 /// File of a form that was fitted to unattributed structure.
 pub(super) const FORM_FILE: &str = "discovered.toml";
 /// Begin of that file, by which a later run recognises it.
 const FORM_HEADER: &str =
-    "# Fitted by `pinswitch calibrate`, not confirmed: give it a name, and test it on other data:
+    "# Fitted by `pinswitch calibrate`, not confirmed. Test it on other data; to rename the effect, edit a copy.
 #   pinswitch calibrate next.csv --effects discovered.toml --out DIR
 ";
 
@@ -114,6 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut calibration =
         calibration.map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(&name)))?;
     calibration.report.ignored_columns = table.ignored_columns();
+    calibration.report.provenance = Some(provenance());
     if !sessions.is_empty() {
         let last = session_report(&arguments.tables, &plans, &table, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
@@ -123,16 +127,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(form) => {
             let text = format!("{FORM_HEADER}{}", own_effects_text([&form.definition]));
             files.insert(0, OutputFile { name: FORM_FILE.to_owned(), bytes: text.into_bytes() });
-            write_set(&arguments.out, &files)?;
+            write_listed(&arguments.out, &files, COMMAND, &[])?;
         }
         None => {
             check_stale_form(&arguments.out)?;
-            write_set(&arguments.out, &files)?;
+            write_listed(&arguments.out, &files, COMMAND, &[FORM_FILE])?;
             // Only now: if the disk is full, the earlier result stays complete.
             remove_stale_form(&arguments.out);
         }
     }
     print_text(&summary(&calibration.report))
+}
+
+/// Returns the external ones of the files that this command has read.
+fn provenance() -> ProvenanceReport {
+    let input = |(path, input): (PathBuf, InputFile)| {
+        let file = path.file_name()?.to_string_lossy().into_owned();
+        input.is_external.then_some(ExternalInput { file, sha256: input.sha256 })
+    };
+    let mut external: Vec<_> = files_read().into_iter().filter_map(input).collect();
+    external.sort_by(|a, b| (&a.file, &a.sha256).cmp(&(&b.file, &b.sha256)));
+    ProvenanceReport { external }
 }
 
 /// Reads and joins the tables; also returns their names for errors.
@@ -214,7 +229,7 @@ fn published(out: &Path) -> Result<(), Failure> {
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
-    write_set(out, &files)?;
+    write_listed(out, &files, COMMAND, &[])?;
     print_text(&text)
 }
 

@@ -20,7 +20,7 @@ use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, print_json, print_text};
 use crate::input::{read_file, read_text_file, was_read};
-use crate::write::write_set;
+use crate::write::write_listed;
 
 /// Plan the runs that answer most open questions of a calibration.
 ///
@@ -106,8 +106,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if tests_form && !is_there {
         files.push(file(FORM_FILE, read_text_file(&form)?.into_bytes()));
     }
-    write_set(&arguments.out, &files)?;
-    if !tests_form && !is_there {
+    let is_stale = !tests_form && !is_there;
+    write_listed(&arguments.out, &files, "experiment", if is_stale { &[FORM_FILE] } else { &[] })?;
+    if is_stale {
         remove_stale_form(&arguments.out);
     }
     if arguments.json { print_json(&proposal) } else { print_text(&summary(&proposal, &arguments.out)) }

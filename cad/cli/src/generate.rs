@@ -13,6 +13,7 @@ use super::slicing;
 use super::source::{Fix, LoadedDesign, Source};
 use super::terminal::warn;
 use super::{Failure, print_data, print_text};
+use crate::input::sha256_read;
 use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
@@ -135,6 +136,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(fix) = &fix {
         set =
             set.with_file(OutputFile::new(FIXED, fix.text.clone().into_bytes())).map_err(Failure::failed)?;
+    }
+    if let Some(hash) = arguments.model.as_deref().and_then(sha256_read) {
+        set = set.predicted_from(hash).map_err(Failure::failed)?;
     }
     let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
     for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {

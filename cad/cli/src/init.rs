@@ -20,7 +20,7 @@ use crate::write::write_file;
 pub(super) struct Arguments {
     /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
     /// of other kinds: `sweep` for a batch, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
-    /// raw logs, `rig` for the limits of a rig.
+    /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file.
     name: String,
     /// Kind of rig, with the name `rig` [default: the paper's].
     #[arg(long, value_name = "KIND", value_parser = RIGS.map(|(kind, _)| kind))]
@@ -116,7 +116,7 @@ mod tests {
             assert_eq!(diagnostic.location(), Some(&Location::file(name)));
             let help = diagnostic.help().unwrap();
             assert!(help.starts_with(suggestion), "{help}");
-            assert!(help.contains("the kinds are sweep, effects, plan, run, rig"), "{help}");
+            assert!(help.contains("the kinds are sweep, effects, plan, run, rig, import,"), "{help}");
         }
     }
 }

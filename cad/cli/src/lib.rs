@@ -17,6 +17,7 @@ mod finger_text;
 mod input;
 mod law;
 mod predict_rows;
+mod provenance;
 mod range;
 mod second_kernel;
 mod slicing;
@@ -42,7 +43,7 @@ const SEED: u64 = 1;
   predict           predict, physics, finger
   design            design
   check meshes      check
-  use measurements  segment, calibrate, experiment, effects, simulate, power
+  use measurements  import, segment, calibrate, experiment, effects, simulate, power
   set up a shell    completions, man
 
 `pinswitch help COMMAND` explains a command, with examples.")]
@@ -86,6 +87,7 @@ commands! {
     Render: render,
     Layouts: layouts,
     Init: init,
+    Import: import,
     Segment: segment,
     Calibrate: calibrate,
     Experiment: experiment,

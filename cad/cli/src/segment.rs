@@ -14,11 +14,12 @@ use pinswitch_switch::output::OutputFile;
 
 use super::terminal::to_json;
 use super::{Failure, print_text};
-use crate::write::write_set;
+use crate::write::write_listed;
 
 /// Convert raw logs to a plateau table.
 ///
-/// Prints the faults of each log. Also writes a JSON file with the faults, and one SVG per log with its plateaus marked, next to the table.
+/// Prints the faults of each log. Also writes, next to the table, a JSON file with the faults, one SVG per log with its
+/// plateaus marked, and provenance.json.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: pinswitch segment run.toml --out plateaus.csv")]
 pub(super) struct Arguments {
@@ -78,7 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    write_set(out, &files)?;
+    write_listed(out, &files, "segment", &[])?;
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print_text(&summary)
 }

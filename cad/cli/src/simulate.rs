@@ -22,7 +22,7 @@ use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, print_text};
 use crate::input::read_text_file;
-use crate::write::write_set;
+use crate::write::write_listed;
 
 /// Simulate a friction rig with known effects and noise.
 ///
@@ -101,6 +101,9 @@ pub(super) struct Arguments {
     only: Vec<String>,
 }
 
+/// Name of this command in a manifest.
+const COMMAND: &str = "simulate";
+
 /// Parses the factor by which effects are scaled.
 fn scale(text: &str) -> Result<f64, Diagnostic> {
     let factor = text.parse::<f64>().map_err(|e| Diagnostic::new("not a number").with_source(e))?;
@@ -145,7 +148,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.next {
         files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
     }
-    write_set(out, &files).map_err(Failure::from)
+    write_listed(out, &files, COMMAND, &[]).map_err(Failure::from)
 }
 
 /// Simulates planned runs on the rig of a model or of a plan, and writes their table.
@@ -175,7 +178,8 @@ fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
         }
     };
     let table = PlateauTable::write(&rows).into_bytes();
-    write_set(out, &[OutputFile { name: "plateaus.csv".to_owned(), bytes: table }]).map_err(Failure::from)
+    let files = [OutputFile { name: "plateaus.csv".to_owned(), bytes: table }];
+    write_listed(out, &files, COMMAND, &[]).map_err(Failure::from)
 }
 
 /// Returns the plan with the effects of the command line, and its name for errors.

@@ -1,6 +1,6 @@
 //! The configuration of a command: a file or a template, over a preset, under single values of the command line.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
@@ -15,6 +15,7 @@ use pinswitch_switch::feasibility::{self, ParameterChange, Proposal};
 use pinswitch_switch::templates;
 
 use super::Failure;
+use crate::provenance::path_from;
 use crate::write::source_of_set_with;
 
 /// Template of a command that was given no configuration.
@@ -361,22 +362,12 @@ impl Origin {
         match self {
             Self::Template(name) => SourceEntry::new(name),
             Self::File(path) => {
-                let name = from_folder(&real(path), &real(folder)).to_string_lossy().replace('\\', "/");
+                let name = path_from(&real(folder), &real(path)).to_string_lossy().replace('\\', "/");
                 let is_template = templates::names().contains(&name.as_str());
                 SourceEntry::new(if is_template { format!("./{name}") } else { name })
             }
         }
     }
-}
-
-/// Returns the path from `folder` to `file`, both absolute; `file` itself if they have no root in common.
-fn from_folder(file: &Path, folder: &Path) -> PathBuf {
-    let shared = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
-    if shared == 0 {
-        return file.to_owned();
-    }
-    let up = folder.components().skip(shared).map(|_| Component::ParentDir);
-    up.chain(file.components().skip(shared)).collect()
 }
 
 fn stem(file: &str) -> String {
@@ -415,12 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_named_from_the_folder() {
-        let from =
-            |file: &str, folder: &str| from_folder(Path::new(file), Path::new(folder)).display().to_string();
-        assert_eq!(from("/a/b/x.toml", "/a/b"), "x.toml");
-        assert_eq!(from("/a/c/x.toml", "/a/b"), "../c/x.toml");
-        assert_eq!(from("/x.toml", "/a/b"), "../../x.toml");
+    fn the_file_of_a_template_is_the_template() {
         let text = templates::text("three-double").unwrap();
         for file in ["three-double", "templates/three-double.toml"] {
             assert_eq!(Origin::of(file, &text).entry(Path::new(".")), SourceEntry::new("three-double"));

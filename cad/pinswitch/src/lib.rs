@@ -11,6 +11,7 @@
 //! | --- | --- |
 //! | [`friction`] | contacts, pin patterns, the friction laws, the published numbers |
 //! | [`calibration`] | tables of measured plateaus, segmentation of logs, effects, fits, verdicts |
+//! | [`import`] | any laboratory's file, read into a plateau table or a log |
 //! | [`simulation`] | a simulated rig: tables and logs with chosen effects, the power of a plan |
 //! | [`formula`] | the formula language of user-defined effects and sweep constraints |
 //! | [`solid`] | exact solids of lines and arcs, meshes, their examination, and their files: STL, 3MF, GLB, STEP and DXF |
@@ -62,6 +63,7 @@ pub use pinswitch_diagnostic as diagnostic;
 pub use pinswitch_drafting as drafting;
 pub use pinswitch_formula as formula;
 pub use pinswitch_friction as friction;
+pub use pinswitch_import as import;
 pub use pinswitch_report as report;
 pub use pinswitch_simulation as simulation;
 pub use pinswitch_slicer as slicer;

@@ -62,6 +62,15 @@ impl Set {
         self.with_manifest()
     }
 
+    /// The same set with the SHA-256 of the model file of its curve in the manifest, in hexadecimal digits.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn predicted_from(mut self, model_sha256: String) -> Result<Self, SetError> {
+        self.manifest.friction.model_sha256 = Some(model_sha256);
+        self.with_manifest()
+    }
+
     /// The same set with print time, filament and files of a slicer.
     ///
     /// # Errors

@@ -71,6 +71,7 @@ mod adequacy;
 mod aliasing;
 mod calibrate;
 mod confirmation;
+mod content_hash;
 mod discovery;
 pub mod effects;
 pub mod evidence;
@@ -102,7 +103,7 @@ pub use pinswitch_measurements::{median, segmentation, toml_error};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
-    Extrapolation, Fate, Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport,
-    StructureReport, Verdict,
+    ExternalInput, Extrapolation, Fate, Invisible, LimitReport, ModelReport, NoisePart, ProvenanceReport,
+    Report, RivalReport, SessionReport, StructureReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};

@@ -5,6 +5,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
+use crate::content_hash::{check_content_hash, with_content_hash};
 use crate::effects::{
     Abscissa, Covariate, Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks,
 };
@@ -186,7 +187,8 @@ impl ModelFile {
     /// Parses a model file. `file` is its name in errors.
     ///
     /// # Errors
-    /// A [`Diagnostic`] of the first field that is not that of a model of this version.
+    /// A [`Diagnostic`] of the first field that is not that of a model of this version, or of a text whose last line
+    /// contains another SHA-256 than that of the lines above.
     pub fn parse(text: &str, file: &str) -> Result<Self, Diagnostic> {
         let malformed = |e: toml::de::Error| toml_error(file, text, &e).with_help(HELP);
         let located = |e: Diagnostic| locate_field(e, file, text);
@@ -206,17 +208,18 @@ impl ModelFile {
             Vocabulary::built_in().with(own).map_err(|e| Diagnostic::from(e).or_in_file(file))?;
         let constants = parsed.checked_model().map_err(located)?.values().len();
         check_covariance(&parsed.covariance, constants).map_err(located)?;
+        check_content_hash(text).map_err(|e| e.or_in_file(file))?;
         Ok(parsed)
     }
 
-    /// Returns the text of the file.
+    /// Returns the text of the file. Its last line is a comment with the SHA-256 of the lines above.
     ///
     /// # Errors
     /// If a value cannot be written as TOML.
     pub fn to_text(&self) -> Result<String, Diagnostic> {
         let own = own_effect_blocks(self.vocabulary.own().map(|own| own.definition()));
         toml::to_string(self)
-            .map(|text| text + &own)
+            .map(|text| with_content_hash(text + &own))
             .map_err(|e| Diagnostic::from_error(e).with_location(Location::file("model.toml")))
     }
 
@@ -437,12 +440,14 @@ mod tests {
     #[test]
     fn walks_of_earlier_files_become_offsets() {
         let text = text();
+        // Earlier files have no hash.
+        let (text, _) = text.trim_end().rsplit_once('\n').unwrap();
         let (before, walk) = text.split_once("[noise.walk]\n").unwrap();
         let after = walk.split_once("\n\n").map_or("", |(_, after)| after);
         let earlier =
             |walk: &str| format!("{before}\n{after}").replace("[noise]\n", &format!("[noise]\n{walk}\n"));
-        assert_eq!(sd_n(&earlier("walk_N = 0.0")), sd_n(&text));
-        assert!((sd_n(&earlier("walk_N = 0.2")) / libm::hypot(sd_n(&text), 0.2) - 1.0).abs() < 1e-9);
+        assert_eq!(sd_n(&earlier("walk_N = 0.0")), sd_n(text));
+        assert!((sd_n(&earlier("walk_N = 0.2")) / libm::hypot(sd_n(text), 0.2) - 1.0).abs() < 1e-9);
         for walk in ["walk_N = -0.2", "walk_N = \"much\""] {
             let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
             assert!(error.starts_with("model.toml:") && error.contains(": noise.walk_N = "), "{error}");
@@ -463,6 +468,19 @@ mod tests {
         assert!(error.problem().contains("row 1 has no position_mm"), "{error}");
         let baseline = ModelFile::new(&calibration.baseline);
         assert!(baseline.predict(&[row], Session::New, "baseline.toml").is_ok());
+    }
+
+    #[test]
+    fn changed_digits_are_refused() {
+        let text = text();
+        let at = text.find("value = 0.").unwrap() + "value = 0.".len();
+        let digit = if &text[at..=at] == "1" { "2" } else { "1" };
+        let mut changed = text.clone();
+        changed.replace_range(at..=at, digit);
+        let error = ModelFile::parse(&changed, "model.toml").unwrap_err();
+        assert!(error.to_string().starts_with("model.toml: was changed since pinswitch wrote it"), "{error}");
+        let (accepted, _) = changed.trim_end().rsplit_once('\n').unwrap();
+        assert!(ModelFile::parse(accepted, "model.toml").is_ok());
     }
 
     #[test]

@@ -40,6 +40,13 @@ pub(super) fn summary(report: &Report) -> String {
         let columns = report.unknown_columns.join(", ");
         text.push_str(&format!("absent or incomplete columns, whose covariates are not used: {columns}\n"));
     }
+    if let Some(provenance) = report.provenance.as_ref().filter(|p| !p.external.is_empty()) {
+        let names: Vec<&str> = provenance.external.iter().map(|input| input.file.as_str()).collect();
+        text.push_str(&format!(
+            "external inputs, which no provenance.json lists: {}\n",
+            neutral_line(&listed(&names))
+        ));
+    }
     text.push_str(&extrapolation(report));
     text
 }

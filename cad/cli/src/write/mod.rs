@@ -20,6 +20,7 @@ pub use set_folder::{PublishError, SetFolder};
 
 use crate::Failure;
 use crate::input::was_read;
+pub use crate::provenance::ManifestError;
 
 /// Begin of the names of temporary files.
 const TEMPORARY_PREFIX: &str = ".pinswitch-";
@@ -38,6 +39,14 @@ pub enum WriteError {
     /// The command has read the file, and would overwrite its input.
     #[error("{}: is an input of this command", .0.display())]
     Input(PathBuf),
+    /// The manifest of the folder cannot be extended.
+    #[error("{}: cannot extend the manifest", path.display())]
+    Manifest {
+        /// The manifest.
+        path: PathBuf,
+        /// Why.
+        problem: ManifestError,
+    },
 }
 
 impl WriteError {
@@ -59,6 +68,7 @@ impl From<WriteError> for Diagnostic {
             WriteError::Input(path) => Self::new("is an input of this command")
                 .with_location(Location::file(path.display().to_string()))
                 .with_help("give another --out"),
+            WriteError::Manifest { path, problem } => problem.diagnostic(&path),
         }
     }
 }
@@ -67,7 +77,7 @@ impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::System { .. } => Self::failed(error),
-            WriteError::Input(_) => Self::bad_input(error),
+            WriteError::Input(_) | WriteError::Manifest { .. } => Self::bad_input(error),
         }
     }
 }
@@ -139,6 +149,20 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 /// [`WriteError`] with the path.
 pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> {
     SetFolder::wait(folder)?.replace(files)
+}
+
+/// As [`write_set`], of files that a later command reads: lists them in `provenance.json` in `folder` with `command` and
+/// the files that it has read. Entries of `stale` files are removed from the manifest.
+///
+/// # Errors
+/// [`WriteError`] with the path.
+pub(crate) fn write_listed(
+    folder: &Path,
+    files: &[OutputFile],
+    command: &str,
+    stale: &[&str],
+) -> Result<(), WriteError> {
+    SetFolder::wait(folder)?.replace_listed(files, command, stale)
 }
 
 #[cfg(test)]

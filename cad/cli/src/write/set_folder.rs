@@ -16,6 +16,8 @@ use super::folder_lock::{FolderLock, JOURNAL, LockMode};
 use super::record::{Record, is_plain, read_existing};
 use super::steps::Step;
 use super::{WriteError, refuse_obstacle};
+use crate::input::sources_from;
+use crate::provenance::{PROVENANCE, Provenance};
 
 /// Name of the folder for staged files.
 const STAGED: &str = ".pinswitch-staged";
@@ -139,10 +141,58 @@ impl SetFolder {
     /// # Errors
     /// [`WriteError`].
     pub(super) fn replace(&self, files: &[OutputFile]) -> Result<(), WriteError> {
+        self.take(&self.replacement(files)?)
+    }
+
+    /// Stages `files`; returns the steps that replace them.
+    fn replacement(&self, files: &[OutputFile]) -> Result<Vec<Step>, WriteError> {
         self.refuse_obstacles(files)?;
         let steps = self.stage(files)?;
         let first = steps.last().map(|seal| Step::Remove(seal.target().clone()));
-        self.take(&first.into_iter().chain(steps).collect::<Vec<_>>())
+        Ok(first.into_iter().chain(steps).collect())
+    }
+
+    /// As [`Self::replace`], and lists the files in the manifest of the folder, with every file that this process has read
+    /// as their source. Entries of `stale` files are removed.
+    ///
+    /// # Errors
+    /// [`WriteError`]; of a damaged or foreign manifest before anything changes.
+    pub(super) fn replace_listed(
+        &self,
+        files: &[OutputFile],
+        command: &str,
+        stale: &[&str],
+    ) -> Result<(), WriteError> {
+        self.replace(&self.listed(files, command, stale)?)
+    }
+
+    /// Returns `files` with the manifest that lists them, before the last file.
+    fn listed(
+        &self,
+        files: &[OutputFile],
+        command: &str,
+        stale: &[&str],
+    ) -> Result<Vec<OutputFile>, WriteError> {
+        let Some((seal, others)) = files.split_last() else { return Ok(Vec::new()) };
+        let manifest = self
+            .provenance()?
+            .retaining(|name| !stale.contains(&name) && self.folder.join(name).symlink_metadata().is_ok());
+        let manifest = manifest.with_files(command, sources_from(&self.folder), files);
+        let path = self.folder.join(PROVENANCE);
+        let bytes = manifest.to_bytes().map_err(|e| WriteError::at(&path)(std::io::Error::other(e)))?;
+        // Until it is renamed, after the other files, the earlier manifest reveals a mixture of both runs.
+        Ok(others.iter().cloned().chain([OutputFile::new(PROVENANCE, bytes), seal.clone()]).collect())
+    }
+
+    /// Reads the manifest of provenance; an empty one if there is none.
+    fn provenance(&self) -> Result<Provenance, WriteError> {
+        let path = self.folder.join(PROVENANCE);
+        match read_existing(&path).map_err(WriteError::at(&path))? {
+            Some(bytes) => {
+                Provenance::parse(&bytes).map_err(|problem| WriteError::Manifest { path, problem })
+            }
+            None => Ok(Provenance::default()),
+        }
     }
 
     fn plan(&self, files: &[OutputFile], source: &SourceEntry, force: bool) -> Result<Plan, PublishError> {
@@ -255,6 +305,7 @@ struct Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::provenance::sha256;
     use pinswitch_switch::set::MANIFEST;
     use sha2::{Digest, Sha256};
     use std::collections::BTreeMap;
@@ -331,6 +382,31 @@ mod tests {
                 assert!(steps > 8);
                 break;
             }
+        }
+    }
+
+    /// A killed run leaves the set without its last file, or a file that its manifest refuses.
+    #[test]
+    fn a_killed_run_leaves_no_believed_mixture() {
+        let set = |text: &str| ["a", "b", "seal"].map(|name| OutputFile::new(name, text));
+        let is_intact = |folder: &Path| {
+            let manifest = Provenance::parse(&std::fs::read(folder.join(PROVENANCE)).unwrap()).unwrap();
+            let is_listed = |name| {
+                let hash = sha256(&std::fs::read(folder.join(name)).unwrap_or_default());
+                manifest.check(name, &hash).is_ok_and(|record| record.is_some())
+            };
+            ["a", "b", "seal"].into_iter().all(is_listed)
+        };
+        let place = tempfile::tempdir().unwrap();
+        let folder = SetFolder::lock(place.path()).unwrap();
+        let steps =
+            |text: &str| folder.replacement(&folder.listed(&set(text), "test", &[]).unwrap()).unwrap();
+        let count = steps("old").len();
+        for killed in 0..=count {
+            folder.take(&steps("old")).unwrap();
+            assert!(is_intact(place.path()));
+            folder.take(&steps("new")[..killed]).unwrap();
+            assert_eq!(is_intact(place.path()), killed == 0 || killed == count, "after {killed} steps");
         }
     }
 

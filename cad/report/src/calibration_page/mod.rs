@@ -65,6 +65,13 @@ fn data(report: &Report) -> String {
         let _ =
             writeln!(html, "<p>Absent or incomplete columns, whose covariates are not used: {columns}.</p>");
     }
+    if let Some(provenance) = report.provenance.as_ref().filter(|p| !p.external.is_empty()) {
+        let _ = writeln!(
+            html,
+            "<p>External inputs, which no provenance.json lists: {}.</p>",
+            escape(&provenance.external_names())
+        );
+    }
     html
 }
 

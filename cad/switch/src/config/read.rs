@@ -197,7 +197,8 @@ fn not_a_table(name: &str, item: &Item) -> Diagnostic {
 }
 
 /// Names that only another kind of file has at its top level, the kind, and the command that reads it.
-const OTHER_KINDS: [(&[&str], &str, &str); 7] = [
+const OTHER_KINDS: [(&[&str], &str, &str); 8] = [
+    (&["column", "directions"], "a map of an import", "run `pinswitch import SOURCE --map FILE`"),
     (&["sweep", "axes", "constraints", "set"], "a sweep", "run `pinswitch batch FILE`"),
     (&["ask"], "a request for a design", "run `pinswitch design --ask FILE`"),
     (&["effect"], "a file of effects", "run `pinswitch calibrate TABLE --effects FILE`"),

@@ -90,6 +90,9 @@ pub struct FrictionEntry {
     pub reasons: Vec<String>,
     /// Source of the law.
     pub source: &'static str,
+    /// SHA-256 of the model file from which the curve is predicted, hexadecimal; absent for another law.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model_sha256: Option<String>,
     /// Heaviest load of the curve, N.
     pub load_n: f64,
     /// Friction at that load, N.
@@ -245,6 +248,7 @@ impl Manifest {
                 trust: curve.status,
                 reasons: curve.reasons.clone(),
                 source: curve.law.source(),
+                model_sha256: None,
                 load_n: last(&curve.load_n),
                 friction_n: last(&curve.friction_n),
                 band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],

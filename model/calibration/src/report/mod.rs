@@ -253,6 +253,29 @@ pub struct LimitReport {
     pub excluded: bool,
 }
 
+/// An input of a calibration that no manifest lists, so that a change of it is not detected.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExternalInput {
+    /// Name without its folder.
+    pub file: String,
+    /// SHA-256 of its content, in hexadecimal digits.
+    pub sha256: String,
+}
+
+/// Origin of the inputs of a calibration.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ProvenanceReport {
+    /// External inputs, by name. All others were compared with their manifests.
+    pub external: Vec<ExternalInput>,
+}
+
+impl ProvenanceReport {
+    /// Returns the names of the external inputs, with commas.
+    pub fn external_names(&self) -> String {
+        self.external.iter().map(|input| input.file.as_str()).collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// Content of `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
@@ -308,6 +331,9 @@ pub struct Report {
     /// Optional columns that are absent, or empty in some rows: their covariates are not used.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown_columns: Vec<String>,
+    /// Origin of the inputs; absent if they were not read from files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<ProvenanceReport>,
     /// Effects that are not identifiable with this table.
     pub invisible: Vec<Invisible>,
     /// Effects that no table of such a rig identifies after the refit.

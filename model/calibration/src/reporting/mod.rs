@@ -103,6 +103,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         aliasing: aliasing(rows),
         ignored_columns: Vec::new(),
         unknown_columns: lacking.iter().map(|quantity| quantity.column().to_owned()).collect(),
+        provenance: None,
         invisible: [invisible(evidence, baseline), without_covariate(vocabulary, lacking, is_plain)].concat(),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(evidence, rows),

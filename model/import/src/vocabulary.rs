@@ -1,0 +1,532 @@
+//! Words of column names and of directions, in five languages.
+
+use pinswitch_friction::Direction;
+
+use crate::quantity::Quantity;
+
+/// Splits a name into lower-case words without accents. Words end at signs, at `camelCase` and
+/// between letters and digits.
+pub(crate) fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut previous = ' ';
+    for c in name.chars().take(200) {
+        let is_boundary = (previous.is_lowercase() && c.is_uppercase())
+            || (previous.is_alphabetic() && c.is_ascii_digit())
+            || (previous.is_ascii_digit() && c.is_alphabetic());
+        if !c.is_alphanumeric() || is_boundary {
+            words.push(String::new());
+        }
+        if c.is_alphanumeric()
+            && let Some(word) = words.last_mut()
+        {
+            for lower in c.to_lowercase() {
+                word.push_str(&without_accent(lower));
+            }
+        }
+        previous = c;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+fn without_accent(c: char) -> String {
+    let plain = match c {
+        'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' => "a",
+        'è' | 'é' | 'ê' | 'ë' => "e",
+        'ì' | 'í' | 'î' | 'ï' => "i",
+        'ò' | 'ó' | 'ô' | 'õ' | 'ö' => "o",
+        'ù' | 'ú' | 'û' | 'ü' => "u",
+        'ñ' => "n",
+        'ç' => "c",
+        'ß' => "ss",
+        'α' => "alpha",
+        'θ' | 'ϑ' => "theta",
+        'φ' | 'ϕ' => "phi",
+        _ => return c.to_string(),
+    };
+    plain.to_owned()
+}
+
+/// Words of each quantity. The first quantity with a word of a name is that of the name.
+const NAMES: [(Quantity, &[&str]); 20] = [
+    (
+        Quantity::WrapAngle,
+        &[
+            "angle",
+            "winkel",
+            "umschlingung",
+            "wrap",
+            "angolo",
+            "angulo",
+            "theta",
+            "phi",
+            "alpha",
+            "avvolgimento",
+            "enroulement",
+        ],
+    ),
+    (Quantity::LoadMass, &["mass", "masse", "masa", "massa"]),
+    (
+        Quantity::Force,
+        &[
+            "force",
+            "forces",
+            "kraft",
+            "krafte",
+            "fuerza",
+            "forza",
+            "effort",
+            "f",
+            "fx",
+            "fy",
+            "fz",
+            "loadcell",
+            "cell",
+            "messkraft",
+            "tension",
+            "kraftmessdose",
+            "zugkraft",
+        ],
+    ),
+    (
+        Quantity::Load,
+        &[
+            "load",
+            "last",
+            "belastung",
+            "charge",
+            "carga",
+            "carico",
+            "weight",
+            "gewicht",
+            "poids",
+            "peso",
+            "deadweight",
+            "loads",
+        ],
+    ),
+    (
+        Quantity::Direction,
+        &[
+            "direction",
+            "dir",
+            "richtung",
+            "sens",
+            "direccion",
+            "direzione",
+            "verso",
+            "sentido",
+            "bewegung",
+            "branch",
+            "stroke direction",
+        ],
+    ),
+    (
+        Quantity::Dwell,
+        &[
+            "dwell",
+            "pause",
+            "haltezeit",
+            "wartezeit",
+            "ruhezeit",
+            "attente",
+            "espera",
+            "attesa",
+            "reposo",
+            "rest",
+        ],
+    ),
+    (
+        Quantity::Speed,
+        &["speed", "geschwindigkeit", "velocity", "vitesse", "velocidad", "velocita", "v", "rpm", "drehzahl"],
+    ),
+    (Quantity::Date, &["date", "datum", "fecha", "data"]),
+    (
+        Quantity::Time,
+        &[
+            "time",
+            "zeit",
+            "t",
+            "temps",
+            "tiempo",
+            "tempo",
+            "timestamp",
+            "zeitstempel",
+            "elapsed",
+            "uhrzeit",
+            "hora",
+            "heure",
+            "ora",
+            "clock",
+            "millis",
+            "micros",
+            "sekunden",
+            "seconds",
+            "runtime",
+        ],
+    ),
+    (
+        Quantity::Position,
+        &[
+            "position",
+            "pos",
+            "weg",
+            "displacement",
+            "extension",
+            "crosshead",
+            "stroke",
+            "hub",
+            "travel",
+            "deplacement",
+            "course",
+            "desplazamiento",
+            "posicion",
+            "posizione",
+            "spostamento",
+            "corsa",
+            "x",
+            "traverse",
+            "traversenweg",
+            "encoder",
+            "verfahrweg",
+            "recorrido",
+        ],
+    ),
+    (Quantity::Power, &["power", "leistung", "puissance", "potencia", "potenza", "p", "wattage"]),
+    (
+        Quantity::Repetition,
+        &[
+            "repetition",
+            "rep",
+            "reps",
+            "wiederholung",
+            "wdh",
+            "repeticion",
+            "ripetizione",
+            "trial",
+            "cycle",
+            "zyklus",
+            "cycles",
+            "ciclo",
+            "repeat",
+        ],
+    ),
+    (
+        Quantity::Series,
+        &[
+            "series",
+            "serie",
+            "reihe",
+            "messreihe",
+            "test",
+            "versuch",
+            "run",
+            "lauf",
+            "essai",
+            "ensayo",
+            "prova",
+            "experiment",
+        ],
+    ),
+    (Quantity::Substrate, &["substrate", "substrat", "sustrato", "substrato"]),
+    (Quantity::Pins, &["pins", "pin", "stifte"]),
+    (Quantity::Sweep, &["sweep"]),
+    (Quantity::Session, &["session", "day", "tag", "sitzung", "jour", "dia", "giorno"]),
+    (Quantity::Mount, &["mount", "montage", "montaje", "montaggio", "einbau"]),
+    (Quantity::Operator, &["operator", "bediener", "prufer", "operateur", "operador", "operatore"]),
+    (
+        Quantity::Specimen,
+        &["specimen", "sample", "probe", "prufling", "provino", "probeta", "eprouvette", "part"],
+    ),
+];
+
+/// Ends of German compounds, such as `Hebekraft`.
+const COMPOUNDS: [(&str, Quantity); 10] = [
+    ("kraft", Quantity::Force),
+    ("winkel", Quantity::WrapAngle),
+    ("position", Quantity::Position),
+    ("weg", Quantity::Position),
+    ("geschwindigkeit", Quantity::Speed),
+    ("richtung", Quantity::Direction),
+    ("masse", Quantity::LoadMass),
+    ("gewicht", Quantity::Load),
+    ("last", Quantity::Load),
+    ("zeit", Quantity::Time),
+];
+
+/// Returns the quantities that the words of a name may mean, most specific first.
+pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
+    // A torque, or how fast or how well something is measured.
+    const OTHER: [&str; 9] =
+        ["torque", "moment", "drehmoment", "couple", "coppia", "rate", "error", "uncertainty", "std"];
+    if words.iter().any(|word| OTHER.contains(&word.as_str())) {
+        return Vec::new();
+    }
+    let joined = words.join(" ");
+    // A load cell reads force; "x value" is the time axis of LVM.
+    if joined.contains("load cell") {
+        return vec![Quantity::Force];
+    }
+    if joined.starts_with("x value") {
+        return vec![Quantity::Time];
+    }
+    let mut possible: Vec<Quantity> = NAMES
+        .iter()
+        .filter(|(_, names)| words.iter().any(|word| names.contains(&word.as_str())))
+        .map(|(quantity, _)| *quantity)
+        .collect();
+    if possible.is_empty() {
+        let compound = |word: &String| COMPOUNDS.iter().find(|(end, _)| word.ends_with(end)).map(|c| c.1);
+        possible.extend(words.iter().filter_map(compound));
+    }
+    let has = |possible: &[Quantity], quantity| possible.contains(&quantity);
+    // "load mass", "test time", "direction of force": the noun decides, and it is first in the list
+    // above.
+    if has(&possible, Quantity::Direction) && has(&possible, Quantity::Position) {
+        possible.retain(|q| *q != Quantity::Position);
+    }
+    // "load force" is ambiguous: the declared load, or the reading.
+    if has(&possible, Quantity::Force) && has(&possible, Quantity::Load) {
+        possible.sort_by_key(|q| *q != Quantity::Load);
+    }
+    possible
+}
+
+/// Words for a load that is pulled, then for a load that is released.
+const DIRECTIONS: [(Direction, &[&str]); 2] = [
+    (
+        Direction::Concentric,
+        &[
+            "concentric",
+            "con",
+            "konzentrisch",
+            "concentrique",
+            "concentrico",
+            "pull",
+            "pulled",
+            "pulling",
+            "up",
+            "upward",
+            "upwards",
+            "lift",
+            "lifted",
+            "lifting",
+            "raise",
+            "raised",
+            "raising",
+            "tighten",
+            "tightening",
+            "forward",
+            "forwards",
+            "fwd",
+            "in",
+            "load",
+            "loading",
+            "hoist",
+            "heben",
+            "hebe",
+            "gehoben",
+            "anheben",
+            "ziehen",
+            "gezogen",
+            "auf",
+            "hoch",
+            "vor",
+            "spannen",
+            "montee",
+            "monter",
+            "lever",
+            "levage",
+            "tirer",
+            "subir",
+            "subida",
+            "levantar",
+            "tirar",
+            "salita",
+            "sollevare",
+            "sollevamento",
+            "tirare",
+            "wind",
+            "winding",
+            "plus",
+            "pos",
+            "positive",
+            "+",
+            "1",
+            "+1",
+        ],
+    ),
+    (
+        Direction::Eccentric,
+        &[
+            "eccentric",
+            "ecc",
+            "exzentrisch",
+            "excentrique",
+            "eccentrico",
+            "excentrico",
+            "release",
+            "released",
+            "releasing",
+            "down",
+            "downward",
+            "downwards",
+            "lower",
+            "lowered",
+            "lowering",
+            "loosen",
+            "loosening",
+            "back",
+            "backward",
+            "backwards",
+            "bwd",
+            "reverse",
+            "return",
+            "out",
+            "unload",
+            "unloading",
+            "senken",
+            "senke",
+            "gesenkt",
+            "absenken",
+            "ablassen",
+            "lassen",
+            "nachlassen",
+            "ab",
+            "runter",
+            "zuruck",
+            "ruck",
+            "losen",
+            "descente",
+            "descendre",
+            "baisser",
+            "relacher",
+            "bajar",
+            "bajada",
+            "soltar",
+            "discesa",
+            "abbassare",
+            "rilasciare",
+            "unwind",
+            "unwinding",
+            "minus",
+            "neg",
+            "negative",
+            "-",
+            "-1",
+        ],
+    ),
+];
+
+/// Returns the direction that a cell means; `None` for a word without a known meaning.
+pub(crate) fn direction(cell: &str) -> Option<Direction> {
+    let cell = cell.trim().replace('\u{2212}', "-");
+    let number = cell.parse::<f64>().ok();
+    let is_word = |names: &[&str], word: &str| names.contains(&word);
+    for (direction, names) in DIRECTIONS {
+        let sign = if direction == Direction::Concentric { 1.0 } else { -1.0 };
+        if number == Some(sign) || is_word(names, cell.as_str()) {
+            return Some(direction);
+        }
+    }
+    let words = words(&cell);
+    let of_word = |word: &String| {
+        DIRECTIONS.iter().find(|(_, names)| is_word(names, word.as_str())).map(|(direction, _)| *direction)
+    };
+    let mut all: Vec<_> = words.iter().filter(|w| w.parse::<f64>().is_err()).filter_map(of_word).collect();
+    all.dedup_by_key(|d| d.as_str());
+    // "pull back" says two things.
+    if let [one] = all.as_slice() { Some(*one) } else { None }
+}
+
+/// Returns the direction in the words of a column name, such as `F_heben`.
+pub(crate) fn direction_in_name(words: &[String]) -> Option<Direction> {
+    // Words that mean other things in names: "in" an inch or an input, "load" the load, "pos" a
+    // position.
+    const OTHER: [&str; 6] = ["in", "out", "load", "pos", "1", "vor"];
+    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| !OTHER.contains(word)).collect();
+    let mut all: Vec<_> = words.iter().filter_map(|word| direction(word)).collect();
+    if all.is_empty() {
+        // Fup and Fdown.
+        all = words.iter().filter_map(|word| direction(word.strip_prefix('f')?)).collect();
+    }
+    if all.is_empty() {
+        // German compounds, such as Hebekraft and Senkkraft.
+        let starts = [
+            ("heb", Direction::Concentric),
+            ("zieh", Direction::Concentric),
+            ("senk", Direction::Eccentric),
+            ("ablass", Direction::Eccentric),
+        ];
+        all = words.iter().filter_map(|w| starts.iter().find(|s| w.starts_with(s.0)).map(|s| s.1)).collect();
+    }
+    all.dedup_by_key(|d| d.as_str());
+    if let [one] = all.as_slice() { Some(*one) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_split_into_words() {
+        let split = |name| words(name).join(" ");
+        assert_eq!(split("F_heben [N]"), "f heben n");
+        assert_eq!(split("loadCell2"), "load cell 2");
+        assert_eq!(split("Rückweg/mm"), "ruckweg mm");
+        assert_eq!(split("Umschlingungswinkel (°)"), "umschlingungswinkel");
+    }
+
+    #[test]
+    fn names_of_five_languages_have_a_quantity() {
+        for (name, quantity) in [
+            ("Kraft", Quantity::Force),
+            ("Fuerza", Quantity::Force),
+            ("Forza", Quantity::Force),
+            ("Effort", Quantity::Force),
+            ("Messzeit", Quantity::Time),
+            ("Temps", Quantity::Time),
+            ("Tiempo", Quantity::Time),
+            ("Tempo", Quantity::Time),
+            ("Weg", Quantity::Position),
+            ("Déplacement", Quantity::Position),
+            ("Posición", Quantity::Position),
+            ("Corsa", Quantity::Position),
+            ("Last", Quantity::Load),
+            ("Charge", Quantity::Load),
+            ("Carico", Quantity::Load),
+            ("Gewicht", Quantity::Load),
+            ("Richtung", Quantity::Direction),
+            ("Sens", Quantity::Direction),
+            ("Dirección", Quantity::Direction),
+            ("Umschlingungswinkel", Quantity::WrapAngle),
+            ("Angolo di avvolgimento", Quantity::WrapAngle),
+            ("θ", Quantity::WrapAngle),
+            ("load cell", Quantity::Force),
+            ("Load mass", Quantity::LoadMass),
+            ("Vitesse", Quantity::Speed),
+        ] {
+            assert_eq!(quantities(&words(name)).first(), Some(&quantity), "{name}");
+        }
+        for name in ["Humidity", "Load torque", "Sample rate"] {
+            assert!(quantities(&words(name)).is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn direction_words_are_known() {
+        for word in
+            ["pull", "Up", "LIFT", "+", "1", "1.0", "heben", "tighten", "forward", "concentric", "Salita"]
+        {
+            assert_eq!(direction(word).map(Direction::as_str), Some("concentric"), "{word}");
+        }
+        for word in
+            ["release", "down", "lower", "-", "\u{2212}1", "senken", "loosen", "back", "Zurück", "eccentric"]
+        {
+            assert_eq!(direction(word).map(Direction::as_str), Some("eccentric"), "{word}");
+        }
+        for word in ["", "A", "2", "pull back", "sideways"] {
+            assert_eq!(direction(word), None, "{word}");
+        }
+    }
+}

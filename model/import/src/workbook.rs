@@ -1,0 +1,152 @@
+//! Excel and OpenDocument workbooks.
+
+/// Reads a sheet of a workbook: the named one, or the first with numbers.
+#[cfg(not(feature = "spreadsheets"))]
+pub(crate) fn read(
+    _: &[u8],
+    _: Option<&str>,
+) -> Result<crate::recording::Recording, pinswitch_diagnostic::Diagnostic> {
+    Err(pinswitch_diagnostic::Diagnostic::new("this program was built without Excel and OpenDocument files")
+        .with_help("export the sheet as CSV"))
+}
+
+#[cfg(feature = "spreadsheets")]
+pub(crate) use reader::read;
+
+#[cfg(feature = "spreadsheets")]
+mod reader {
+    use std::io::Cursor;
+
+    use calamine::{Data, Range, Reader, open_workbook_auto_from_rs};
+    use pinswitch_diagnostic::Diagnostic;
+
+    use crate::number::DecimalSign;
+    use crate::recording::Recording;
+    use crate::sheet::Sheet;
+
+    /// Most bytes of a workbook.
+    const MAX_BYTES: usize = 64 << 20;
+    /// Most bytes of its unpacked contents.
+    const MAX_UNPACKED: u64 = 1 << 30;
+
+    /// Reads a sheet of a workbook: the named one, or the first with numbers.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] for a damaged workbook, and for a sheet that does not exist or has no
+    /// numbers.
+    pub(crate) fn read(bytes: &[u8], sheet: Option<&str>) -> Result<Recording, Diagnostic> {
+        if bytes.len() > MAX_BYTES || unpacked_bytes(bytes) > MAX_UNPACKED {
+            return Err(Diagnostic::new("the workbook is too large").with_help("export the sheet as CSV"));
+        }
+        let damaged = |error: calamine::Error| {
+            Diagnostic::new("cannot read the workbook")
+                .with_help("open it and save it again, or export the sheet as CSV")
+                .with_source(error)
+        };
+        let mut workbook = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(damaged)?;
+        let names = workbook.sheet_names();
+        let mut first = None;
+        for name in &names {
+            if sheet.is_some_and(|wanted| wanted != name) {
+                continue;
+            }
+            let range = workbook.worksheet_range(name).map_err(damaged)?;
+            let has_numbers = range
+                .used_cells()
+                .any(|(.., cell)| matches!(cell, Data::Float(_) | Data::Int(_)) || is_number(cell));
+            if has_numbers || sheet.is_some() {
+                first = Some((name.clone(), range));
+                break;
+            }
+        }
+        let Some((name, range)) = first else {
+            let problem = sheet
+                .map_or_else(|| "no sheet has numbers".to_owned(), |sheet| format!("no sheet '{sheet}'"));
+            return Err(Diagnostic::new(problem).with_help(format!("the sheets are: {}", names.join(", "))));
+        };
+        let others: Vec<&str> = names.iter().filter(|other| **other != name).map(String::as_str).collect();
+        let mut notes = vec![format!("sheet '{name}'")];
+        if !others.is_empty() {
+            notes.push(format!("other sheets: {}; choose with --set sheet=NAME", others.join(", ")));
+        }
+        Ok(Recording {
+            sheet: cells(&range)?,
+            format: "workbook".to_owned(),
+            encoding: None,
+            delimiter: None,
+            sign: Some(DecimalSign::Point),
+            notes,
+        })
+    }
+
+    fn is_number(cell: &Data) -> bool {
+        matches!(cell, Data::String(text) if crate::number::sign_evidence(text).is_some())
+    }
+
+    fn cells(range: &Range<Data>) -> Result<Sheet, Diagnostic> {
+        let first = range.start().map_or(1, |(row, _)| row as usize + 1);
+        let mut sheet = Sheet::default();
+        for (i, row) in range.rows().enumerate() {
+            if row.iter().all(|cell| matches!(cell, Data::Empty)) {
+                continue;
+            }
+            for cell in row {
+                sheet.push(&text(cell));
+            }
+            sheet.end_row(first + i)?;
+        }
+        Ok(sheet)
+    }
+
+    fn text(cell: &Data) -> String {
+        match cell {
+            Data::Empty | Data::Error(_) => String::new(),
+            Data::DateTime(moment) => {
+                let (year, month, day, hour, minute, second, millisecond) = moment.to_ymd_hms_milli();
+                let time = format!("{hour:02}:{minute:02}:{second:02}.{millisecond:03}");
+                if moment.as_f64() < 1.0 || moment.is_duration() {
+                    time
+                } else if moment.as_f64().fract() == 0.0 {
+                    format!("{year}-{month:02}-{day:02}")
+                } else {
+                    format!("{year}-{month:02}-{day:02} {time}")
+                }
+            }
+            other => other.to_string(),
+        }
+    }
+
+    /// Returns the sum of the unpacked sizes that the directory of a ZIP archive declares
+    /// (APPNOTE.TXT 4.3.12).
+    fn unpacked_bytes(bytes: &[u8]) -> u64 {
+        const ENTRY: &[u8] = b"PK\x01\x02";
+        let mut sum = 0_u64;
+        let mut at = 0;
+        while let Some(found) = bytes.get(at..).and_then(|rest| rest.windows(4).position(|w| w == ENTRY)) {
+            let entry = at + found;
+            let size = bytes
+                .get(entry + 24..entry + 28)
+                .and_then(|b| b.try_into().ok())
+                .map_or(0, u32::from_le_bytes);
+            sum = sum.saturating_add(u64::from(size));
+            at = entry + 46;
+        }
+        sum
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        #[test]
+        fn damaged_workbooks_are_refused() {
+            for bytes in [
+                b"PK\x03\x04".as_slice(),
+                b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+                b"PK\x03\x04\0\0\0\0[Content_Types].xml",
+            ] {
+                assert!(read(bytes, None).is_err());
+            }
+        }
+    }
+}

@@ -38,12 +38,13 @@ fn calibration(bencher: Bencher, name: &str) {
 fn segmentation_of_one_log(bencher: Bencher) {
     let rig = Rig {
         wrap_angle_deg: 63.89,
-        sample_rate_hz: 200.0,
+        sample_rate_hz: Some(200.0),
         hook_mass_g: 62.53,
-        stroke_mm: 152.4,
-        on_s: 0.5,
-        dwell_s: 3.0,
+        stroke_mm: Some(152.4),
+        on_s: Some(0.5),
+        dwell_s: Some(3.0),
+        ..Rig::default()
     };
     let text = unpack("raw/silicone_5002g.csv.gz");
-    bencher.bench_local(|| Log::parse(black_box(&text), "log").map(|log| segment(&log, &rig)));
+    bencher.bench_local(|| Log::parse(black_box(&text), "log").map(|log| segment(&log, &rig, None)));
 }

@@ -63,8 +63,8 @@ fn missing_logs_and_columns_are_reported() {
         String::from_utf8_lossy(&done.stderr).into_owned()
     };
     assert!(segment().contains("a.csv"));
-    std::fs::write(folder.path().join("a.csv"), "time_s,force_N,position_mm\n0,1,2\n").unwrap();
+    std::fs::write(folder.path().join("a.csv"), "time_s,power_W,position_mm\n0,1,2\n").unwrap();
     let message = segment();
-    assert!(message.contains("a.csv") && message.contains("power_W"), "{message}");
+    assert!(message.contains("a.csv") && message.contains("column 'force_N' is missing"), "{message}");
     assert!(!out.exists());
 }

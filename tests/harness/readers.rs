@@ -186,7 +186,7 @@ fn run_plan(bytes: &[u8]) -> Result<Reading, String> {
         Err(e) => return refused(&e),
     };
     for series in &plan.series {
-        let load_n = series.load_n(&plan.rig);
+        let Some(load_n) = series.load_n(&plan.rig) else { continue };
         // The range of a load in a plateau table.
         require((0.0..=1e5).contains(&load_n), || format!("a load of {load_n} N"))?;
         let mut pins = series.pins.clone();
@@ -209,9 +209,13 @@ fn log(bytes: &[u8]) -> Result<Reading, String> {
     };
     require(log.time_s.is_sorted_by(|a, b| a < b), || "time steps back".to_owned())?;
     let plan = RunPlan::parse(RIG, "run.toml").map_err(|e| e.to_string())?;
-    let segmentation = segment(&log, &plan.rig);
+    let segmentation = match segment(&log, &plan.rig, plan.series[0].load_n(&plan.rig)) {
+        Ok(segmentation) => segmentation,
+        Err(e) => return refused(&e),
+    };
     for plateau in &segmentation.plateaus {
-        let numbers = [plateau.force_n, plateau.position_mm, plateau.time_s];
+        let position_mm = plateau.position_mm.unwrap_or_default();
+        let numbers = [plateau.force_n, position_mm, plateau.time_s, plateau.dwell_s];
         require(numbers.iter().all(|x| x.is_finite()), || format!("a plateau of {numbers:?}"))?;
     }
     for finding in &segmentation.findings {

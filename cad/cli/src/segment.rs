@@ -16,7 +16,7 @@ use super::terminal::to_json;
 use super::{Failure, print_text};
 use crate::write::write_listed;
 
-/// Convert raw 200 Hz logs to a plateau table.
+/// Convert raw logs to a plateau table.
 ///
 /// Prints the faults of each log. Also writes, next to the table, a JSON file with the faults, one SVG per log with its
 /// plateaus marked, and provenance.json.
@@ -45,21 +45,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
     let (mut run, mut files) = (RunSegmentation::new(&plan), Vec::new());
     for series in &plan.series {
-        let path = folder.join(&series.file);
-        if !arguments.read_outside && is_outside(&path, folder) {
-            let location = Location::file(&name).with_field("series.file", format!("{:?}", series.file));
-            return Err(Failure::bad_input(
-                Diagnostic::new("the log is outside the folder of the description")
-                    .with_location(location)
-                    .with_help("copy it into the folder, or allow it with --read-outside"),
-            ));
+        let mut logs = Vec::new();
+        for file in series.file_names() {
+            let path = folder.join(file);
+            if !arguments.read_outside && is_outside(&path, folder) {
+                let location = Location::file(&name).with_field("series.file", format!("{file:?}"));
+                return Err(Failure::bad_input(
+                    Diagnostic::new("the log is outside the folder of the description")
+                        .with_location(location)
+                        .with_help("copy it into the folder, or allow it with --read-outside"),
+                ));
+            }
+            logs.push((read_log(&path)?, path.display().to_string()));
         }
-        let (log, segmented) =
-            run.add(series, &read_log(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
+        let (log, segmented) = run.add(series, &logs).map_err(Failure::bad_input)?;
         if !arguments.no_plots {
-            let svg = log_svg(&series.file, &log, &segmented).map_err(Failure::failed)?;
+            let svg = log_svg(series.name(), &log, &segmented).map_err(Failure::failed)?;
             let log_stem =
-                series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
+                series.name().trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
             // The name of a log may be a path; its figure is a file next to the table.
             let mut name = format!("{}.svg", Name::cleaned(&format!("{stem}-{log_stem}")));
             if files.iter().any(|file: &OutputFile| file.name == name) {

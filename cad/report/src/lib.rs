@@ -9,7 +9,7 @@
 //! | [`contact_svg`] | gap between tendon and silicone along the wrap |
 //! | [`finger_svg`] | force difference of a finger over load and joint angle |
 //! | [`pareto_svg`] | threshold and friction of searched layouts, with the Pareto front |
-//! | [`log_svg`] | a raw log with its plateaus |
+//! | [`log_svg`] | a raw log with its moves and plateaus |
 //! | [`plots`], [`page`] | figures and page of a [calibration](pinswitch_calibration::Calibration) |
 //! | [`friction_words`], [`reported_clause`], [`effect_clause`], [`constants_words`] | friction and effects in words |
 //! | [`published_plot`], [`published_page`] | figure and page of the calibration with the paper's seven maxima |

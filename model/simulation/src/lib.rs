@@ -91,6 +91,8 @@ mod plan;
 mod power;
 mod protocol;
 mod raw;
+#[cfg(test)]
+mod raw_variants;
 mod row_covariates;
 mod series_traits;
 mod simulate;

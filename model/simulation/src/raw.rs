@@ -294,7 +294,8 @@ mod tests {
         for index in 0..run.logs() {
             let raw = run.log(index).unwrap();
             let log = Log::parse(raw.text.as_bytes(), &raw.file).unwrap();
-            let segmented = segment(&log, &description.rig);
+            let load_n = description.series[index].load_n(&description.rig);
+            let segmented = segment(&log, &description.rig, load_n).unwrap();
             let got: Vec<_> = segmented.plateaus.iter().map(|p| (p.direction, p.repetition)).collect();
             let put: Vec<_> = raw.truth.iter().map(|t| (t.0, t.1)).collect();
             assert_eq!(got, put, "{}", raw.file);

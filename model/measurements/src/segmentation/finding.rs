@@ -53,6 +53,60 @@ pub enum Finding {
         /// Seconds since the log began.
         time_s: f64,
     },
+    /// A move that is left out, since its direction is uncertain.
+    UncertainDirection {
+        /// Seconds since the log began.
+        time_s: f64,
+        /// Probability of the likelier direction.
+        probability: f64,
+        /// Witnesses and their directions.
+        reason: String,
+    },
+    /// A declared value that the log contradicts.
+    Departure {
+        /// Name of the declared field.
+        field: &'static str,
+        /// Declared value.
+        declared: f64,
+        /// Measured value.
+        measured: f64,
+    },
+    /// Moves that leave the force unchanged, and are where the declared schedule has them.
+    ScheduledMoves {
+        /// Number of moves.
+        moves: usize,
+    },
+    /// A position that decreases when the load is released.
+    ReversedPosition,
+    /// Plateaus without load, which are left out.
+    Unloaded {
+        /// Number of plateaus.
+        plateaus: usize,
+    },
+    /// Times in another unit than declared.
+    TimeUnit {
+        /// Declared length of a count in seconds.
+        declared_s: f64,
+        /// Measured length of a count in seconds.
+        measured_s: f64,
+    },
+    /// A clock whose steps are longer than the sampling period.
+    CoarseClock {
+        /// Step of the clock in seconds.
+        step_s: f64,
+    },
+    /// A counter that restarts at the end of its range.
+    ClockRollOver {
+        /// Seconds since the log began.
+        time_s: f64,
+        /// Range of the counter in seconds.
+        modulus_s: f64,
+    },
+    /// A clock that restarts inside the log; the pause is unknown.
+    ClockReset {
+        /// Seconds since the log began.
+        time_s: f64,
+    },
 }
 
 impl fmt::Display for Finding {
@@ -73,6 +127,25 @@ impl fmt::Display for Finding {
                 write!(f, "{} repetition missing after {after}", direction.as_str())
             }
             Self::UnreadableRest { time_s } => write!(f, "rest at {time_s:.1} s unreadable"),
+            Self::UncertainDirection { time_s, probability, reason } => {
+                write!(f, "move at {time_s:.1} s left out: direction {probability:.2} certain ({reason})")
+            }
+            Self::Departure { field, declared, measured } => {
+                write!(f, "{field} = {declared} declared, {measured:.4} measured")
+            }
+            Self::ScheduledMoves { moves } => {
+                write!(f, "{moves} moves placed by rig.on_s and rig.dwell_s: the force does not show them")
+            }
+            Self::ReversedPosition => write!(f, "the position decreases when the load is released"),
+            Self::Unloaded { plateaus } => write!(f, "{plateaus} plateaus without load left out"),
+            Self::TimeUnit { declared_s, measured_s } => {
+                write!(f, "time in units of {measured_s} s, {declared_s} s declared")
+            }
+            Self::CoarseClock { step_s } => write!(f, "clock in steps of {step_s} s"),
+            Self::ClockRollOver { time_s, modulus_s } => {
+                write!(f, "counter of {modulus_s} s rolls over at {time_s:.1} s")
+            }
+            Self::ClockReset { time_s } => write!(f, "clock reset at {time_s:.1} s, pause unknown"),
         }
     }
 }

@@ -1,13 +1,24 @@
-//! Segmentation of raw 200 Hz logs into one row per repetition (`model/doc/file-formats.md`).
+//! Segmentation of raw logs into one row per repetition (`model/doc/logs.md`).
+//!
+//! Imports run downwards: `run` uses `plateaus`, which uses `moves`, `cycles` and `direction`, which
+//! use `log`, `change_points` and `two_levels`.
 
+mod change_points;
+mod clock;
+mod cycles;
+mod direction;
 mod finding;
 mod log;
+mod moves;
 mod plateaus;
 mod run;
 mod run_plan;
+mod two_levels;
 
+pub use direction::Protocol;
 pub use finding::Finding;
-pub use log::Log;
-pub use plateaus::{Plateau, Segmented, segment};
+pub use log::{DeclaredLoad, Log, Part};
+pub use moves::Source;
+pub use plateaus::{Motion, MoveMark, Plateau, Segmented, segment};
 pub use run::{RunSegmentation, SegmentationReport, SegmentedRun, SegmentedSeries, segment_run};
 pub use run_plan::{Rig, RunPlan, SeriesPlan};

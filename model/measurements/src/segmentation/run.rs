@@ -7,11 +7,14 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
 use serde::Serialize;
 
+use super::clock::SessionClock;
 use super::finding::Finding;
-use super::log::Log;
-use super::plateaus::{Segmented, segment};
+use super::log::{DeclaredLoad, Log};
+use super::moves::Source;
+use super::plateaus::{Motion, Segmented, segment};
 use super::run_plan::{RunPlan, SeriesPlan};
-use crate::table::{Labels, PlateauRow, Unknown};
+use crate::median::median;
+use crate::table::{Labels, Optional, PlateauRow, Sweep, Unknown};
 
 /// Name and version of the report's format.
 const SCHEMA: &str = "pinswitch.segmentation/1";
@@ -25,6 +28,10 @@ pub struct SegmentedSeries {
     pub eccentric: usize,
     /// Number of plateaus after a pull of the load.
     pub concentric: usize,
+    /// Kind of the motion.
+    pub motion: Motion,
+    /// Column that shows the moves.
+    pub source: Source,
     /// Defects of the log.
     pub findings: Vec<Finding>,
 }
@@ -32,6 +39,7 @@ pub struct SegmentedSeries {
 impl fmt::Display for SegmentedSeries {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {} eccentric, {} concentric", self.file, self.eccentric, self.concentric)?;
+        write!(f, "; {} by {}", self.motion.as_str(), self.source.as_str())?;
         self.findings.iter().try_for_each(|finding| write!(f, "; {finding}"))
     }
 }
@@ -60,52 +68,175 @@ pub struct RunSegmentation<'a> {
     plan: &'a RunPlan,
     rows: Vec<PlateauRow>,
     series: Vec<SegmentedSeries>,
-    /// Total duration in seconds of the logs added so far.
-    start_s: f64,
+    clock: SessionClock,
+    /// Names of the logs added so far.
+    files: Vec<String>,
+    /// Number of series in the table so far; logs of one move each form one series.
+    numbers: usize,
+    /// Start of the earliest log in seconds of the session.
+    first_s: f64,
+    /// The previous entry of the plan, if its log has one move.
+    single_move: Option<SeriesPlan>,
 }
+
+/// Relative departure of a measured load or speed from the declared one that is a finding.
+const DEPARTURE: f64 = 0.05;
 
 impl<'a> RunSegmentation<'a> {
     /// Starts a segmentation.
     pub fn new(plan: &'a RunPlan) -> Self {
-        Self { plan, rows: Vec::new(), series: Vec::new(), start_s: 0.0 }
+        Self {
+            plan,
+            rows: Vec::new(),
+            series: Vec::new(),
+            clock: SessionClock::default(),
+            files: Vec::new(),
+            numbers: 0,
+            first_s: 0.0,
+            single_move: None,
+        }
     }
 
-    /// Adds the log of the next series, in the order of the plan. Returns the log and its plateaus,
-    /// for a plot. `file` is the name of the log in errors.
+    /// Adds the logs of the next series, in the order of the plan: the text of each, and its name in
+    /// errors. Returns the joined log and its plateaus, for a plot.
     ///
     /// # Errors
-    /// As [`Log::parse`].
+    /// As [`Log::parse`] and [`segment`]; if the clock of a log overlaps that of another one; or if
+    /// neither the plan nor the log has a load.
     pub fn add(
         &mut self,
         series: &SeriesPlan,
-        text: &[u8],
-        file: &str,
+        logs: &[(Vec<u8>, String)],
     ) -> Result<(Log, Segmented), Diagnostic> {
-        let log = Log::parse(text, file)?;
-        let segmented = segment(&log, &self.plan.rig);
-        let number = self.series.len();
-        self.rows.extend(rows(self.plan, series, number, &segmented, self.start_s));
-        self.start_s += log.time_s.last().copied().unwrap_or(0.0);
+        let mut joined: Option<(Log, f64)> = None;
+        for (text, file) in logs {
+            let log = Log::parse_at(text, file, self.plan.rig.sample_rate_hz)?;
+            let start_s = self.start_s(&log, file)?;
+            match &mut joined {
+                None => joined = Some((log, start_s)),
+                Some((first, first_s)) => {
+                    let end_s = *first_s + first.time_s.last().copied().unwrap_or_default();
+                    // Two logs of one clock share no stamp.
+                    first.append(&log, (start_s - *first_s).max(end_s - *first_s + log.period_s()));
+                }
+            }
+        }
+        let file = logs.first().map_or("", |(_, file)| file);
+        let Some((log, start_s)) = joined else {
+            return Err(Diagnostic::new("the series has no log").with_location(Location::file(series.name())));
+        };
+        let segmented = self.add_parts(series, &log, start_s).map_err(|e| e.or_in_file(file))?;
         let count = |direction| segmented.plateaus.iter().filter(|p| p.direction == direction).count();
         self.series.push(SegmentedSeries {
-            file: series.file.clone(),
+            file: series.name().to_owned(),
             eccentric: count(Direction::Eccentric),
             concentric: count(Direction::Concentric),
+            motion: segmented.motion,
+            source: segmented.source,
             findings: segmented.findings.clone(),
         });
         Ok((log, segmented))
+    }
+
+    /// Returns the start of a log in seconds of the session.
+    fn start_s(&mut self, log: &Log, file: &str) -> Result<f64, Diagnostic> {
+        let length_s = log.time_s.last().copied().unwrap_or_default();
+        let start_s = self.clock.add(log.start_s, length_s).map_err(|overlap| {
+            let other = self.files.get(overlap.with).map_or("", String::as_str);
+            Diagnostic::new(format!("the clock overlaps that of '{other}'"))
+                .with_location(Location::file(file))
+                .with_help("list each log once, with stamps of one clock")
+        })?;
+        self.files.push(file.to_owned());
+        self.first_s = self.first_s.min(start_s);
+        Ok(start_s)
+    }
+
+    /// Segments a log, part by part if it has several loads, and adds the rows.
+    fn add_parts(&mut self, series: &SeriesPlan, log: &Log, start_s: f64) -> Result<Segmented, Diagnostic> {
+        let rig = &self.plan.rig;
+        let declared = series.load_mass_g.map(DeclaredLoad::MassG);
+        let parts: Vec<(Log, Option<DeclaredLoad>)> = if log.parts.is_empty() {
+            vec![(log.clone(), declared)]
+        } else {
+            log.parts.iter().map(|part| (log.part(part.samples.clone()), Some(part.load))).collect()
+        };
+        let mut all = Segmented { findings: log.clock.clone(), ..Segmented::default() };
+        for (part, load) in &parts {
+            if load.is_none() && part.load_n.is_none() {
+                return Err(Diagnostic::new("the load is missing").with_help(
+                    "give load_mass_g of the series, or a column load_mass_g, load_N or load_measured_N",
+                ));
+            }
+            let load = load.map(|load| load.with_hook(rig.hook_mass_g));
+            let mut segmented = segment(part, rig, load.map(|l| l.1))?;
+            let mut measured: Vec<f64> = segmented.plateaus.iter().filter_map(|p| p.load_n).collect();
+            let comparisons = [
+                ("load_N", load.map(|l| l.1), (!measured.is_empty()).then(|| median(&mut measured))),
+                (
+                    "speed_pct",
+                    series.speed_pct,
+                    segmented.speed_mm_s.zip(rig.full_speed_mm_s).map(|(speed, full)| 100.0 * speed / full),
+                ),
+            ];
+            for (field, declared, measured) in comparisons {
+                if let (Some(declared), Some(measured)) = (declared, measured)
+                    && (measured - declared).abs() > DEPARTURE * declared
+                {
+                    segmented.findings.push(Finding::Departure { field, declared, measured });
+                }
+            }
+            let sweep = series.sweep.map_or_else(|| self.sweep(load), Some);
+            let is_single = parts.len() == 1 && segmented.moves.len() == 1;
+            if is_single && self.single_move.as_ref().is_some_and(|last| last.has_same_condition(series)) {
+                self.continue_series(&mut segmented);
+            } else {
+                self.numbers += 1;
+            }
+            self.single_move = is_single.then(|| series.clone());
+            let number = self.numbers - 1;
+            self.rows.extend(rows(self.plan, series, number, &segmented, (start_s, load, sweep)));
+            all.plateaus.append(&mut segmented.plateaus);
+            all.moves.append(&mut segmented.moves);
+            all.findings.append(&mut segmented.findings);
+            (all.motion, all.source, all.speed_mm_s) =
+                (segmented.motion, segmented.source, segmented.speed_mm_s);
+        }
+        // The lines that are not samples belong to no part.
+        if !log.parts.is_empty() && log.unusable > 0 {
+            all.findings.push(Finding::UnusableLines { lines: log.unusable });
+        }
+        Ok(all)
+    }
+
+    /// Numbers the repetitions of a log of one move after those of its series.
+    fn continue_series(&self, segmented: &mut Segmented) {
+        let series = (self.numbers - 1).to_string();
+        for plateau in &mut segmented.plateaus {
+            let same = self.rows.iter().rev().take_while(|row| row.series == series);
+            let last = same.filter(|row| row.direction == plateau.direction).map(|row| row.repetition).max();
+            plateau.repetition += last.unwrap_or_default();
+        }
+    }
+
+    /// Returns the order of the loads from the previous row; `None` for the first series.
+    fn sweep(&self, load: Option<(f64, f64)>) -> Option<Sweep> {
+        let (last, (_, load_n)) = self.rows.last().zip(load)?;
+        Some(if load_n < last.load_n { Sweep::Down } else { Sweep::Up })
     }
 
     /// Returns the table and the report. `file` is the name of the run's description in errors.
     ///
     /// # Errors
     /// If no log contains a plateau.
-    pub fn finish(self, file: &str) -> Result<SegmentedRun, Diagnostic> {
+    pub fn finish(mut self, file: &str) -> Result<SegmentedRun, Diagnostic> {
         if self.rows.is_empty() {
             return Err(Diagnostic::new("no log contains a plateau")
                 .with_location(Location::file(file))
-                .with_help("check that power_W exceeds 2 W while the actuator runs"));
+                .with_help("give logs with moves and rests, or with full cycles, that the power, the position or the force shows"));
         }
+        // The session starts with its earliest log, which need not be the first one of the plan.
+        self.rows.iter_mut().for_each(|row| row.time_s -= self.first_s);
         let report = SegmentationReport { schema: SCHEMA, series: self.series };
         Ok(SegmentedRun { rows: self.rows, report })
     }
@@ -158,39 +289,59 @@ pub fn segment_run<E: Error + Send + Sync + 'static>(
     let plan = RunPlan::parse(text, file)?;
     let mut run = RunSegmentation::new(&plan);
     for series in &plan.series {
-        let text = read(&series.file)
-            .map_err(|e| Diagnostic::from_error(e).with_location(Location::file(&series.file)))?;
-        run.add(series, &text, &series.file)?;
+        let mut logs = Vec::new();
+        for file in series.file_names() {
+            let text =
+                read(file).map_err(|e| Diagnostic::from_error(e).with_location(Location::file(file)))?;
+            logs.push((text, file.to_owned()));
+        }
+        run.add(series, &logs)?;
     }
     run.finish(file)
 }
 
-/// Converts the plateaus of one log to rows of the table; `start_s` is the start of the log in the
-/// session.
+/// Start of a log in seconds of the session, its declared load in grams and newtons, and the order
+/// of the loads.
+type Context = (f64, Option<(f64, f64)>, Option<Sweep>);
+
+/// Converts the plateaus of one log to rows of the table.
 fn rows<'a>(
     plan: &'a RunPlan,
     series: &'a SeriesPlan,
     number: usize,
     segmented: &'a Segmented,
-    start_s: f64,
+    (start_s, load, sweep): Context,
 ) -> impl Iterator<Item = PlateauRow> + 'a {
-    segmented.plateaus.iter().map(move |p| PlateauRow {
-        series: number.to_string(),
-        substrate: series.substrate,
-        pins: series.pins.clone(),
-        sweep: series.sweep,
-        load_mass_g: series.load_mass_g,
-        load_n: series.load_n(&plan.rig),
-        speed_pct: series.speed_pct,
-        dwell_s: plan.rig.dwell_s,
-        direction: p.direction,
-        repetition: p.repetition,
-        position_mm: p.position_mm,
-        time_s: start_s + p.time_s,
-        force_n: p.force_n,
-        wrap_angle_deg: plan.rig.wrap_angle_deg,
-        labels: Labels::default(),
-        unknown: Unknown::default(),
+    segmented.plateaus.iter().map(move |p| {
+        let mut unknown = Unknown::default();
+        for (quantity, is_known) in [
+            (Optional::Sweep, sweep.is_some()),
+            (Optional::LoadMass, load.is_some()),
+            (Optional::Speed, series.speed_pct.is_some()),
+            (Optional::Position, p.position_mm.is_some()),
+        ] {
+            if !is_known {
+                unknown = unknown.with(quantity);
+            }
+        }
+        PlateauRow {
+            series: number.to_string(),
+            substrate: series.substrate,
+            pins: series.pins.clone(),
+            sweep: sweep.unwrap_or(Sweep::Up),
+            load_mass_g: load.map_or(0.0, |l| l.0),
+            load_n: p.load_n.or(load.map(|l| l.1)).unwrap_or_default(),
+            speed_pct: series.speed_pct.unwrap_or_default(),
+            dwell_s: p.dwell_s,
+            direction: p.direction,
+            repetition: p.repetition,
+            position_mm: p.position_mm.unwrap_or_default(),
+            time_s: start_s + p.time_s,
+            force_n: p.force_n,
+            wrap_angle_deg: plan.rig.wrap_angle_deg,
+            labels: Labels::default(),
+            unknown,
+        }
     })
 }
 
@@ -209,5 +360,92 @@ mod tests {
         });
         let none = segment_run(text, "run.toml", |_| Ok::<_, std::io::Error>(still.clone().into_bytes()));
         assert!(none.unwrap_err().to_string().starts_with("run.toml: no log contains a plateau"));
+    }
+
+    /// A log of moves between two levels; each move takes 0.5 s and each rest 3 s.
+    fn log(start_s: f64, directions: &[Direction], columns: &str) -> String {
+        let mut text = format!("time_s,{columns}\n");
+        let (mut position_mm, mut force_n) = (0.0, 10.0);
+        for i in 0..50 * (2 + 4 * directions.len()) {
+            let t = i as f64 / 50.0;
+            let phase = (t - 2.0) % 3.5;
+            let at = ((t - 2.0) / 3.5).floor();
+            let is_move = t >= 2.0 && phase < 0.5 && at < directions.len() as f64;
+            if is_move {
+                let direction = directions[at as usize];
+                position_mm -= 0.4 * direction.sign();
+                force_n = 10.0 + 3.0 * direction.sign();
+            }
+            let noise = 0.02 * libm::sin(37.0 * (i * i) as f64);
+            text += &format!("{},{}", start_s + t, force_n + noise);
+            for column in columns.split(',').skip(1) {
+                text += &match column {
+                    "position_mm" => format!(",{position_mm}"),
+                    "power_W" => if is_move { ",8" } else { ",0" }.to_owned(),
+                    _ => ",10.5".to_owned(),
+                };
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    const PLAIN: &str = "substrate=\"plain\"\npins=[]\nload_mass_g=1019.7\n";
+    const RIG: &str = "[rig]\nwrap_angle_deg=90\n";
+
+    #[test]
+    fn single_moves_form_one_series() {
+        let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");
+        let text = format!("{RIG}{}{}{}", entry("0"), entry("1"), entry("2"));
+        let moves = [Direction::Eccentric, Direction::Concentric, Direction::Concentric];
+        let run = segment_run(&text, "run.toml", |file| {
+            let at: usize = file.parse().unwrap();
+            Ok::<_, std::io::Error>(log(0.0, &moves[at..=at], "force_N,position_mm,power_W").into_bytes())
+        })
+        .unwrap();
+        let rows: Vec<_> = run.rows.iter().map(|r| (r.series.as_str(), r.direction, r.repetition)).collect();
+        let expected = [("0", moves[0], 1), ("0", moves[1], 1), ("0", moves[2], 2)];
+        assert_eq!(rows, expected);
+        assert!(run.rows.windows(2).all(|w| w[0].time_s < w[1].time_s));
+    }
+
+    #[test]
+    fn files_of_a_series_are_joined() {
+        let text = format!("{RIG}[[series]]\nfiles=[\"0\", \"1\"]\n{PLAIN}");
+        let run = segment_run(&text, "run.toml", |file| {
+            let (start_s, direction) =
+                if file == "0" { (0.0, Direction::Eccentric) } else { (500.0, Direction::Concentric) };
+            Ok::<_, std::io::Error>(log(start_s, &[direction; 3], "force_N").into_bytes())
+        })
+        .unwrap();
+        let directions: String = run.rows.iter().map(|r| &r.direction.as_str()[..1]).collect();
+        assert!(directions.starts_with('e') && directions.ends_with('c'), "{directions}");
+        assert!(run.rows.last().unwrap().time_s > 500.0);
+        assert!(run.rows[0].unknown.contains(Optional::Position));
+    }
+
+    #[test]
+    fn measured_loads_replace_declared_ones() {
+        let text = format!("{RIG}[[series]]\nfile=\"0\"\n{PLAIN}");
+        let moves = [[Direction::Eccentric; 3], [Direction::Concentric; 3]].concat();
+        let read = |columns: &'static str| {
+            let log = log(0.0, &moves, columns).into_bytes();
+            segment_run(&text, "run.toml", move |_| Ok::<_, std::io::Error>(log.clone())).unwrap()
+        };
+        assert!((read("force_N,power_W").rows[0].load_n - 10.0).abs() < 1e-3);
+        let measured = read("force_N,power_W,load_measured_N");
+        assert_eq!((measured.rows[0].load_n, measured.rows.len()), (10.5, 6));
+    }
+
+    #[test]
+    fn overlapping_logs_are_refused() {
+        let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");
+        let moves = [[Direction::Eccentric; 3], [Direction::Concentric; 3]].concat();
+        let read = |file: &str| {
+            let start_s = if file == "0" { 1000.0 } else { 1020.0 };
+            Ok::<_, std::io::Error>(log(start_s, &moves, "force_N,power_W").into_bytes())
+        };
+        let error = segment_run(&format!("{RIG}{}{}", entry("0"), entry("1")), "run.toml", read).unwrap_err();
+        assert_eq!(error.to_string().split(';').next(), Some("1: the clock overlaps that of '0'"));
     }
 }

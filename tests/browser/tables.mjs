@@ -44,6 +44,22 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.settled();
 }
 
+// The file of a laboratory is shown before it is used, and its questions are answered on the page.
+export async function laboratoryFile(visit, site) {
+  await visit.open(site.address + START);
+  const rows = [0.5, 1, 2, 3.5, 5, 8].flatMap((kg) => [0, 1, 2].map((i) => [1.2, 1 / 1.2].map((factor) => kg * 9.80665 * factor + 0.013 * ((i * 7 + kg * 3) % 5)).map((n) => n.toFixed(3).replace('.', ',')).join(';')).map((forces) => `${String(kg).replace('.', ',')};${forces}`));
+  await visit.drop('versuch.csv', ['Last [kg];F_heben [N];F_senken [N]', ...rows].join('\r\n'));
+  await visit.check('what was understood is shown', () => /x 1000 -> g/.test(document.querySelector('.understood')?.textContent ?? ''));
+  await visit.click('#use-table');
+  await visit.check('the table gets a verdict', () => /versuch\.csv: the/.test(document.querySelector('#verdict b')?.textContent ?? '') && /friction exponent = 0\.18/.test(document.querySelector('#verdict').textContent));
+  await visit.check('a rig without a switch has no model of a part', () => document.querySelector('#use-model').hidden);
+  // A number with two readings.
+  await visit.drop('kraft.csv', 'Last [N];F_heben [N];F_senken [N]\n1,500;2,500;1,200\n2,500;4,500;2,100\n');
+  await visit.check('a question is asked', () => document.querySelectorAll('#verdict .row button').length > 1);
+  await visit.page.evaluate(() => document.querySelector('#verdict .row button').click());
+  await visit.check('an answer closes it', () => document.querySelector('#use-table') !== null);
+}
+
 // Long requests do not delay designs.
 async function designsDuring(visit, what, pins) {
   await visit.page.evaluate((to) => { location.hash = `#v=1&layout.pins=${to}`; }, pins);

@@ -201,7 +201,7 @@ fn uncertain_files_are_not_guessed() {
         // The map of that decision repeats it.
         done(at, &["import", "in.csv", "--out", "again.csv", "--map", "out.import.toml"]);
         assert_eq!(std::fs::read_to_string(at.join("again.csv")).unwrap(), table, "{option}");
-        for name in ["out.csv", "out.import.toml", "again.csv", "again.import.toml"] {
+        for name in ["out.csv", "out.import.toml", "again.csv", "again.import.toml", "provenance.json"] {
             std::fs::remove_file(at.join(name)).unwrap();
         }
     }

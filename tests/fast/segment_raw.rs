@@ -50,6 +50,54 @@ fn plateaus_are_accurate() {
     assert!(folder.path().join("plateaus-silicone_5002g.svg").exists());
 }
 
+/// Logs of a machine with other names, units and decimal signs give the same table with a map.
+#[test]
+fn foreign_logs_are_read_with_a_map() {
+    use std::io::Read;
+    let (folder, file) = (tempfile::tempdir().unwrap(), "silicone_5002g.csv.gz");
+    let raw = std::fs::read(repository("tests/data/raw").join(file)).unwrap();
+    let mut text = String::new();
+    flate2::read::MultiGzDecoder::new(raw.as_slice()).read_to_string(&mut text).unwrap();
+    // Seconds as milliseconds, newtons as kilonewtons: shifts of the decimal sign.
+    let shifted = |cell: &str, places: i32| {
+        let value: f64 = cell.parse().unwrap();
+        let decimals = cell.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
+        format!("{:.*}", usize::try_from(decimals - places).unwrap_or(0), value * 10f64.powi(places))
+            .replace('.', ",")
+    };
+    let mut foreign = "Zeit [ms];Kraft [kN];Weg [mm];Leistung [W]\n".to_owned();
+    for line in text.lines().skip(1) {
+        let c: Vec<&str> = line.split(',').collect();
+        if c.len() == 4 && c.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+            foreign += &format!(
+                "{};{};{};{}\n",
+                shifted(c[0], 3),
+                shifted(c[1], -3),
+                c[2].replace('.', ","),
+                c[3].replace('.', ",")
+            );
+        }
+    }
+    std::fs::write(folder.path().join("a.csv"), &text).unwrap();
+    std::fs::write(folder.path().join("b.csv"), foreign).unwrap();
+    let ended = |arguments: &[&str]| {
+        let done = binary().args(arguments).current_dir(folder.path()).output().unwrap();
+        assert!(done.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+    };
+    ended(&["import", "b.csv", "--out", "b-log.csv"]);
+    let run = |log: &str| {
+        run_toml([log, log]).split("\n[[series]]").take(2).collect::<Vec<_>>().join("\n[[series]]")
+    };
+    std::fs::write(folder.path().join("a.toml"), run("a.csv")).unwrap();
+    std::fs::write(folder.path().join("b.toml"), format!("map = \"b-log.import.toml\"\n{}", run("b.csv")))
+        .unwrap();
+    ended(&["segment", "a.toml", "--out", "a-table.csv", "--no-plots"]);
+    ended(&["segment", "b.toml", "--out", "b-table.csv", "--no-plots"]);
+    let table = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(table("a-table.csv").lines().count() > 40);
+    assert_eq!(table("a-table.csv"), table("b-table.csv"));
+}
+
 #[test]
 fn missing_logs_and_columns_are_reported() {
     let folder = tempfile::tempdir().unwrap();

@@ -61,6 +61,14 @@ function save(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
+// Returns bytes in base64; in parts, since a call has a limited number of arguments.
+const CALL_BYTES = 32768;
+function base64Of(bytes) {
+  let text = '';
+  for (let from = 0; from < bytes.length; from += CALL_BYTES) text += String.fromCharCode(...bytes.subarray(from, from + CALL_BYTES));
+  return btoa(text);
+}
+
 // Reports elapsed seconds at once and then at long intervals, since a screen reader reads each
 // report. Returns a function that ends the reports.
 const REPORT_INTERVAL_MS = 5000;

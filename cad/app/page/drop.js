@@ -2,9 +2,10 @@
 
 const MEGA = 1e6;
 const MAX_CONFIGURATION_BYTES = MEGA;
+const WORKBOOK = /\.(xlsx|xls|ods)$/i;
 
 class Drop {
-  // Opens a table of at most `maxTable_mb`, the bound of the engine, a configuration, or a model.
+  // Opens a file of measurements of at most `maxTable_mb`, the bound of the engine, a configuration, or a model.
   constructor({ openTable, openConfiguration, openModel, maxTable_mb }) {
     Object.assign(this, { openTable, openConfiguration, openModel, maxTable_mb });
     byId('open').addEventListener('click', () => byId('open-file').click());
@@ -30,17 +31,21 @@ class Drop {
     if (byId('files').open) byId('files').close();
     if (files.length > 1) showToast(TEXT.manyFiles);
     const [file] = files;
-    const kind = /\.(csv|tsv|txt)$/i.test(file.name) ? 'table' : /\.toml$/i.test(file.name) ? 'toml' : null;
+    const kind = /\.(csv|tsv|txt|dat|log|lvm|xlsx|xls|ods)$/i.test(file.name) ? 'table' : /\.toml$/i.test(file.name) ? 'toml' : null;
     const mega = (file.size / MEGA).toFixed(1);
     if (!kind) return this.refuse(TEXT.unknownType(file.name));
     if (file.size === 0) return this.refuse(TEXT.empty(file.name));
     if (kind === 'table' && file.size > this.maxTable_mb * MEGA) return this.refuse(TEXT.tooLarge(file.name, mega, this.maxTable_mb));
     if (kind === 'toml' && file.size > MAX_CONFIGURATION_BYTES) return this.refuse(TEXT.tooLargeConfiguration(file.name, mega));
-    let text;
-    try { text = await file.text(); } catch { return this.refuse(TEXT.unreadable(file.name)); }
-    if (text.includes('\0') || text.includes('\uFFFD')) return this.refuse(TEXT.notText(file.name));
+    let bytes;
+    try { bytes = new Uint8Array(await file.arrayBuffer()); } catch { return this.refuse(TEXT.unreadable(file.name)); }
+    const isUtf16 = (bytes[0] === 0xff && bytes[1] === 0xfe) || (bytes[0] === 0xfe && bytes[1] === 0xff);
+    const isBinary = !isUtf16 && !WORKBOOK.test(file.name) && bytes.includes(0);
+    if (isBinary) return this.refuse(TEXT.notText(file.name));
+    if (kind === 'table') { showNotice(''); return this.openTable(bytes, file.name); }
+    const text = new TextDecoder().decode(bytes);
+    if (text.includes('\uFFFD')) return this.refuse(TEXT.notText(file.name));
     showNotice('');
-    if (kind === 'table') return this.openTable(text, file.name);
     return /^\s*schema\s*=\s*"pinswitch\.model\//m.test(text) ? this.openModel(text, file.name) : this.openConfiguration(text, file.name);
   }
 

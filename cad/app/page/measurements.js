@@ -33,6 +33,44 @@ class Measurements {
     return this.fitNumber;
   }
 
+  // Shows what a file contains before it is used; a table of plateaus is used at once. `set` are
+  // answers to questions about it, as `--set` of `pinswitch import` takes them.
+  async open(bytes, file, set = []) {
+    const number = this.begin();
+    byId('measurements').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+    let answer;
+    try {
+      answer = await this.engine.request({ ask: 'import', data: base64Of(bytes), file, set });
+    } catch (problem) {
+      if (number === this.fitNumber && problem instanceof EngineError) this.report([problem.message], undefined, true);
+      if (problem instanceof EngineError || problem instanceof Superseded) return;
+      throw problem;
+    }
+    if (number !== this.fitNumber) return;
+    const { understood, questions, csv, is_log: isLog } = answer;
+    if (!understood) return void this.calibrate(csv, file);
+    this.report([], TEXT.understood(file));
+    const box = byId('verdict');
+    box.append(make('pre', understood, { class: 'understood', tabindex: 0 }));
+    for (const { problem, answers } of questions) {
+      box.append(make('p', problem, { class: 'error' }));
+      const row = make('p', undefined, { class: 'row' });
+      for (const { reading, options } of answers) {
+        // An option with NAME or a sample value is for a person to complete.
+        const isComplete = !options.some((option) => /\bNAME\b/.test(option));
+        const choice = isComplete ? make('button', reading, { type: 'button', class: 'btn small' }) : make('span', `${reading}: --set ${options.join(' --set ')}`, { class: 'dim' });
+        if (isComplete) choice.addEventListener('click', () => this.open(bytes, file, [...set, ...options]));
+        row.append(choice);
+      }
+      box.append(row);
+    }
+    if (isLog) box.append(make('p', TEXT.logOf(file)));
+    if (!csv) return;
+    const use = make('button', TEXT.useTable, { type: 'button', class: 'btn small go', id: 'use-table' });
+    use.addEventListener('click', () => this.calibrate(csv, file));
+    box.append(use);
+  }
+
   async calibrate(csv, file) {
     const number = this.begin();
     const endReports = reportElapsed((seconds) => this.report([TEXT.calibrating(file, seconds)]));
@@ -47,7 +85,8 @@ class Measurements {
       const effects = answer.effects.filter(([id]) => id !== 'unattributed');
       const detected = effects.length ? [TEXT.detectedEffects(effects)] : [];
       const open = answer.verdict === 'inconclusive' ? [TEXT.notExcluded(answer.not_excluded)] : [];
-      this.report([...detected, ...open, ...errors], TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict));
+      const friction = answer.friction ? [`${answer.friction}.`] : [];
+      this.report([...friction, ...detected, ...open, ...errors], TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict));
       this.fitted = answer.model ? { name: file, toml: answer.model } : null;
       this.show();
     } catch (problem) {

@@ -83,7 +83,7 @@ class Page {
     this.downloads = new Downloads(state, this.engine);
     this.embed = new Embed((hash) => this.applyHash(hash), state);
     const drop = new Drop({
-      openTable: (text, file) => this.measurements.calibrate(text, file),
+      openTable: (bytes, file) => this.measurements.open(bytes, file),
       openConfiguration: (text, file) => this.open(text, file),
       openModel: (text, file) => this.measurements.openModel(text, file),
       maxTable_mb: facts.largest_table_mb,

@@ -21,7 +21,7 @@ const TEXT = {
   targets: 'Design for targets', results: 'Proposed designs', targetsHelp: 'Drag the marks on the curve, or enter the load at which it should switch and the friction it should have.',
   targetThreshold: 'Switches at', targetFriction: 'Friction of', targetLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', useDesign: 'Use this design',
   measurements: 'Your measurements', chooseTable: 'Choose a table', useModel: 'Use this model in the design', removeModel: 'Back to the published constants',
-  measurementsHelp: 'Drop a table of plateaus (CSV) anywhere on the page. The calibration reports whether the model fits your switch, and what it lacks.',
+  measurementsHelp: 'Drop a table of your rig (CSV, Excel, LVM) anywhere on the page. The calibration reports whether the model fits your switch, and what it lacks.',
   filesTitle: 'Download', everything: 'All files as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
 
   groups: {
@@ -87,6 +87,8 @@ const TEXT = {
   removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`,
   removeThreshold: 'Remove the target threshold',
 
+  understood: (file) => `${file} contains`, useTable: 'Calibrate with this table',
+  logOf: (file) => `This is a log of the force over time. Run pinswitch import ${file} and pinswitch segment to convert it to a table.`,
   calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute, tens of thousands some minutes; you can continue to work on the page.`,
   heldOutErrors: (before, after, newSession) => `Held-out error: ${before} N before, ${after} N after; expected in a new session: ${newSession} N.`,
   modelApplied: 'The design uses your calibrated model. The address contains it and is long.', modelName: (file) => `model from ${file}`,

@@ -4,6 +4,7 @@ use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{ModelFile, SessionReport, calibrate};
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_report::friction_words;
 use serde::Serialize;
 
 use crate::Answer;
@@ -20,6 +21,8 @@ const SEED: u64 = 1;
 #[derive(Serialize)]
 struct Summary {
     verdict: &'static str,
+    /// Friction coefficient of a rig without a switch, in words.
+    friction: Option<String>,
     /// Held-out error of the baseline and of the augmented model, N.
     before_n: f64,
     after_n: f64,
@@ -31,7 +34,7 @@ struct Summary {
     effects: Vec<Vec<String>>,
     /// Ids of effects that are not excluded at their size of consequence.
     not_excluded: Vec<String>,
-    /// The text of `model.toml`.
+    /// The text of `model.toml`; empty for a rig without a switch, whose model has no friction of a part.
     model: String,
 }
 
@@ -67,9 +70,11 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
         .map_err(|e| Diagnostic::from(e).or_in_file(file))?;
     let report = &calibration.report;
     let model = ModelFile::new(&calibration.augmented);
+    let is_switch = table.rows.iter().any(|row| row.substrate.is_some());
     let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
     Ok(Summary {
         verdict: report.verdict.as_str(),
+        friction: friction_words(report),
         before_n: report.baseline.heldout_rmse_n,
         after_n: report.augmented.heldout_rmse_n,
         promise_n: report.promise_n,
@@ -77,7 +82,7 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
         adequate: report.adequate,
         effects,
         not_excluded,
-        model: model.to_text()?,
+        model: if is_switch { model.to_text()? } else { String::new() },
     })
 }
 

@@ -8,6 +8,7 @@ use flate2::read::MultiGzDecoder;
 use pinswitch_calibration::segmentation::{RunPlan, RunSegmentation, SegmentedRun};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_import::Map;
 use pinswitch_report::log_svg;
 use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
@@ -41,6 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let text = crate::input::read_text_file(&arguments.run)?;
     let plan = RunPlan::parse(&text, &name).map_err(Failure::bad_input)?;
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
+    let map = plan.map.as_ref().map(|file| read_map(&folder.join(file))).transpose()?;
     let stem =
         arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
     let (mut run, mut files) = (RunSegmentation::new(&plan), Vec::new());
@@ -56,7 +58,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                         .with_help("copy it into the folder, or allow it with --read-outside"),
                 ));
             }
-            logs.push((read_log(&path)?, path.display().to_string()));
+            let (bytes, name) = (read_log(&path)?, path.display().to_string());
+            let bytes = match &map {
+                Some(map) => map.read_log(&bytes, &name).map_err(Failure::bad_input)?.to_csv().into_bytes(),
+                None => bytes,
+            };
+            logs.push((bytes, name));
         }
         let (log, segmented) = run.add(series, &logs).map_err(Failure::bad_input)?;
         if !arguments.no_plots {
@@ -82,6 +89,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_listed(out, &files, "segment", &[])?;
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print_text(&summary)
+}
+
+/// Reads the map with which `import` reads the logs of a machine.
+fn read_map(path: &Path) -> Result<Map, Failure> {
+    let text = crate::input::read_text_file(path)?;
+    Map::parse(&text, &path.display().to_string()).map_err(Failure::bad_input)
 }
 
 /// Whether the existing file `path` is outside of `folder`, once links are followed.

@@ -123,10 +123,12 @@ impl Fit {
     fn of_point(hypothesis: &Hypothesis, at: &ScaleProblem<'_>, mut mode: Mode, point: ScalePoint) -> Self {
         let (problem, design) = (at.problem, at.design);
         let integrals = log_evidence(at, &point, log_weight_term(&mode.weights));
+        let before = mode.clone();
         move_coefficients(&problem.space, design, &point, &mut mode);
+        let Integrals { log_evidence, sizes, variances } = integrals;
+        let log_evidence = log_evidence + loss_by_curvature(at, hypothesis, &before, &mode, &point);
         mode.scales = point.scales;
         mode.log_sd = point.log_sd;
-        let Integrals { log_evidence, sizes, variances } = integrals;
         let score = log_evidence + hypothesis.log_prior_odds(&problem.space);
         Self { hypothesis: hypothesis.clone(), log_evidence, score, sizes, variances, mode }
     }
@@ -161,6 +163,40 @@ impl Fit {
     pub fn weights(&self) -> impl Iterator<Item = f64> + '_ {
         self.mode.weights.iter().copied()
     }
+}
+
+/// Returns what the readings lose in log likelihood where the model is not linear between the mode and
+/// its posterior mean, to which it moved; zero at convergence. The evidence of a fit that has not
+/// converged is that of a model which the readings do not follow.
+fn loss_by_curvature(
+    at: &ScaleProblem<'_>,
+    hypothesis: &Hypothesis,
+    before: &Mode,
+    after: &Mode,
+    point: &ScalePoint,
+) -> f64 {
+    let forward = &at.problem.rows.forward;
+    let from = forward.readings(&before.constants, &before.sized(hypothesis));
+    let to = forward.readings(&after.constants, &after.sized(hypothesis));
+    let value = |mode: &Mode, role: &Role| match role {
+        Role::Constant(i) => mode.constants[*i],
+        Role::Size(effect) => mode.sizes.get(effect).copied().unwrap_or(0.0),
+        Role::Shape(effect, i) => mode.shifts.get(effect).map_or(0.0, |shifts| shifts[*i]),
+        Role::Discrepancy(_) | Role::Variance(_) => 0.0,
+    };
+    let mut change = DVector::from_iterator(to.len(), to.iter().zip(&from).map(|(to, from)| to - from));
+    let mut coefficients = point.solution.mean.clone();
+    for (i, role) in at.design.roles.iter().enumerate() {
+        if matches!(role, Role::Discrepancy(_) | Role::Variance(_)) {
+            continue;
+        }
+        change.axpy(value(before, role) - value(after, role), &at.design.matrix.column(i), 1.0);
+        coefficients[i] = value(after, role) - at.design.prior_mean[i];
+    }
+    let white = point.marginal.white_residual(&coefficients);
+    let curved = &white - point.marginal.whitening.whiten_vector(&change);
+    let loss = 0.5 * (white.norm_squared() - curved.norm_squared());
+    if loss.is_finite() { loss.min(0.0) } else { f64::NEG_INFINITY }
 }
 
 /// Returns the prior variance of each size: practically free, or about twice the square of the

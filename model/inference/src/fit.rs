@@ -138,6 +138,14 @@ impl Fit {
         self.mode.scales
     }
 
+    /// Returns the fit with the noise of repeated readings; `None` if its own is not much larger.
+    pub(crate) fn quiet(&self, problem: &Problem) -> Option<Self> {
+        let scales = self.mode.scales.quiet(&problem.reference)?;
+        let mut quiet = self.clone();
+        quiet.mode.scales = scales;
+        Some(quiet)
+    }
+
     /// Returns the standard deviation of a random effect of the space, the root of its posterior mean
     /// variance.
     pub fn random_effect_sd(&self, index: usize) -> Option<f64> {

@@ -94,6 +94,10 @@ pub struct Scales {
     pub(crate) autoregression: usize,
 }
 
+/// Logarithm of the ratio of a scale to that of repeated readings above which it may stand for missing
+/// structure.
+const LOUD: f64 = std::f64::consts::LN_2;
+
 impl Scales {
     /// Returns typical scales, from which a fit starts.
     pub(crate) fn typical(reference: &NoiseReference) -> Self {
@@ -109,6 +113,16 @@ impl Scales {
             *log = log.max(usual - 2.0);
         }
         self
+    }
+
+    /// Returns the scales of repeated readings; `None` if these are not much smaller.
+    pub(crate) fn quiet(mut self, reference: &NoiseReference) -> Option<Self> {
+        let typical = Self::typical(reference);
+        let is_loud = self.log.iter().zip(typical.log).any(|(log, usual)| *log > usual + LOUD);
+        for (log, usual) in self.log.iter_mut().zip(typical.log) {
+            *log = log.min(usual);
+        }
+        is_loud.then_some(self)
     }
 
     /// Returns repetition noise, its growth with load, offset per series and direction, offset per

@@ -192,6 +192,12 @@ impl<'a> Search<'a> {
         let Some(scores) = Scores::new(self.problem, fit) else { return };
         if fit.hypothesis.len() < self.options.members {
             self.add(fit, &scores.additions(None));
+            // Scatter that stands for missing structure hides it: the additions count again by the
+            // noise of repeated readings.
+            let quiet = fit.quiet(self.problem).and_then(|quiet| Scores::new(self.problem, &quiet));
+            if let Some(scores) = quiet {
+                self.add(fit, &scores.additions(None));
+            }
         }
         for element in fit.hypothesis.elements().collect::<Vec<_>>() {
             self.exchange(fit, element, &scores.additions(Some(element.member)));

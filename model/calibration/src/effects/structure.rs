@@ -41,6 +41,8 @@ pub enum Abscissa {
     SeriesReadings,
     /// +1 for odd repetitions, -1 for even ones.
     Alternation,
+    /// Repetition, negative in the eccentric direction.
+    DirectedRepetition,
     /// Load in newtons.
     Load,
     /// `ln(v/v0)`.
@@ -74,6 +76,7 @@ impl Abscissa {
                     -1.0
                 }
             }
+            Self::DirectedRepetition => p.sign * p.repetition,
             Self::Load => p.load_n,
             Self::LogSpeed => p.log_speed,
             Self::LogDwell => p.log_dwell,
@@ -445,6 +448,7 @@ fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String 
         Abscissa::LogRepetition => ("a curve", "the repetition"),
         Abscissa::SeriesReadings => ("a curve", "the readings of a series"),
         Abscissa::Alternation => ("an alternation", "odd and even repetitions"),
+        Abscissa::DirectedRepetition => ("levels", "the repetitions of each direction"),
         Abscissa::Load => ("a curve", "the load"),
         Abscissa::LogSpeed => ("a curve", "the speed"),
         Abscissa::LogDwell => ("a curve", "the dwell"),

@@ -205,7 +205,7 @@ impl Evidence {
             mean_time: self.setup.mean_time,
             largest: self.setup.largest,
             mounts: if session == Session::New { Vec::new() } else { self.setup.mounts.clone() },
-            specimens: self.setup.specimens.clone(),
+            specimens: if session == Session::New { Vec::new() } else { self.setup.specimens.clone() },
         };
         let mut new_rows = setup.rows(&covariates, session);
         let bases = |structure: &Structure| match session {
@@ -285,7 +285,8 @@ impl Setup {
             channel: channel.index(),
             scale,
             levels: names.len(),
-            is_redrawn: name == "mount",
+            // A model file knows neither mounts nor specimens.
+            is_redrawn: true,
         };
         let has_pins = self.conditions.iter().any(Condition::has_pins);
         let specimen_channel = if has_pins { Channel::Pins } else { Channel::Friction };

@@ -290,6 +290,11 @@ impl Collector<'_> {
                 COMMON,
                 vec![alternation],
             );
+            // The same mistake in every series: the first reading after a reversal, or any other.
+            let directed = |row: &RowFactors, _: &RowLabels| format!("{:+}", row.directed_repetition);
+            let record = Record::Table(Abscissa::DirectedRepetition, true);
+            let channels = &[Channel::Reading, Channel::Friction];
+            self.levels("repetition of a direction", "repetition", record, channels, directed);
             let scale = Interval::of(&self.rows.series_time_s);
             let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
             let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
@@ -484,10 +489,16 @@ fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
 struct RowFactors {
     wrap_deg: f64,
     load_n: f64,
+    /// Repetition, negative in the eccentric direction.
+    directed_repetition: f64,
 }
 
 fn names_of(rows: &Covariates, level: &impl Fn(&RowFactors, &RowLabels) -> String) -> Vec<String> {
-    let factors = |i: usize| RowFactors { wrap_deg: rows.wrap_deg[i], load_n: rows.points[i].load_n };
+    let factors = |i: usize| RowFactors {
+        wrap_deg: rows.wrap_deg[i],
+        load_n: rows.points[i].load_n,
+        directed_repetition: rows.points[i].sign * rows.points[i].repetition,
+    };
     (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
 }
 

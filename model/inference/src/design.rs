@@ -42,6 +42,14 @@ pub(crate) enum Component {
 }
 
 impl Component {
+    /// Returns the channel through which it acts.
+    pub(crate) fn channel(self, space: &Space) -> usize {
+        match self {
+            Self::Random(i) => space.random_effects[i].channel,
+            Self::Kernel(i) => space.kernels[i].channel,
+        }
+    }
+
     /// Returns the scale of the prior of its standard deviation.
     pub(crate) fn scale(self, space: &Space) -> f64 {
         match self {
@@ -62,9 +70,41 @@ pub struct Mode {
     pub(crate) weights: DVector<f64>,
     pub(crate) scales: Scales,
     pub(crate) log_sd: BTreeMap<Component, f64>,
+    /// Coefficients of the components of the curved channel.
+    pub(crate) curved: BTreeMap<Component, Vec<f64>>,
 }
 
+/// Bounds of the curved channel: a share of the friction.
+const CURVED: (f64, f64) = (-0.9, 9.0);
+
 impl Mode {
+    /// Returns the value of the curved channel at each row; empty where it is zero.
+    pub(crate) fn curved_channel(&self, space: &Space, rows: &Rows, hypothesis: &Hypothesis) -> Vec<f64> {
+        let (Some(channel), false) = (space.curved_channel, self.curved.is_empty()) else {
+            return Vec::new();
+        };
+        let mut sum = vec![0.0; rows.len()];
+        for (i, random) in space.random_effects.iter().enumerate().filter(|(_, r)| r.channel == channel) {
+            let Some(levels) = self.curved.get(&Component::Random(i)).filter(|l| l.len() == random.levels)
+            else {
+                continue;
+            };
+            for (sum, level) in sum.iter_mut().zip(&rows.levels[i]) {
+                *sum += level.map_or(0.0, |level| levels[level]);
+            }
+        }
+        for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| space.kernels[*k].channel == channel) {
+            let basis = &rows.bases[kernel][variant];
+            let known = self.curved.get(&Component::Kernel(kernel)).filter(|c| c.len() == basis.ncols());
+            let Some(coefficients) = known else { continue };
+            for (row, sum) in sum.iter_mut().enumerate() {
+                *sum += basis.row(row).iter().zip(coefficients).map(|(x, c)| x * c).sum::<f64>();
+            }
+        }
+        sum.iter_mut().for_each(|value| *value = value.clamp(CURVED.0, CURVED.1));
+        sum
+    }
+
     /// Returns the effects of a hypothesis with sizes and shapes.
     pub(crate) fn sized(&self, hypothesis: &Hypothesis) -> Vec<SizedEffect> {
         let effects = hypothesis.effects();
@@ -104,21 +144,26 @@ impl Design {
     pub(crate) fn of_rows(space: &Space, rows: &Rows, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
         let effects = mode.sized(hypothesis);
         let forward = &rows.forward;
-        let baseline = forward.readings(&mode.constants, &effects);
-        let channels = forward.channels(&mode.constants, &effects);
+        let curved = mode.curved_channel(space, rows, hypothesis);
+        let baseline = forward.readings_at(&mode.constants, &effects, &curved);
+        let channels = forward.channels_at(&mode.constants, &effects, &curved);
         let mut builder = Builder { rows: rows.len(), data: Vec::new(), roles: Vec::new(), mean: Vec::new() };
         let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
+        if let Some(channel) = space.curved_channel {
+            let linear = curved.iter().zip(&channels[channel]).map(|(value, slope)| value * slope);
+            target.iter_mut().zip(linear).for_each(|(target, linear)| *target += linear);
+        }
         for (i, constant) in space.constants.iter().enumerate() {
             let mut moved = mode.constants.clone();
             moved[i] += CONSTANT_STEP;
-            let column = slope(&forward.readings(&moved, &effects), &baseline, CONSTANT_STEP);
+            let column = slope(&forward.readings_at(&moved, &effects, &curved), &baseline, CONSTANT_STEP);
             add_scaled(&mut target, &column, mode.constants[i] - constant.mean);
             builder.push(Role::Constant(i), constant.mean, column);
         }
         let sized = effects.iter().filter(|e| space.effects[e.effect].typical_size.is_some());
         let mut contributions = Vec::new();
         for effect in sized {
-            let column = size_sensitivity(space, rows, mode, &effects, *effect, &baseline);
+            let column = size_sensitivity(space, rows, mode, &effects, *effect, (&baseline, &curved));
             add_scaled(&mut target, &column, effect.size);
             contributions.push((*effect, column.iter().map(|x| x * effect.size).collect::<Vec<f64>>()));
             builder.push(Role::Size(effect.effect), 0.0, column);
@@ -127,7 +172,8 @@ impl Design {
             for i in 0..space.effects[effect.effect].shape_constants {
                 let moved = |e: &SizedEffect| if e == effect { shifted(*e, i) } else { *e };
                 let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
-                let column = slope(&forward.readings(&mode.constants, &moved), &baseline, SHIFT_STEP);
+                let column =
+                    slope(&forward.readings_at(&mode.constants, &moved, &curved), &baseline, SHIFT_STEP);
                 add_scaled(&mut target, &column, effect.shifts[i]);
                 builder.push(Role::Shape(effect.effect, i), 0.0, column);
             }
@@ -243,13 +289,13 @@ fn size_sensitivity(
     mode: &Mode,
     effects: &[SizedEffect],
     effect: SizedEffect,
-    baseline: &[f64],
+    (baseline, curved): (&[f64], &[f64]),
 ) -> Vec<f64> {
     let typical = space.effects[effect.effect].typical_size.unwrap_or(1.0);
     let step = (SIZE_STEPS.0 * typical).max(SIZE_STEPS.1 * effect.size.abs());
     let moved = |e: &SizedEffect| if *e == effect { SizedEffect { size: e.size + step, ..*e } } else { *e };
     let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
-    slope(&rows.forward.readings(&mode.constants, &moved), baseline, step)
+    slope(&rows.forward.readings_at(&mode.constants, &moved, curved), baseline, step)
 }
 
 /// Returns the change of the readings per size of an element that is added to a model, by a secant
@@ -266,8 +312,9 @@ pub(crate) fn added_column(
     let start = space.effects[effect].starts.get(shape).copied()?;
     let mut with = rest.clone();
     with.push(SizedEffect { effect, shape, size: start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
-    let before = rows.forward.readings(&mode.constants, &rest);
-    let after = rows.forward.readings(&mode.constants, &with);
+    let curved = mode.curved_channel(space, rows, hypothesis);
+    let before = rows.forward.readings_at(&mode.constants, &rest, &curved);
+    let after = rows.forward.readings_at(&mode.constants, &with, &curved);
     let column = slope(&after, &before, start);
     let most = column.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     (most > 1e-9 && column.iter().all(|x| x.is_finite())).then(|| DVector::from_vec(column))

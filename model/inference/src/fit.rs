@@ -184,8 +184,10 @@ fn loss_by_curvature(
     point: &ScalePoint,
 ) -> f64 {
     let forward = &at.problem.rows.forward;
-    let from = forward.readings(&before.constants, &before.sized(hypothesis));
-    let to = forward.readings(&after.constants, &after.sized(hypothesis));
+    let (space, rows) = (&at.problem.space, &at.problem.rows);
+    let [curved_from, curved_to] = [before, after].map(|mode| mode.curved_channel(space, rows, hypothesis));
+    let from = forward.readings_at(&before.constants, &before.sized(hypothesis), &curved_from);
+    let to = forward.readings_at(&after.constants, &after.sized(hypothesis), &curved_to);
     let value = |mode: &Mode, role: &Role| match role {
         Role::Constant(i) => mode.constants[*i],
         Role::Size(effect) => mode.sizes.get(effect).copied().unwrap_or(0.0),
@@ -193,6 +195,13 @@ fn loss_by_curvature(
         Role::Discrepancy(_) | Role::Variance(_) => 0.0,
     };
     let mut change = DVector::from_iterator(to.len(), to.iter().zip(&from).map(|(to, from)| to - from));
+    if let Some(channel) = space.curved_channel {
+        let value = |curved: &[f64], row: usize| curved.get(row).copied().unwrap_or(0.0);
+        for (row, change) in change.iter_mut().enumerate() {
+            let moved = value(&curved_to, row) - value(&curved_from, row);
+            *change -= at.design.channels[channel][row] * moved;
+        }
+    }
     let mut coefficients = point.solution.mean.clone();
     for (i, role) in at.design.roles.iter().enumerate() {
         if matches!(role, Role::Discrepancy(_) | Role::Variance(_)) {
@@ -241,7 +250,10 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
         }),
         scales: Scales::typical(&problem.reference),
         log_sd: BTreeMap::new(),
+        curved: BTreeMap::new(),
     });
+    // The coefficients of a kernel are those of its form.
+    mode.curved.retain(|component, _| matches!(component, Component::Random(_)));
     mode.scales = mode.scales.raised(&problem.reference);
     let (mut sizes, mut shifts) = (BTreeMap::new(), BTreeMap::new());
     for (effect, shape) in hypothesis.effects() {
@@ -325,6 +337,13 @@ fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &
             Role::Discrepancy(_) | Role::Variance(_) => {}
         }
     }
+    mode.curved = space.curved_channel.map_or_else(BTreeMap::new, |channel| {
+        let of_channel = design.components().into_iter().filter(|c| c.channel(space) == channel);
+        let coefficients = |component: Component| {
+            design.columns_of(component).into_iter().map(|i| point.solution.mean[i]).collect()
+        };
+        of_channel.map(|component| (component, coefficients(component))).collect()
+    });
 }
 
 impl Fit {

@@ -93,6 +93,9 @@ pub struct Space {
     pub structure_probability: f64,
     /// Index of the channel of the scale that each series draws.
     pub series_scale_channel: usize,
+    /// Index of the channel in which the readings are not linear, about whose value fits are
+    /// linearised again; `None` if they are linear in all.
+    pub curved_channel: Option<usize>,
 }
 
 /// An effect with its size, as an argument of a forward model.
@@ -115,6 +118,17 @@ pub trait ForwardModel {
 
     /// Returns the derivative of the readings with respect to each channel, one column per channel.
     fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>>;
+
+    /// Returns the readings where the curved channel of the space has this value at each row; no values
+    /// are zeros. A space without a curved channel needs no other implementation.
+    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[f64]) -> Vec<f64> {
+        self.readings(constants, effects)
+    }
+
+    /// Returns the derivatives as [`ForwardModel::channels`] there.
+    fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[f64]) -> Vec<Vec<f64>> {
+        self.channels(constants, effects)
+    }
 
     /// Returns the readings where effects of a session's time have their mean over the session.
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {

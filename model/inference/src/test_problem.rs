@@ -80,6 +80,7 @@ fn space() -> Space {
         usual_effects: vec![0],
         structure_probability: 0.2,
         series_scale_channel: 1,
+        curved_channel: None,
     }
 }
 

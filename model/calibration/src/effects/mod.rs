@@ -99,6 +99,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///     one_sided: true,
 ///     bends: true,
 ///     scales: true,
+///     on_plain: true,
 ///     confused_with: &["dwell_relaxation"],
 ///     experiment: "dead weights with two pauses",
 ///     invisible_because: "the dwell time never varies",

@@ -164,8 +164,14 @@ pub(super) struct FrictionModel {
 
 impl FrictionModel {
     /// Returns the readings in newtons.
-    fn evaluate(&self, constants: &[f64], effects: &[SizedEffect], factors: Factors) -> Vec<f64> {
-        self.evaluate_at(&self.points, constants, effects, factors)
+    fn evaluate(
+        &self,
+        constants: &[f64],
+        effects: &[SizedEffect],
+        factors: Factors,
+        curved: &[f64],
+    ) -> Vec<f64> {
+        self.evaluate_at(&self.points, constants, effects, factors, curved)
     }
 
     fn evaluate_at(
@@ -174,6 +180,7 @@ impl FrictionModel {
         constants: &[f64],
         effects: &[SizedEffect],
         factors: Factors,
+        curved: &[f64],
     ) -> Vec<f64> {
         let mut acting: Vec<(&EffectPrior, Vec<f64>)> =
             effects.iter().map(|e| (&self.priors[e.effect], self.priors[e.effect].values(e))).collect();
@@ -183,12 +190,15 @@ impl FrictionModel {
         let states: Vec<ContactState> =
             self.conditions.iter().map(|c| self.contact(c, mu, constants)).collect();
         let moves = acting.iter().any(|(prior, _)| prior.effect.moves_along_a_series());
-        let mut last: Option<(&Point, f64)> = None;
+        let mut last: Option<(&Point, f64, f64)> = None;
         points
             .iter()
-            .map(|point| {
+            .enumerate()
+            .map(|(row, point)| {
+                let change = curved.get(row).copied().unwrap_or(0.0);
                 // Repetitions at one setting have one expectation, unless an effect varies within a series.
-                if let Some((_, reading)) = last.filter(|(known, _)| !moves && known.has_setting_of(point)) {
+                let is_known = |known: &Point, at: f64| !moves && at == change && known.has_setting_of(point);
+                if let Some((.., reading)) = last.filter(|(known, at, _)| is_known(known, *at)) {
                     return reading;
                 }
                 let condition = &self.conditions[point.condition];
@@ -197,6 +207,7 @@ impl FrictionModel {
                     prior.effect.on_contact(values, point, condition, &mut state);
                 }
                 factors.apply(&mut state);
+                state.exponent_factor *= 1.0 + change;
                 let mut reading = state.tension_n(condition, point);
                 for (prior, values) in &acting {
                     reading = prior.effect.on_tension(values, point, condition, reading);
@@ -205,7 +216,7 @@ impl FrictionModel {
                 for (prior, values) in &acting {
                     reading = prior.effect.on_reading(values, point, condition, reading);
                 }
-                last = Some((point, reading));
+                last = Some((point, change, reading));
                 reading
             })
             .collect()
@@ -241,17 +252,27 @@ impl FrictionModel {
 
 impl ForwardModel for FrictionModel {
     fn readings(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
-        self.evaluate(constants, effects, NO_CHANGE)
+        self.evaluate(constants, effects, NO_CHANGE, &[])
     }
 
     fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>> {
-        let before = self.evaluate(constants, effects, NO_CHANGE);
+        self.channels_at(constants, effects, &[])
+    }
+
+    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
+        self.evaluate(constants, effects, NO_CHANGE, curved)
+    }
+
+    fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<Vec<f64>> {
+        let before = self.evaluate(constants, effects, NO_CHANGE, curved);
         let slope = |factors: Factors| -> Vec<f64> {
-            let after = self.evaluate(constants, effects, factors);
+            let after = self.evaluate(constants, effects, factors, curved);
             after.iter().zip(&before).map(|(a, b)| (a - b) / CHANNEL_STEP).collect()
         };
         let up = 1.0 + CHANNEL_STEP;
-        let friction = slope(Factors { exponent: up, ..NO_CHANGE });
+        // The factor of the exponent is 1 + the channel: a relative step is larger by it.
+        let mut friction = slope(Factors { exponent: up, ..NO_CHANGE });
+        friction.iter_mut().zip(curved).for_each(|(slope, change)| *slope /= 1.0 + change);
         let pins = slope(Factors { pins: up, ..NO_CHANGE });
         let silicone = slope(Factors { silicone: up, ..NO_CHANGE });
         let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();
@@ -260,7 +281,7 @@ impl ForwardModel for FrictionModel {
     }
 
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
-        self.evaluate_at(&self.points_at_mean_time(), constants, effects, NO_CHANGE)
+        self.evaluate_at(&self.points_at_mean_time(), constants, effects, NO_CHANGE, &[])
     }
 }
 

@@ -301,6 +301,7 @@ impl Setup {
             usual_effects: (0..self.priors.len()).filter(usual).collect(),
             structure_probability: STRUCTURE_PROBABILITY,
             series_scale_channel: Channel::Friction.index(),
+            curved_channel: Some(Channel::Friction.index()),
         }
     }
 

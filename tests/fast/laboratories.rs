@@ -1,8 +1,9 @@
 //! Calibration of small tables as laboratories make them, which rigs of the paper's kind are unlike.
 
 use pinswitch_calibration::effects::Vocabulary;
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::{Optional, PlateauTable};
-use pinswitch_calibration::{Report, Verdict, calibrate};
+use pinswitch_calibration::{ModelFile, Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
@@ -112,4 +113,53 @@ fn four_stops_show_no_wave() {
     assert!(forms.clone().all(|form| form.shape != "sine"), "{:?}", forms.collect::<Vec<_>>());
     assert!(report.effects.iter().all(|effect| effect.covariate != "time"), "{:?}", report.effects);
     assert!(report.augmented.heldout_series_rmse_n < report.least_squares_n.unwrap());
+}
+
+/// Returns the id of each reported effect with its covariate; `unattributed` for structure.
+fn reported(report: &Report) -> Vec<(String, String)> {
+    report.effects.iter().map(|effect| (effect.id.clone(), effect.covariate.clone())).collect()
+}
+
+fn structure(covariate: &str) -> (String, String) {
+    ("unattributed".to_owned(), covariate.to_owned())
+}
+
+/// The first reading after each reversal is 1 N low: fifteen gross errors are one pattern.
+#[test]
+fn the_same_mistake_in_every_series_is_structure() {
+    let report = report("same-mistake.csv");
+    assert_eq!(reported(&report), [structure("repetition")]);
+    assert!(report.expected_error_n.unwrap().value < 0.08, "{:?}", report.expected_error_n);
+}
+
+/// Friction is 20 % lower in the last third of the session. Scatter between series does not hide it, and
+/// its curvature has no other name.
+#[test]
+fn a_step_of_friction_is_not_scatter() {
+    let report = report("friction-step.csv");
+    assert_eq!(reported(&report), [structure("time")]);
+    assert!(report.augmented.heldout_series_rmse_n < 0.08, "{:?}", report.augmented);
+}
+
+/// Friction differs by the factors 1, 1.4 and 0.8 between three sessions, next to a drag of 0.4 N.
+#[test]
+fn changes_between_sessions_have_no_other_name() {
+    let report = report("friction-of-sessions.csv");
+    assert_eq!(reported(&report), [("guide_drag".to_owned(), "direction".to_owned())]);
+    let factors = &report.changes[0].factors;
+    let ratio = factors["d1"] / factors["d2"];
+    assert!((ratio / (1.4 / 0.8) - 1.0).abs() < 0.05, "{factors:?}");
+}
+
+/// One of five weights reads 6 % high. A formula takes the place of structure in the model only if its
+/// predictions are as good.
+#[test]
+fn models_predict_their_own_table() {
+    let rows = table("one-wrong-weight.csv").rows;
+    let calibration = calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+    let file = ModelFile::new(&calibration.augmented);
+    let (predicted, _) = file.predict(&rows, Session::Fitted, "model.toml").unwrap();
+    let square: f64 = predicted.iter().zip(&rows).map(|(p, row)| (p - row.force_n).powi(2)).sum();
+    let rms_n = (square / rows.len() as f64).sqrt();
+    assert!(rms_n < 1.2 * calibration.report.augmented.rmse_n, "{rms_n}, {:?}", calibration.report.augmented);
 }

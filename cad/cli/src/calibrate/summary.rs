@@ -188,7 +188,9 @@ fn errors(report: &Report) -> String {
     );
     text.push_str(&match report.expected_error_n {
         Some(ExpectedErrorReport { value, ci90: [low, high] }) => {
-            format!("expected error of a new session: {value:.4} N [{low:.4}, {high:.4}]\n")
+            // A table with one mount cannot show how mounts differ.
+            let mount = if report.noise.mount_scale > 0.0 { "" } else { ", with the same mount" };
+            format!("expected error of a new session: {value:.4} N [{low:.4}, {high:.4}]{mount}\n")
         }
         None => "expected error of a new session: unknown, too few series\n".to_owned(),
     });

@@ -137,6 +137,30 @@ fn invalid_arguments_are_refused() {
     assert!(code == Some(2) && output.contains("cannot be used with '--effects <FILE>'"), "{output}");
 }
 
+/// Negative numbers are values, not options, so that the error contains the bound.
+#[test]
+fn negative_numbers_are_compared_with_bounds() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (
+            "generate three-double --tolerance -1",
+            ["--tolerance: mesh.chord_tolerance_mm = -1.0: ", "0.0001 to 0.1"],
+        ),
+        (
+            "experiment x --minutes -5 --out y",
+            ["--minutes = -5: not a time", "minutes above 0 and up to 2400"],
+        ),
+        ("check --min-wall -1 x.stl", ["--min-wall = -1: not a wall thickness", "give 0 or more mm"]),
+        ("batch sweep.toml --dry-run --threads -1", ["'-1' for '--threads <N>'", "not in 0..=256"]),
+        ("simulate --seed -1", ["'-1' for '--seed <SEED>'", "invalid digit"]),
+    ] {
+        let (code, output) = ended(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, Some(2), "{arguments}: {output}");
+        assert!(words.iter().all(|word| output.contains(word)), "{arguments}: {output}");
+        assert!(!output.contains("unexpected argument"), "{output}");
+    }
+}
+
 /// A valid configuration whose set cannot be written gives exit code 1.
 #[test]
 fn obstructing_files_are_not_replaced() {

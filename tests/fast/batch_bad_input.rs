@@ -167,6 +167,15 @@ fn unwritable_destinations_are_refused() {
         assert!(code == Some(2) && error.starts_with(&format!("error: {shown}")), "{error}");
         assert!(error.contains("; help: give a") || error.contains("give another --out"), "{error}");
     }
+    // The path is valid, but the system refuses to write there, also for an administrator.
+    if Path::new("/sys").is_dir() {
+        for command in ["batch sweep.toml", "generate three-double"] {
+            let arguments: Vec<_> = command.split(' ').chain(["-q", "--out", "/sys/b"]).collect();
+            let (code, error) = refused(folder.path(), &arguments);
+            assert!(code == Some(1) && error.starts_with("error: /sys/b: cannot write: "), "{error}");
+            assert!(error.ends_with("; help: give an --out that can be written"), "{error}");
+        }
+    }
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::harness::{binary, files, hashes, table, with_sweep};
 
 /// Substitute slicer: writes settings with a time stamp, and G-code that takes an hour and one
 /// second per kilobyte of the file; logs its calls. It fails if its folder contains a file
-/// `broken`.
+/// `broken`, and exits with an error after a complete result if there is a file `exit_3`.
 const SUBSTITUTE_SLICER: &str = r##"#!/bin/sh
 here=$(dirname "$0")
 if [ -e "$here/broken" ]; then echo "error: the nozzle is in a bad mood" >&2; exit 1; fi
@@ -32,6 +32,7 @@ echo "$size" >> "$here/calls"
   echo "; filament used [mm] = $((size / 10)).50"
   echo "; filament used [g] = $((size / 1000)).25"
   echo "; estimated printing time (normal mode) = 1h 0m $((size / 1000 % 60))s"; } > "$out"
+if [ -e "$here/exit_3" ]; then exit 3; fi
 "##;
 
 pub(crate) fn substitute_slicer(folder: &Path) -> PathBuf {
@@ -144,6 +145,14 @@ fn failing_slicers_are_errors() {
             && set.contains_key("manifest.json")
             && !set.contains_key("slicing.json")
     );
+    // A slicer that fails is not believed, although its file is complete.
+    std::fs::rename(folder.path().join("broken"), folder.path().join("exit_3")).unwrap();
+    let (code, output) = run(folder.path(), Some(&slicer), &[&generate[..4], &["half"]].concat());
+    assert!(
+        code == Some(1) && output.contains("did not slice ") && output.contains("exit status: 3"),
+        "{output}"
+    );
+    assert!(!files(&folder.path().join("half")).contains_key("slicing.json"));
 }
 
 const SWEEP: &str = r#"

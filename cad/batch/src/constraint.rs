@@ -1,10 +1,12 @@
 //! Constraints: conditions on a variant's parameters, its derived dimensions and its predicted
 //! friction.
 
+use std::cell::RefCell;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
-use pinswitch_formula::{Condition, FormulaError, NameError, nearest};
+use pinswitch_formula::{Condition, FormulaError, Kind, NameError, Node, Operator, Type, nearest};
 use pinswitch_friction::{FrictionCurve, Transition};
 
 use super::axis::is_whole;
@@ -45,7 +47,7 @@ impl Constraint {
     /// in the language of [`pinswitch_formula`].
     ///
     /// # Errors
-    /// An unknown name, and a text that is not a condition.
+    /// An unknown name, a text that is not a condition, and a part that is not finite for any variant.
     pub fn new(text: &str, because: Option<String>) -> Result<Self, FormulaError> {
         let known = names();
         let mut quantities: Vec<String> = Vec::new();
@@ -60,6 +62,10 @@ impl Constraint {
             Ok(quantities.len() - 1)
         };
         let condition = Arc::new(Condition::parse(text, resolve)?);
+        if let Some(place) = first_infinite(condition.root()) {
+            return Err(FormulaError::new(place, "not a finite number")
+                .with_help("divide by a quantity or a number other than 0"));
+        }
         Ok(Self { text: text.to_owned(), because, condition, quantities })
     }
 
@@ -105,6 +111,23 @@ fn names() -> Vec<String> {
     let design = Design::new(Configuration::default());
     let dimensions = design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit));
     fields.chain(dimensions).chain(PREDICTED.map(str::to_owned)).collect()
+}
+
+/// Returns the first part of a condition that is not finite, whatever the values of its quantities.
+fn first_infinite<N>(root: &Node<N>) -> Option<Range<usize>> {
+    let is_infinite = |node: &Node<N>| match node.kind() {
+        Kind::Binary(Operator::Divide, _, divisor) if divisor.constant() == Some(0.0) => true,
+        _ => node.ty() == Type::Number && node.constant().is_some_and(|value| !value.is_finite()),
+    };
+    let place = RefCell::new(None);
+    root.any(&|node| {
+        let is_first = is_infinite(node);
+        if is_first {
+            *place.borrow_mut() = Some(node.extent());
+        }
+        is_first
+    });
+    place.into_inner()
 }
 
 fn unknown_name(name: &str, known: &[String]) -> NameError {
@@ -250,6 +273,10 @@ mod tests {
             ("tendon.length_mm < 300 && true", "true", "unknown name 'true'"),
             ("label.text > 1", "label.text", "unknown name"),
             ("shell.width_mm >", "", "expected a number, a name or '(', found the end"),
+            ("pin_count > 2 &&", "", "found the end; add the operand after '&&', or remove '&&'"),
+            ("pin_count <= shell.width_mm/0", "shell.width_mm/0", "not a finite number; divide by "),
+            ("pin_count <= shell.width_mm/(2 - 2)", "shell.width_mm/(2 - 2)", "not a finite number"),
+            ("pin_count > 2 || ln(0) < 1", "ln(0)", "not a finite number"),
             ("shell.width_mm + 1", "shell.width_mm + 1", "expected a condition, found a number"),
             ("pin_count > 2 || 3", "3", "'||' needs a condition, found a number"),
             ("1 < pin_count < 9", "<", "comparisons cannot be chained"),

@@ -92,6 +92,15 @@ impl MergeError {
         }
     }
 
+    /// Returns whether the cause is the user's input: places that are not the shards of one batch.
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Stamp(error) => error.is_bad_input(),
+            Self::Products(_) | Self::Destination(_) => false,
+            _ => true,
+        }
+    }
+
     fn cause(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Stamp(error) => error.source(),

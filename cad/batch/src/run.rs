@@ -121,6 +121,16 @@ impl RunError {
         }
     }
 
+    /// Returns whether the cause is the user's input: a destination of another batch, or a path that
+    /// cannot be a folder.
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Stamp(error) => error.is_bad_input(),
+            Self::Unusable(error) => !error.is_refusal(),
+            _ => false,
+        }
+    }
+
     fn cause(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Stamp(error) => error.source(),

@@ -64,6 +64,11 @@ pub enum StampError {
 }
 
 impl StampError {
+    /// Returns whether the cause is the user's input, rather than a system that refuses a valid path.
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(self, Self::Destination(error) if error.is_refusal())
+    }
+
     pub(super) fn diagnostic(&self) -> Diagnostic {
         const UNCHANGED: &str = "nothing was changed";
         match self {

@@ -140,7 +140,11 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
             None => item.as_table_like().into_iter().collect(),
         };
         if tables.is_empty() {
-            return refused("not a table", format!("write [{name}]"));
+            let (kind, header) = match name {
+                "constraints" => ("not a list of tables", "[[constraints]] before each".to_owned()),
+                _ => ("not a table", format!("[{name}]")),
+            };
+            return refused(kind, format!("write {header}"));
         }
         for table in tables.iter().filter(|_| !keys.is_empty()) {
             if let Some((key, item)) = table.iter().find(|(key, _)| !keys.contains(key)) {

@@ -59,9 +59,10 @@ const MAX_MINUTES: f64 = 2_400.0;
 
 fn minutes(text: &str) -> Result<f64, Diagnostic> {
     let value: Option<f64> = text.parse().ok();
-    value
-        .filter(|m| *m > 0.0 && *m <= MAX_MINUTES)
-        .ok_or_else(|| Diagnostic::new(format!("not a time above 0 and up to {MAX_MINUTES} minutes")))
+    value.filter(|m| *m > 0.0 && *m <= MAX_MINUTES).ok_or_else(|| {
+        Diagnostic::new("not a time of a session")
+            .with_help(format!("give a number of minutes above 0 and up to {MAX_MINUTES}"))
+    })
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -6,6 +6,8 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+use std::any::TypeId;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -117,10 +119,24 @@ pub fn run() -> ExitCode {
 
 /// Parses the arguments of the process; also returns whether the command was given `--json`.
 fn parse() -> Result<(Cli, bool), clap::Error> {
-    let matches = Cli::command().try_get_matches()?;
+    let matches = command().try_get_matches()?;
     let cli = Cli::from_arg_matches(&matches).map_err(|e| e.format(&mut Cli::command()))?;
     let is_json = matches.subcommand().is_some_and(|(_, command)| is_set(command, "json"));
     Ok((cli, is_json))
+}
+
+/// Returns the command line, in which every option that takes a number accepts a negative one: its own
+/// check names the field and the bound.
+fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|command| command.mut_args(with_negative_numbers))
+}
+
+/// Lets an option with a number accept `-1`; file names and texts do not begin with a minus sign.
+fn with_negative_numbers(argument: clap::Arg) -> clap::Arg {
+    let value = argument.get_value_parser().type_id();
+    let is_text = [TypeId::of::<String>(), TypeId::of::<PathBuf>()].iter().any(|text| value == *text);
+    let is_value = argument.get_action().takes_values() && !argument.is_positional();
+    if is_value && !is_text { argument.allow_negative_numbers(true) } else { argument }
 }
 
 /// Whether a command has this flag and was given it.

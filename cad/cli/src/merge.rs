@@ -1,7 +1,7 @@
 //! `pinswitch merge DIR…`.
 
 use clap::Args;
-use pinswitch_batch::{Destination, MergeError, merge};
+use pinswitch_batch::{Destination, merge};
 use pinswitch_diagnostic::Diagnostic;
 
 use super::{Failure, print_json};
@@ -38,10 +38,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let places = arguments.places.iter().map(open).collect::<Result<Vec<_>, _>>()?;
-    let tally = merge(&places, &open(out)?).map_err(|e| match e {
-        MergeError::Products(_) | MergeError::Destination(_) => Failure::failed(e),
-        other => Failure::bad_input(other),
-    })?;
+    let tally = merge(&places, &open(out)?)
+        .map_err(|e| if e.is_bad_input() { Failure::bad_input(e) } else { Failure::failed(e) })?;
     if arguments.json {
         print_json(&tally)?;
     }

@@ -168,10 +168,7 @@ fn count(arguments: &Arguments, sweep: &UncheckedSweep) -> Result<u64, Failure> 
 }
 
 fn refused(error: RunError) -> Failure {
-    match error {
-        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(error),
-        other => Failure::failed(other),
-    }
+    if error.is_bad_input() { Failure::bad_input(error) } else { Failure::failed(error) }
 }
 
 fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) -> Result<(), Failure> {

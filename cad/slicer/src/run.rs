@@ -32,13 +32,13 @@ pub enum SlicerError {
         /// Why.
         source: std::io::Error,
     },
-    /// The program ended without a result.
+    /// The program failed, or ended without a result.
     Refused {
         /// The program.
         program: String,
         /// The file that it was given.
         file: String,
-        /// The last line of its output.
+        /// The last line of its output, and its exit status.
         output: String,
     },
     /// The G-code lacks an estimate.
@@ -135,9 +135,10 @@ impl Slicer {
             folder.path(),
             settings.options().iter().map(OsStr::new).chain([OsStr::new("--save"), file.as_os_str()]),
         )?;
-        let Ok(text) = std::fs::read_to_string(&file) else {
-            return Err(self.refused("its settings", &output));
-        };
+        let text = std::fs::read_to_string(&file)
+            .ok()
+            .filter(|_| output.status.success())
+            .ok_or_else(|| self.refused("its settings", &output))?;
         let version = program_version(&text).unwrap_or("an unknown slicer").to_owned();
         Ok(PreparedSlicer {
             settings_text: without_time(&text),
@@ -167,20 +168,21 @@ impl Slicer {
         SlicerError::Refused {
             program: self.program.display().to_string(),
             file: file.to_owned(),
-            output: last_line(output),
+            output: outcome(output),
         }
     }
 }
 
-/// Returns the last line of a program's output, of standard error if it is not empty.
-fn last_line(output: &Output) -> String {
+/// Describes how a program ended: the last line of its output, of standard error if it is not
+/// empty, and its exit status.
+fn outcome(output: &Output) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes).into_owned();
         text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
     };
     let line = last(&output.stderr).or_else(|| last(&output.stdout));
-    let line = line.unwrap_or_else(|| format!("no output, {}", output.status));
-    excerpt(&neutral(&line), MAX_MESSAGE)
+    let line = line.unwrap_or_else(|| "no output".to_owned());
+    format!("{} ({})", excerpt(&neutral(&line), MAX_MESSAGE), output.status)
 }
 
 /// A slicer with its settings in a temporary folder.
@@ -227,7 +229,11 @@ impl PreparedSlicer {
             file.as_os_str(),
         ]);
         let output = self.slicer.run(folder.path(), options.into_iter())?;
-        let Ok(text) = std::fs::read(&gcode) else { return Err(self.slicer.refused(name, &output)) };
+        // A slicer that fails may have written a part of its file.
+        let text = std::fs::read(&gcode)
+            .ok()
+            .filter(|_| output.status.success())
+            .ok_or_else(|| self.slicer.refused(name, &output))?;
         PrintEstimate::from_gcode(&String::from_utf8_lossy(&text)).map_err(|source| SlicerError::Gcode {
             program: self.slicer.program.display().to_string(),
             file: name.to_owned(),

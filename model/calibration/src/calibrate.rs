@@ -4,13 +4,13 @@ use std::fmt;
 
 use pinswitch_diagnostic::Diagnostic;
 
-use crate::confirmation::{TrialOutcome, trial_of_unseen, trials};
+use crate::confirmation::{trial_of_unseen, trials};
 use crate::discovery::{DrawnForm, draw_form};
-use crate::effects::Vocabulary;
+use crate::effects::{UNATTRIBUTED, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
-use crate::model::{Model, UNATTRIBUTED};
+use crate::model::Model;
 use crate::own_values::check_finite_effects;
-use crate::report::Report;
+use crate::report::{Report, TrialOutcome};
 use crate::reporting::{Findings, report};
 use crate::table::{Frame, PlateauRow, with_complete_columns};
 

@@ -7,11 +7,10 @@
 
 use pinswitch_diagnostic::excerpt;
 use pinswitch_inference::Member;
-use serde::{Deserialize, Serialize};
 
 use crate::effects::{Covariate, EffectDefinition, Vocabulary};
 use crate::evidence::Evidence;
-use crate::report::Estimate;
+use crate::report::{Estimate, TrialOutcome, TrialReport};
 use crate::table::{PlateauRow, matching_sessions};
 
 /// Posterior probability above which an effect is present, as for reported members.
@@ -24,85 +23,16 @@ const TYPICAL_SHARE: f64 = 0.5;
 /// Fewest readings of other sessions for a trial of a derived effect.
 const LEAST_ROWS: usize = 20;
 
-/// Outcome of a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum TrialOutcome {
-    /// The effect is present in readings from which it was not derived, with the sign of its start
-    /// value if it was derived or is one-sided.
-    Confirmed,
-    /// The effect is present, but its file does not exclude that it was derived from these readings.
-    Suggested,
-    /// The 95 % interval of the size excludes the derived size, or half the typical one.
-    Refuted,
-    /// Not decided.
-    Open,
-    /// The effect was derived from these readings, which cannot confirm it.
-    Drawn,
-}
-
-impl TrialOutcome {
-    /// Returns the word in reports.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            TrialOutcome::Confirmed => "confirmed",
-            TrialOutcome::Suggested => "suggested",
-            TrialOutcome::Refuted => "refuted",
-            TrialOutcome::Open => "open",
-            TrialOutcome::Drawn => "drawn",
-        }
-    }
-}
-
-/// Trial of one user-defined effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TrialReport {
-    /// Id.
-    pub id: String,
-    /// Outcome.
-    pub outcome: TrialOutcome,
-    /// Posterior probability that it acts; absent if it could not be tested.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub probability: Option<f64>,
-    /// Size, if it acts; absent if it could not be tested.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub size: Option<Estimate>,
-    /// Start value of the size: the derived size of a form.
-    pub start: f64,
-    /// Whether the start value was derived from other readings, rather than given as typical.
-    #[serde(default)]
-    pub was_drawn: bool,
-    /// Further information, such as effects that take its place.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub note: Option<String>,
-}
-
-impl TrialReport {
-    /// Returns probability, size, hypothesis and note in one line.
-    pub fn words(&self) -> String {
-        let known = if self.was_drawn { "derived before" } else { "typical" };
-        let size = self.size.as_ref().zip(self.probability).map(|(size, probability)| {
-            let [low, high] = size.ci95;
-            let unit = if size.unit == "1" { String::new() } else { format!(" {}", size.unit) };
-            format!(
-                "probability {probability:.3}; size if it acts: {:.4}{unit} [{low:.4}, {high:.4}] ({known}: {:.4})",
-                size.value, self.start
-            )
-        });
-        let words: Vec<String> = size.into_iter().chain(self.note.clone()).collect();
-        words.join("; ")
-    }
-
-    fn new(definition: &EffectDefinition, outcome: TrialOutcome, note: Option<String>) -> Self {
-        Self {
-            id: definition.id.clone(),
-            outcome,
-            probability: None,
-            size: None,
-            start: definition.parameters.first().map_or(1.0, |size| size.start),
-            was_drawn: was_drawn(definition),
-            note,
-        }
+/// Returns the report of an effect that is not tested.
+fn untested(definition: &EffectDefinition, outcome: TrialOutcome, note: Option<String>) -> TrialReport {
+    TrialReport {
+        id: definition.id.clone(),
+        outcome,
+        probability: None,
+        size: None,
+        start: definition.parameters.first().map_or(1.0, |size| size.start),
+        was_drawn: was_drawn(definition),
+        note,
     }
 }
 
@@ -126,7 +56,7 @@ pub(crate) fn trial_of_unseen(
     let unseen: Vec<PlateauRow> = rows.iter().filter(|row| !is_seen(row)).cloned().collect();
     let drawn = || {
         let note = "derived from these readings; other data can confirm it".to_owned();
-        TrialReport::new(definition, TrialOutcome::Drawn, Some(note))
+        untested(definition, TrialOutcome::Drawn, Some(note))
     };
     if unseen.len() < LEAST_ROWS {
         return Some(drawn());
@@ -154,7 +84,7 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
     let posterior = evidence.posterior();
     let index = effects.iter().position(|effect| effect.name == definition.id);
     let candidate = index.and_then(|i| posterior.candidates.iter().find(|c| c.effect == i));
-    let absent = |note: &str| TrialReport::new(definition, TrialOutcome::Open, Some(note.to_owned()));
+    let absent = |note: &str| untested(definition, TrialOutcome::Open, Some(note.to_owned()));
     let Some(index) = index else { return absent("not in the vocabulary") };
     let member = Member::Effect(index);
     let inside = posterior.probability(member);
@@ -167,7 +97,7 @@ fn trial(definition: &EffectDefinition, evidence: &Evidence) -> TrialReport {
         (Some(size), None) => (inside, size.mean, size.interval),
         (None, None) => return absent("not identifiable with this table"),
     };
-    let report = TrialReport::new(definition, TrialOutcome::Open, None);
+    let report = untested(definition, TrialOutcome::Open, None);
     let start = report.start;
     let has_sign = report.was_drawn || definition.one_sided;
     let is_alike = !has_sign || value * start > 0.0;

@@ -95,15 +95,15 @@ mod test_session;
 pub use aliasing::{Aliasing, aliasing};
 
 pub use calibrate::{Calibration, CalibrationError, calibrate};
-pub use confirmation::{TrialOutcome, TrialReport};
-pub use discovery::{DrawnForm, FormReport, FormRival};
+pub use discovery::DrawnForm;
 pub use extrapolation::calibrate_below;
 pub use model_file::ModelFile;
 pub use pinswitch_measurements::{median, segmentation, toml_error};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
-    ExternalInput, Extrapolation, Fate, Invisible, LimitReport, ModelReport, NoisePart, ProvenanceReport,
-    Report, RivalReport, SessionReport, StructureReport, Verdict,
+    ExternalInput, Extrapolation, Fate, FormReport, FormRival, Invisible, LimitReport, ModelReport,
+    NoisePart, ProvenanceReport, Report, RivalReport, SessionReport, StructureReport, TrialOutcome,
+    TrialReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};

@@ -4,8 +4,7 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
-use crate::confirmation::TrialOutcome;
-use crate::report::Report;
+use crate::report::{Report, TrialOutcome};
 
 /// Second explanation of a question about the presence of an effect.
 pub(crate) const NONE: &str = "none";

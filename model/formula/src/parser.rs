@@ -104,7 +104,7 @@ fn parsed<N>(text: &str, resolve: &mut Resolve<'_, N>) -> Result<Node<N>, Formul
     let root = parser.expression(Precedence::Or, 0)?;
     match parser.peek() {
         (Token::End, _) => Ok(root),
-        _ => Err(parser.unexpected("an operator")),
+        _ => Err(parser.unexpected("an operator").with_help("join the two with an operator, or remove one")),
     }
 }
 
@@ -141,12 +141,25 @@ impl<'a, N> Parser<'a, '_, N> {
         FormulaError::new(span, format!("expected {expected}, found {found}"))
     }
 
+    /// Returns the remedy for an operand that is missing before the next token.
+    fn operand_help(&self) -> String {
+        let previous = self.next.checked_sub(1).and_then(|index| self.tokens.get(index));
+        match (previous, self.peek().0) {
+            (Some((Token::Sign(sign), _)), _) if !["(", ","].contains(sign) => {
+                format!("add the operand after '{sign}', or remove '{sign}'")
+            }
+            (Some((Token::Sign(sign), _)), _) => format!("add the operand after '{sign}'"),
+            (_, Token::End) => "write a formula".to_owned(),
+            _ => "add the operand before it, or remove it".to_owned(),
+        }
+    }
+
     /// Consumes a sign, and returns where it ends.
     fn require(&mut self, sign: &'static str, purpose: &str) -> Result<usize, FormulaError> {
         if self.peek().0 == &Token::Sign(sign) {
             return Ok(self.advance().1.end);
         }
-        Err(self.unexpected(&format!("'{sign}' {purpose}")))
+        Err(self.unexpected(&format!("'{sign}' {purpose}")).with_help(format!("add '{sign}'")))
     }
 
     /// Parses operands joined by operators that bind at least as strongly as `least`.
@@ -178,7 +191,7 @@ impl<'a, N> Parser<'a, '_, N> {
     }
 
     fn operand(&mut self, depth: usize) -> Result<Node<N>, FormulaError> {
-        let expected = self.unexpected("a number, a name or '('");
+        let expected = self.unexpected("a number, a name or '('").with_help(self.operand_help());
         match self.advance() {
             (Token::Number(value), span) => Node::new(span, Kind::Number(*value)),
             (Token::Sign("-"), span) => {

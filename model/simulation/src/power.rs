@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::calibrate;
-use pinswitch_calibration::model::UNATTRIBUTED;
+use pinswitch_calibration::effects::UNATTRIBUTED;
 use serde::Serialize;
 
 use crate::plan::{EffectPlan, Plan};

@@ -108,17 +108,27 @@ impl Folder {
 
     /// The error of a system call on file `name`; an empty name is the folder itself.
     pub(super) fn error(&self, name: &str, error: std::io::Error) -> DestinationError {
+        self.error_of("cannot use the path", name, error)
+    }
+
+    /// The error of a system call that writes file `name`; an empty name is the folder itself.
+    pub(super) fn write_error(&self, name: &str, error: std::io::Error) -> DestinationError {
+        self.error_of("cannot write", name, error)
+    }
+
+    fn error_of(&self, failed: &str, name: &str, error: std::io::Error) -> DestinationError {
         use ErrorKind::{PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
-        let is_fatal =
+        let is_refusal =
             matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
         let path = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
         let problem = if is_dangling_symlink(&path) {
             "the path is a dangling symlink".to_owned()
         } else {
-            format!("cannot use the path: {error}")
+            format!("{failed}: {error}")
         };
         let help = write_help(&path, &error);
-        DestinationError::new(path.display().to_string(), problem, help, is_fatal).with_source(error)
+        let diagnosed = DestinationError::new(path.display().to_string(), problem, help, is_refusal);
+        DestinationError { is_refusal, ..diagnosed.with_source(error) }
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {

@@ -29,13 +29,14 @@ pub struct DestinationError {
     diagnostic: Diagnostic,
     help: &'static str,
     is_fatal: bool,
+    is_refusal: bool,
 }
 
 impl DestinationError {
     /// An error at a file with its destination; `is_fatal` if every other file would fail, too.
     fn new(path: String, problem: impl Into<String>, help: &'static str, is_fatal: bool) -> Self {
         let diagnostic = Diagnostic::new(problem).with_location(Location::file(path)).with_help(help);
-        Self { diagnostic, help, is_fatal }
+        Self { diagnostic, help, is_fatal, is_refusal: false }
     }
 
     /// The error of temporary files on this machine.
@@ -43,7 +44,7 @@ impl DestinationError {
         let problem = format!("cannot use the temporary folder: {error}");
         let help = "make room for temporary files on this machine";
         let diagnostic = Diagnostic::new(problem).with_help(help).with_source(error);
-        Self { diagnostic, help, is_fatal: true }
+        Self { diagnostic, help, is_fatal: true, is_refusal: true }
     }
 
     fn with_source(self, source: impl Error + Send + Sync + 'static) -> Self {
@@ -59,6 +60,12 @@ impl DestinationError {
     /// folder.
     pub fn is_fatal(&self) -> bool {
         self.is_fatal
+    }
+
+    /// Returns whether the system refuses a valid path, as on a full disk or in a read-only folder;
+    /// otherwise the path itself may be wrong.
+    pub fn is_refusal(&self) -> bool {
+        self.is_refusal
     }
 }
 
@@ -159,7 +166,11 @@ impl Destination {
     /// # Errors
     /// A file that cannot be written; the older file is unchanged.
     pub fn put(&self, name: &str, bytes: &[u8]) -> Result<(), DestinationError> {
-        forward!(self, name, place => place.put(name, bytes))
+        match self {
+            Self::Folder(folder) => folder.put(name, bytes).map_err(|e| folder.write_error(name, e)),
+            #[cfg(feature = "cloud")]
+            Self::Store(store) => store.put(name, bytes).map_err(|e| store.error(name, e)),
+        }
     }
 
     /// Makes `name` a hard link to `content`, or a copy if the file system does not support links.
@@ -168,7 +179,7 @@ impl Destination {
     /// A file that cannot be linked or copied.
     pub fn link(&self, content: &str, name: &str) -> Result<(), DestinationError> {
         match self {
-            Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.error(name, e)),
+            Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.write_error(name, e)),
             // Manifests contain the path of the content: a second object would double the storage.
             #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(()),
@@ -190,7 +201,9 @@ impl Destination {
     /// A file that cannot be created.
     pub fn local_file(&self) -> Result<tempfile::NamedTempFile, DestinationError> {
         match self {
-            Self::Folder(folder) => folder.local_file().map_err(|e| folder.error("a temporary file", e)),
+            Self::Folder(folder) => {
+                folder.local_file().map_err(|e| folder.write_error("a temporary file", e))
+            }
             #[cfg(feature = "cloud")]
             Self::Store(_) => tempfile::NamedTempFile::new().map_err(DestinationError::temporary),
         }
@@ -202,7 +215,7 @@ impl Destination {
     /// A file that cannot be written; an older file is unchanged.
     pub fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> Result<(), DestinationError> {
         match self {
-            Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.error(name, e)),
+            Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.write_error(name, e)),
             #[cfg(feature = "cloud")]
             Self::Store(_) => {
                 let bytes = std::fs::read(file.path()).map_err(DestinationError::temporary)?;
@@ -277,7 +290,7 @@ impl Destination {
             #[cfg(feature = "cloud")]
             Self::Store(_) => return Ok(DestinationLock::unlocked()),
         };
-        let lock = folder.lock().map_err(|e| folder.error("", e))?;
+        let lock = folder.lock().map_err(|e| folder.write_error("", e))?;
         lock.ok_or_else(|| {
             let help = "wait for it or end it, or give another --out";
             DestinationError::new(self.name(), "another run is writing the same shard here", help, true)

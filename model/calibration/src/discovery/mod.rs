@@ -9,11 +9,10 @@ mod library;
 use std::collections::BTreeMap;
 
 use pinswitch_inference::{Fit, Member, best_additions};
-use serde::{Deserialize, Serialize};
 
 use crate::effects::{Channel, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
-use crate::report::{Estimate, ModelReport};
+use crate::report::{Estimate, FormReport, FormRival, ModelReport};
 use crate::reporting::{held_out, model_report};
 use crate::table::{PlateauRow, readings_by_session};
 use library::{Candidate, actings, acts_on_word, library};
@@ -23,55 +22,6 @@ const FITTED: usize = 12;
 /// Difference of the log evidence, in nats, up to which another formula is a rival: odds of one in
 /// twenty.
 const RIVAL: f64 = 3.0;
-
-/// A formula that fits equally well.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FormRival {
-    /// Shape.
-    pub shape: String,
-    /// Quantity that it changes.
-    pub acts_on: String,
-    /// Difference of the log evidence to the best formula, in nats.
-    pub worse_by: f64,
-}
-
-/// Formula of unattributed structure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FormReport {
-    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`,
-    /// `forgetting`, `memory` or `groups`.
-    pub shape: String,
-    /// `friction`, `reading`, `wrap` or `threshold`.
-    pub acts_on: String,
-    /// Quantity in the words of `discovered.toml`, such as `mu_silicone`.
-    pub channel: String,
-    /// Id of the effect in `discovered.toml`.
-    pub id: String,
-    /// Formula, in the language of `model/doc/own-effects.md`.
-    pub formula: String,
-    /// Constants.
-    pub parameters: BTreeMap<String, Estimate>,
-    /// Share of the log evidence of the structure that the formula explains, 0..1.
-    pub explains: f64,
-    /// Held-out error of the model with the formula in place of the structure, in newtons.
-    #[serde(rename = "heldout_rmse_N")]
-    pub heldout_rmse_n: f64,
-    /// Whether the model contains the formula, because its evidence is not smaller than that of the
-    /// structure.
-    pub in_model: bool,
-    /// Other formulas that fit equally well.
-    pub rivals: Vec<FormRival>,
-}
-
-impl FormReport {
-    /// Returns the shape in words, with its article.
-    pub fn words(&self) -> String {
-        match self.shape.as_str() {
-            "groups" => "a level of one operator".to_owned(),
-            shape => format!("a {shape}"),
-        }
-    }
-}
 
 /// A formula with its effect.
 #[derive(Clone, Debug)]

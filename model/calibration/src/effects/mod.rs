@@ -23,7 +23,7 @@ pub use own::{
     DefinitionError, EffectDefinition, OwnEffect, OwnParameter, formula_variables, own_effect_blocks,
     own_effects_text, read_own_effects,
 };
-pub use structure::{Abscissa, Channel, Shape, Structure};
+pub use structure::{Abscissa, Channel, Shape, Structure, UNATTRIBUTED};
 pub use vocabulary::Vocabulary;
 pub use written::{ActsOn, Combine, Written};
 

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::{ContactState, Covariate};
 use crate::table::{Condition, Frame, Point, interpolate};
 
+/// Id of structure that no effect explains.
+pub const UNATTRIBUTED: &str = "unattributed";
+
 /// Quantity that a structure changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -11,11 +11,10 @@ use pinswitch_friction::published;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::information::{Contribution, Projected};
-use crate::confirmation::TrialOutcome;
 use crate::effects::{Covariate, Effect, Side};
 use crate::evidence::STRUCTURE_PROBABILITY;
 use crate::model::{Model, Term};
-use crate::report::{Fate, LimitReport, Report};
+use crate::report::{Fate, LimitReport, Report, TrialOutcome};
 use crate::session_plan::{COVERED, FRICTION_ABOVE, NONE};
 
 /// Probability from which an effect is reported.

@@ -7,16 +7,13 @@ mod sensitivity;
 
 use pinswitch_friction::{LayoutLaw, published};
 
-use crate::effects::{Effect, Side, Structure, Vocabulary};
+use crate::effects::{Effect, Side, Structure, UNATTRIBUTED, Vocabulary};
 use crate::table::Frame;
 
 pub(crate) use discrepancy::Largest;
 pub use discrepancy::{Discrepancy, DiscrepancyFactor};
 pub use noise::{Noise, Spread, Wandering};
 pub(crate) use sensitivity::{jacobian, prediction_sd_n};
-
-/// Id of structure that no effect explains.
-pub const UNATTRIBUTED: &str = "unattributed";
 
 /// A term in addition to the paper's model.
 #[derive(Clone, Debug)]

@@ -5,14 +5,16 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
-use crate::confirmation::TrialReport;
-use crate::discovery::FormReport;
 use crate::model::Noise;
 
+mod forms;
 mod sessions;
+mod trials;
 mod verdict;
 
+pub use forms::{FormReport, FormRival};
 pub use sessions::{ChangeReport, SessionReport};
+pub use trials::{TrialOutcome, TrialReport};
 pub use verdict::Verdict;
 
 /// A constant with its confidence interval.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::confirmation::{TrialOutcome, TrialReport};
+use super::{TrialOutcome, TrialReport};
 
 /// Verdict on the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use pinswitch_inference::{Member, Reported};
 
 use super::{Findings, HeldOut, held_out};
-use crate::effects::{Description, Effect};
-use crate::model::{Term, UNATTRIBUTED};
+use crate::effects::{Description, Effect, UNATTRIBUTED};
+use crate::model::Term;
 use crate::report::{EffectReport, Estimate, ModelReport, RivalReport};
 
 /// Largest odds in a report.

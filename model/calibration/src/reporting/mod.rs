@@ -11,10 +11,11 @@ use pinswitch_inference::Member;
 
 use crate::adequacy::{Residual, is_adequate};
 use crate::aliasing::aliasing;
-use crate::confirmation::TrialReport;
 use crate::effects::Vocabulary;
 use crate::evidence::{Evidence, Fitted};
-use crate::report::{DataSummary, ExpectedErrorReport, ModelReport, Report, StructureReport, Verdict};
+use crate::report::{
+    DataSummary, ExpectedErrorReport, ModelReport, Report, StructureReport, TrialReport, Verdict,
+};
 use crate::table::{Optional, PlateauRow};
 
 use bad_series::bad_series;

@@ -1,7 +1,6 @@
 //! Comparison of the calibrator's answer with the truth.
 
-use pinswitch_calibration::effects::Covariate;
-use pinswitch_calibration::model::UNATTRIBUTED;
+use pinswitch_calibration::effects::{Covariate, UNATTRIBUTED};
 use pinswitch_calibration::{EffectReport, Report, Verdict};
 
 use super::case::{Case, Truth};

@@ -11,8 +11,9 @@ use super::probe::probes;
 use super::unit::Unit;
 use super::unit_check::{check_units, located};
 use super::variable::{VARIABLES, variable};
-use crate::effects::{ActsOn, Combine, Covariate, Effect, Parameter, Side, Written, effect_named};
-use crate::model::UNATTRIBUTED;
+use crate::effects::{
+    ActsOn, Combine, Covariate, Effect, Parameter, Side, UNATTRIBUTED, Written, effect_named,
+};
 use crate::table::{Frame, is_fingerprint};
 
 /// Most constants of an effect.

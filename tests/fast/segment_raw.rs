@@ -50,6 +50,43 @@ fn plateaus_are_accurate() {
     assert!(folder.path().join("plateaus-silicone_5002g.svg").exists());
 }
 
+/// Segments a run of `tests/data/raw` and returns the rows of its table by column.
+fn segmented(name: &str) -> Vec<std::collections::BTreeMap<String, String>> {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("plateaus.csv");
+    let run = repository("tests/data/raw").join(name).join("run.toml");
+    let done = binary().arg("segment").arg(run).arg("--out").arg(&out).arg("--no-plots").output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let table = std::fs::read_to_string(&out).unwrap();
+    let (header, lines) = table.split_once('\n').unwrap();
+    let names: Vec<&str> = header.split(',').collect();
+    let row = |line: &str| {
+        names.iter().zip(line.split(',')).map(|(n, c)| ((*n).to_owned(), c.to_owned())).collect()
+    };
+    lines.lines().map(row).collect()
+}
+
+/// Rests of 1.5, 3 and 8 s in a run that declares 3 s.
+#[test]
+fn dwells_are_measured() {
+    let rows = segmented("dwells");
+    assert_eq!(rows.len(), 24);
+    for row in rows {
+        assert_eq!(row["dwell_s"], ["1.5", "3", "8"][row["series"].parse::<usize>().unwrap()], "{row:?}");
+    }
+}
+
+/// Logs that start with the motor: friction adds to a pulled load, and takes from a released one.
+#[test]
+fn moves_at_the_start_of_a_log_have_their_direction() {
+    let rows = segmented("triggered");
+    assert_eq!(rows.len(), 72);
+    for row in rows {
+        let [load_n, force_n] = ["load_N", "force_N"].map(|name| row[name].parse::<f64>().unwrap());
+        assert_eq!(row["direction"] == "concentric", force_n > load_n, "{row:?}");
+    }
+}
+
 /// Logs of a machine with other names, units and decimal signs give the same table with a map.
 #[test]
 fn foreign_logs_are_read_with_a_map() {

@@ -346,10 +346,11 @@ impl Structure {
         matches!(self.channel, Channel::Reading | Channel::Gain)
     }
 
-    /// Returns whether it is friction that differs between sessions.
+    /// Returns whether it is friction that differs between sessions or specimens.
     pub(crate) fn is_change(&self) -> bool {
-        let is_of_session = matches!(self.form, Shape::Table { over: Abscissa::Session, .. });
-        is_of_session && !matches!(self.channel, Channel::Reading | Channel::Gain | Channel::Drag)
+        let is_of_group =
+            matches!(self.form, Shape::Table { over: Abscissa::Session | Abscissa::Specimen, .. });
+        is_of_group && !matches!(self.channel, Channel::Reading | Channel::Gain | Channel::Drag)
     }
 
     /// Returns the unit of its size.

@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 use pinswitch_inference::{Coefficient, Coefficients, Fit, Member, Outliers, SizedEffect};
 
-use super::Evidence;
 use super::forward::Channel;
 use super::priors::EffectPrior;
 use super::structure::{MEMORY_REPETITIONS, Record, Structure};
+use super::{Evidence, SPECIMEN};
 use crate::effects::{self, Abscissa, Covariate, REFERENCE_LOAD_N, Shape};
 use crate::model::{Discrepancy, Model, Noise, Spread, Term, Wandering};
 use crate::table::Point;
@@ -55,6 +55,10 @@ impl Evidence {
                 model = model.with_term(Term::Structure(term), &[size]);
                 variances.push((at, variance));
             }
+        }
+        if let Some((term, variance)) = self.specimens(&coefficients) {
+            variances.push((model.coordinates.len(), variance));
+            model = model.with_term(Term::Structure(term), &[1.0]);
         }
         let n = model.coordinates.len();
         let mut covariance = DMatrix::zeros(n, n);
@@ -156,6 +160,33 @@ impl Evidence {
                 vec![(of(Shape::Table { over, at, value, is_factor }), 1.0, relative)]
             }
         }
+    }
+
+    /// Returns the friction of each specimen, which a later session has too, and the mean relative
+    /// variance of it; `None` if specimens are not a random effect.
+    fn specimens(&self, coefficients: &Coefficients) -> Option<(effects::Structure, f64)> {
+        let random = &self.problem.space().random_effects;
+        let index = random.iter().position(|effect| effect.name == SPECIMEN && effect.levels > 0)?;
+        let over = Abscissa::Specimen;
+        let of_row = |row: usize| self.problem.rows().levels[index][row];
+        let places = (0..self.points.len()).filter_map(|row| {
+            let coefficient = coefficients.index(Coefficient::Level(index, of_row(row)?))?;
+            Some((over.value(&self.points[row]), coefficient))
+        });
+        let mut places: Vec<(f64, usize)> = places.collect();
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        places.dedup_by(|a, b| a.1 == b.1);
+        let square: f64 = places.iter().map(|(_, i)| coefficients.mean[*i].powi(2)).sum();
+        let variance: f64 = places.iter().map(|(_, i)| coefficients.covariance[(*i, *i)]).sum();
+        let (at, value) = places.iter().map(|(at, i)| (*at, coefficients.mean[*i])).unzip();
+        let channel =
+            if random[index].channel == Channel::Pins.index() { Channel::Pins } else { Channel::Friction };
+        let structure = effects::Structure {
+            covariate: Covariate::Condition,
+            channel: channel_of(channel),
+            form: Shape::Table { over, at, value, is_factor: true },
+        };
+        Some((structure, variance / square.max(1e-300)))
     }
 
     /// Returns the noise of a fit.

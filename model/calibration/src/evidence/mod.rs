@@ -39,6 +39,10 @@ pub const CONSEQUENCE: f64 = 0.05;
 
 /// Prior probability of unnamed structure.
 pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
+/// Names of the random effects, in their order.
+const MOUNT: &str = "mount";
+const SPECIMEN: &str = "specimen";
+
 /// Scales of the half-normal priors of mount and specimen effects, relative.
 pub(crate) const MOUNT_SCALE: f64 = 0.015;
 const SPECIMEN_SCALE: f64 = 0.06;
@@ -205,7 +209,7 @@ impl Evidence {
             mean_time: self.setup.mean_time,
             largest: self.setup.largest,
             mounts: if session == Session::New { Vec::new() } else { self.setup.mounts.clone() },
-            specimens: if session == Session::New { Vec::new() } else { self.setup.specimens.clone() },
+            specimens: self.setup.specimens.clone(),
         };
         let mut new_rows = setup.rows(&covariates, session);
         let bases = |structure: &Structure| match session {
@@ -285,8 +289,7 @@ impl Setup {
             channel: channel.index(),
             scale,
             levels: names.len(),
-            // A model file knows neither mounts nor specimens.
-            is_redrawn: true,
+            is_redrawn: name == MOUNT,
         };
         let has_pins = self.conditions.iter().any(Condition::has_pins);
         let specimen_channel = if has_pins { Channel::Pins } else { Channel::Friction };
@@ -295,8 +298,8 @@ impl Setup {
             effects: self.priors.iter().map(|prior| prior.space(force_unit)).collect(),
             kernels: self.structures.iter().map(Structure::space).collect(),
             random_effects: vec![
-                random("mount", &self.mounts, Channel::Friction, MOUNT_SCALE),
-                random("specimen", &self.specimens, specimen_channel, SPECIMEN_SCALE),
+                random(MOUNT, &self.mounts, Channel::Friction, MOUNT_SCALE),
+                random(SPECIMEN, &self.specimens, specimen_channel, SPECIMEN_SCALE),
             ],
             usual_effects: (0..self.priors.len()).filter(usual).collect(),
             structure_probability: STRUCTURE_PROBABILITY,

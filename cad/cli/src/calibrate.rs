@@ -11,8 +11,8 @@ use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ExternalInput, ModelFile, ProvenanceReport, SessionPlan, SessionReport, calibrate, calibrate_below,
-    explain_published,
+    Calibration, ExternalInput, ModelFile, ProvenanceReport, SessionPlan, SessionReport, calibrate,
+    calibrate_below, explain_published,
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};

@@ -188,6 +188,13 @@ fn uncertain_files_are_not_guessed() {
             "force_sign=1",
             "9 N,plain,,9,concentric,12",
         ),
+        // One column of a spreadsheet with thousands separators, and another without.
+        (
+            "Load (g),Up (g),Down (g)\n\"1,000\",1284,745\n\"2,000\",2569,1490\n",
+            "decimal=point",
+            "decimal=comma",
+            "1000 g,plain,,1000,9.80665,concentric,12.5917386",
+        ),
     ] {
         std::fs::write(at.join("in.csv"), text).unwrap();
         let arguments = ["import", "in.csv", "--out", "out.csv"];
@@ -205,6 +212,28 @@ fn uncertain_files_are_not_guessed() {
             std::fs::remove_file(at.join(name)).unwrap();
         }
     }
+}
+
+/// A map of kilonewtons is not applied to a row of units in newtons, and minutes are not hours.
+#[test]
+fn other_units_and_clocks_are_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(at.join(name), text).unwrap();
+    write("a.csv", "Load,Up,Down\nkg,kN,kN\n1,0.0125,0.0075\n2,0.025,0.015\n");
+    write("b.csv", "Load,Up,Down\nkg,N,N\n1,12.5,7.5\n2,25,15\n");
+    done(at, &["import", "a.csv", "--out", "a-table.csv"]);
+    let with_map = ["import", "b.csv", "--out", "b-table.csv", "--map", "a-table.import.toml"];
+    let (code, output) = ended(at, &with_map);
+    assert!(code == Some(2) && output.contains("is in N here, and was in kN"), "{output}");
+    done(at, &[&with_map[..], &["--set", "unit.Up=N", "--set", "unit.Down=N"]].concat());
+    let table = |name: &str| std::fs::read_to_string(at.join(name)).unwrap();
+    assert_eq!(table("a-table.csv"), table("b-table.csv"));
+    write("c.csv", "Time;Force [N]\n00:58;1.5\n00:59;1.6\n01:00;1.7\n");
+    let (code, output) = ended(at, &["import", "c.csv", "--out", "c-log.csv"]);
+    assert!(code == Some(2) && output.contains("clock=mm:ss"), "{output}");
+    done(at, &["import", "c.csv", "--out", "c-log.csv", "--set", "clock=mm:ss"]);
+    assert_eq!(lines(&table("c-log.csv"))[1..], ["0,1.5", "1,1.6", "2,1.7"]);
 }
 
 #[test]

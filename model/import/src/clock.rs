@@ -33,6 +33,14 @@ impl Moment {
     }
 }
 
+/// Whether a cell is two numbers with a colon, such as `10:15`: hours and minutes, or minutes and seconds.
+pub(crate) fn is_two_parts(cell: &str) -> bool {
+    let parts: Vec<&str> = cell.trim().split(':').collect();
+    let is_number =
+        |part: &&str| part.len() <= 2 && part.bytes().all(|b| b.is_ascii_digit()) && !part.is_empty();
+    parts.len() == 2 && parts.iter().all(is_number)
+}
+
 /// Parses a date, a time of day, or both; `None` for anything else, such as a number.
 pub(crate) fn parse(cell: &str, order: DateOrder) -> Option<Moment> {
     let cell = cell.trim();

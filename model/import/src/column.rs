@@ -26,6 +26,8 @@ pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) quantity: Quantity,
     pub(crate) unit: Option<&'static Unit>,
+    /// Unit in the row of units.
+    pub(crate) row_unit: Option<&'static Unit>,
     /// Factor to the unit of the column that is written.
     pub(crate) factor: Decimal,
     pub(crate) offset: Decimal,
@@ -167,6 +169,7 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         name: name.to_owned(),
         quantity: choice.quantity.or(reading.quantity).unwrap_or(Quantity::Ignore),
         unit: choice.unit.or(reading.unit),
+        row_unit,
         factor: choice.factor.unwrap_or(Decimal::ONE),
         offset: choice.offset.unwrap_or(Decimal::ZERO),
         is_clock: false,
@@ -346,6 +349,24 @@ pub(crate) fn reference(column: &Column) -> String {
 /// Sets the factor from the unit; a unit that is not known becomes a question.
 fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, questions: &mut Vec<Question>) {
     let quantity = column.quantity;
+    // A map without the unit of its row is for files in its own units.
+    let choice = map.column(&column.name, column.index + 1).filter(|choice| !choice.is_unit_decided);
+    let mapped = choice.and_then(|choice| choice.row_unit.or(choice.unit).zip(choice.unit));
+    if let (Some((known, unit)), Some(row)) = (mapped, column.row_unit)
+        && known != row
+    {
+        let name = reference(column);
+        let problem = format!(
+            "column '{}' is in {} here, and was in {} where the map was made",
+            column.name, row.name, known.name
+        );
+        let readings = vec![
+            (format!("it is in {}", row.name), format!("unit.{name}={}", row.name)),
+            (format!("it is in {}, as in the map", unit.name), format!("unit.{name}={}", unit.name)),
+        ];
+        questions.push(Question::new(problem, readings));
+        return;
+    }
     if quantity.dimensions().is_empty() || column.is_clock || column.has_factor {
         return;
     }

@@ -1,6 +1,6 @@
 //! One file: its header, its columns, its decimal sign, and which rows have readings.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 
@@ -31,6 +31,8 @@ pub(crate) struct FileReading {
     pub(crate) columns: Vec<Column>,
     pub(crate) sign: DecimalSign,
     pub(crate) date_order: DateOrder,
+    /// Whether times of two parts are minutes and seconds.
+    pub(crate) is_in_minutes: bool,
     pub(crate) kind: Kind,
     /// Why it is a table or a log.
     pub(crate) kind_reason: &'static str,
@@ -89,6 +91,7 @@ impl FileReading {
             name: name.to_owned(),
             sign: DecimalSign::Point,
             date_order: map.date_order.unwrap_or(DateOrder::DayFirst),
+            is_in_minutes: map.is_in_minutes == Some(true),
             kind: Kind::Log,
             kind_reason: "",
             rows: Vec::new(),
@@ -122,13 +125,21 @@ impl FileReading {
     pub(crate) fn value(&self, row: usize, column: &Column) -> Option<Decimal> {
         let cell = self.recording.sheet.cell(row, column.index);
         if column.is_clock {
-            return clock::parse(cell, self.date_order).map(clock::Moment::seconds);
+            return self.moment(cell).map(clock::Moment::seconds);
         }
         let (value, suffix) = number::parse(cell, self.sign)?;
         if suffix.is_some() && suffix != column.unit {
             return None;
         }
         Some(value.times(column.factor).plus(column.offset))
+    }
+
+    /// Returns the moment of a cell with a clock.
+    pub(crate) fn moment(&self, cell: &str) -> Option<clock::Moment> {
+        if self.is_in_minutes && clock::is_two_parts(cell) {
+            return clock::parse(&format!("00:{}", cell.trim()), self.date_order);
+        }
+        clock::parse(cell, self.date_order)
     }
 
     fn is_semicolon(&self) -> bool {
@@ -140,7 +151,8 @@ impl FileReading {
         let sheet = &self.recording.sheet;
         let mut first: [Option<(usize, String)>; 4] = [None, None, None, None];
         let mut counts = [0_usize; 4];
-        let mut has_long_whole = false;
+        // Columns with four digits and more without a separator, and with a comma before three digits.
+        let (mut long_whole, mut with_comma) = (BTreeSet::new(), BTreeSet::new());
         let used: Vec<&Column> =
             self.columns.iter().filter(|c| c.quantity.is_number() && !c.is_clock).collect();
         for row in self.header.first_data..sheet.len() {
@@ -158,13 +170,19 @@ impl FileReading {
                     Some(SignEvidence::EitherPoint) => 2,
                     Some(SignEvidence::EitherComma) => 3,
                     Some(SignEvidence::Whole) => {
-                        has_long_whole |= cell.bytes().filter(u8::is_ascii_digit).count() >= 4
+                        let is_long = cell.bytes().filter(u8::is_ascii_digit).count() >= 4
                             && cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+                        if is_long {
+                            long_whole.insert(column.index);
+                        }
                         continue;
                     }
                     None => continue,
                 };
                 counts[at] += 1;
+                if at == 3 {
+                    with_comma.insert(column.index);
+                }
                 if first[at].is_none() {
                     first[at] = Some((sheet.line(row), cell.to_owned()));
                 }
@@ -186,14 +204,14 @@ impl FileReading {
             (true, false, _) => DecimalSign::Point,
             (false, true, _) => DecimalSign::Comma,
             // Whole numbers of four digits and more have no thousands separator, so the comma is
-            // none either.
-            (false, false, true) if counts[2] == 0 && has_long_whole => DecimalSign::Comma,
+            // none either in the same column; a spreadsheet may format one column alone.
+            (false, false, true) if counts[2] == 0 && with_comma.is_subset(&long_whole) => DecimalSign::Comma,
             (false, false, true) => {
                 self.questions.push(separator_question(first[3].as_ref(), "comma"));
                 DecimalSign::Comma
             }
             // Semicolons are the delimiter where commas are the decimal sign.
-            (false, false, false) if counts[2] > 0 && !has_long_whole && self.is_semicolon() => {
+            (false, false, false) if counts[2] > 0 && long_whole.is_empty() && self.is_semicolon() => {
                 self.questions.push(separator_question(first[2].as_ref(), "point"));
                 DecimalSign::Point
             }
@@ -226,6 +244,7 @@ impl FileReading {
             .collect();
         self.decide_kind(map);
         self.ask_for_date_order(map);
+        self.ask_for_minutes(map);
         let bad: Vec<(usize, &RowVerdict)> =
             verdicts.iter().enumerate().filter(|(_, v)| matches!(v, RowVerdict::Bad { .. })).collect();
         #[expect(clippy::cast_precision_loss, reason = "a share")]
@@ -390,6 +409,21 @@ impl FileReading {
         let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
         steps.sort_by(f64::total_cmp);
         steps.get(steps.len() / 2).is_some_and(|step| (0.0..1.0).contains(step))
+    }
+
+    /// Times of two parts are hours and minutes, or minutes and seconds; with a date, of a day.
+    fn ask_for_minutes(&mut self, map: &Map) {
+        let has_date = self.columns.iter().any(|column| column.quantity == Quantity::Date);
+        let clock = self.columns.iter().find(|column| column.is_clock && column.quantity == Quantity::Time);
+        let Some(column) = clock.filter(|_| map.is_in_minutes.is_none() && !has_date) else { return };
+        let cells = || self.rows.iter().map(|row| self.recording.sheet.cell(*row, column.index));
+        let Some(cell) = cells().next().filter(|_| cells().all(clock::is_two_parts)) else { return };
+        let readings = vec![
+            ("hours and minutes".to_owned(), "clock=hh:mm".to_owned()),
+            ("minutes and seconds".to_owned(), "clock=mm:ss".to_owned()),
+        ];
+        let problem = format!("column '{}': '{cell}' has two parts", column.name);
+        self.questions.push(Question::new(problem, readings));
     }
 
     /// The order of day and month matters only if the date changes within the file.

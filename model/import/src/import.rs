@@ -288,6 +288,8 @@ fn choice(column: &Column, understanding: &Understanding) -> ColumnChoice {
     ColumnChoice {
         quantity: Some(column.quantity),
         unit: column.unit.filter(|_| has_factor),
+        is_unit_decided: false,
+        row_unit: column.row_unit.filter(|_| has_factor),
         factor: Some(column.factor).filter(|_| has_factor),
         offset: Some(column.offset).filter(|offset| has_factor && !offset.is_zero()),
         direction: direction.filter(|_| is_read),

@@ -42,6 +42,10 @@ impl Kind {
 pub(crate) struct ColumnChoice {
     pub(crate) quantity: Option<Quantity>,
     pub(crate) unit: Option<&'static Unit>,
+    /// Whether the unit was decided for the file at hand, whatever its row of units is.
+    pub(crate) is_unit_decided: bool,
+    /// Unit in the row of units of the file from which the map was made; another file may have another.
+    pub(crate) row_unit: Option<&'static Unit>,
     pub(crate) factor: Option<Decimal>,
     pub(crate) offset: Option<Decimal>,
     pub(crate) direction: Option<Direction>,
@@ -71,6 +75,8 @@ pub struct Map {
     pub(crate) names: Option<Vec<String>>,
     pub(crate) sheet: Option<String>,
     pub(crate) date_order: Option<DateOrder>,
+    /// Whether times of two parts are minutes and seconds, and not hours and minutes.
+    pub(crate) is_in_minutes: Option<bool>,
     pub(crate) is_swapped: Option<bool>,
     pub(crate) force_sign: Option<bool>,
     /// Unit of the columns of forces without one.
@@ -108,7 +114,7 @@ const CONSTANTS: [&str; 17] = [
 ];
 
 /// Keys of `--set`, for messages.
-const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, directions, force_sign, force_unit, \
+const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, clock, directions, force_sign, force_unit, \
     sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, \
     direction.NAME, load.NAME, wrap_angle_deg.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
@@ -124,6 +130,7 @@ struct MapFile {
     names: Option<Vec<String>>,
     sheet: Option<String>,
     date: Option<String>,
+    clock: Option<String>,
     force_sign: Option<i64>,
     force_unit: Option<String>,
     sample_rate_hz: Option<f64>,
@@ -143,6 +150,7 @@ struct ColumnEntry {
     name: String,
     quantity: Option<String>,
     unit: Option<String>,
+    row_unit: Option<String>,
     factor: Option<f64>,
     offset: Option<f64>,
     direction: Option<String>,
@@ -179,6 +187,7 @@ impl Map {
             ("delimiter", entries.delimiter),
             ("decimal", entries.decimal),
             ("date", entries.date),
+            ("clock", entries.clock),
             ("bad_rows", entries.bad_rows),
             ("force_unit", entries.force_unit),
             ("force_sign", entries.force_sign.map(|sign| sign.to_string())),
@@ -218,6 +227,8 @@ impl Map {
                     .filter(|unit| !unit.is_empty())
                     .map(|unit| parse_unit(&at("unit"), &unit))
                     .transpose()?,
+                row_unit: entry.row_unit.map(|unit| parse_unit(&at("row_unit"), &unit)).transpose()?,
+                is_unit_decided: false,
                 factor: entry.factor.map(|f| parse_number(&at("factor"), &f.to_string())).transpose()?,
                 offset: entry.offset.map(|f| parse_number(&at("offset"), &f.to_string())).transpose()?,
                 direction: entry
@@ -295,6 +306,13 @@ impl Map {
                     _ => return Err(words("dmy or mdy")),
                 });
             }
+            "clock" => {
+                self.is_in_minutes = Some(match value {
+                    "mm:ss" => true,
+                    "hh:mm" => false,
+                    _ => return Err(words("hh:mm or mm:ss")),
+                });
+            }
             "directions" => {
                 self.is_swapped = Some(match value {
                     "swapped" => true,
@@ -357,6 +375,7 @@ impl Map {
         // A new quantity or unit has its own factor.
         if choice.quantity.is_some() || choice.unit.is_some() {
             old.factor = None;
+            old.is_unit_decided = true;
         }
         old.quantity = choice.quantity.or(old.quantity);
         old.unit = choice.unit.or(old.unit);
@@ -431,6 +450,7 @@ impl Map {
             "date",
             self.date_order.map(|order| quoted(if order == DateOrder::DayFirst { "dmy" } else { "mdy" })),
         );
+        line("clock", self.is_in_minutes.map(|is| quoted(if is { "mm:ss" } else { "hh:mm" })));
         line(
             "force_sign",
             self.force_sign.map(|is_negative| if is_negative { "-1" } else { "1" }.to_owned()),
@@ -460,6 +480,7 @@ impl Map {
             };
             line("quantity", choice.quantity.map(|quantity| quoted(quantity.as_str())));
             line("unit", choice.unit.map(|unit| quoted(unit.name)));
+            line("row_unit", choice.row_unit.map(|unit| quoted(unit.name)));
             line("factor", choice.factor.map(number));
             line("offset", choice.offset.map(number));
             line("direction", choice.direction.map(|direction| quoted(direction.as_str())));
@@ -572,7 +593,11 @@ mod tests {
             map.set(assignment).unwrap();
         }
         let text = map.to_toml();
-        assert_eq!(Map::parse(&text, "map.toml").unwrap(), map, "{text}");
+        let mut again = Map::parse(&text, "map.toml").unwrap();
+        // Assignments decide for the file at hand; a map that is read does not.
+        again.columns.iter_mut().for_each(|(_, choice)| choice.is_unit_decided = true);
+        map.columns.iter_mut().for_each(|(_, choice)| choice.is_unit_decided = true);
+        assert_eq!(again, map, "{text}");
     }
 
     #[test]

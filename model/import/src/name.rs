@@ -95,6 +95,7 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
         Dimension::Force => Some(Quantity::Force),
         Dimension::Time if words.is_empty() => Some(Quantity::Time),
         Dimension::Length if words.is_empty() => Some(Quantity::Position),
+        Dimension::Angle if words.is_empty() => Some(Quantity::WrapAngle),
         // A logger of one load cell.
         Dimension::Signal if words.is_empty() => Some(Quantity::Force),
         _ => None,

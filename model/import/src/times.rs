@@ -27,7 +27,7 @@ pub(crate) fn times(file: &FileReading, map: &Map) -> Option<(Vec<Option<Decimal
     let (mut previous, mut days) = (None::<f64>, 0_u128);
     let mut all = Vec::with_capacity(file.rows.len());
     for row in &file.rows {
-        let moment = clock::parse(sheet.cell(*row, time.index), file.date_order).map(|mut moment| {
+        let moment = file.moment(sheet.cell(*row, time.index)).map(|mut moment| {
             if moment.day.is_none()
                 && let Some(date) = date
             {

@@ -245,7 +245,10 @@ fn little_data_leaves_open_questions() {
     std::fs::remove_dir_all(at.join("cal")).unwrap();
     let refused = pinswitch(2, at, "calibrate little.csv --out cal");
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(message.contains("load_N") && message.contains("one load at one angle does not determine"), "{message}");
+    assert!(
+        message.contains("load_N") && message.contains("one load at one angle does not determine"),
+        "{message}"
+    );
     assert!(!at.join("cal").exists());
 }
 

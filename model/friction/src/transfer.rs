@@ -125,7 +125,7 @@ impl Transfer {
                 libm::log(curve.band_high_n[i] / curve.friction_n[i].max(1e-9)).max(0.0),
             );
             if load > 0.0 && curve.friction_n[i] > 0.0 {
-                let by = (friction_n[i] / load).asinh() / (curve.friction_n[i] / load).asinh();
+                let by = libm::asinh(friction_n[i] / load) / libm::asinh(curve.friction_n[i] / load);
                 let exponent = |tension: f64| by * libm::log(tension / load).abs();
                 curve.eccentric_n[i] =
                     capstan_tension_n(load, exponent(curve.eccentric_n[i]), Direction::Eccentric);

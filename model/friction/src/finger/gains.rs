@@ -72,7 +72,7 @@ impl Tensions {
         if !(load_n > 0.0 && self.eccentric_n > 0.0) {
             return None;
         }
-        let exponent = |friction_n: f64| (friction_n / load_n).asinh();
+        let exponent = |friction_n: f64| libm::asinh(friction_n / load_n);
         let x = exponent(self.friction_n);
         let scale = |friction_n: f64| if x > 0.0 { exponent(friction_n) / x } else { 1.0 };
         let (low, high) = (scale(self.low_n), scale(self.high_n));
@@ -192,7 +192,7 @@ mod tests {
         let points = finger(&curve);
         assert_eq!(points.len(), 2, "the load of zero has no gains");
         for (i, point) in points.iter().enumerate() {
-            let exponent = |d: f64| (d / point.load_n).asinh();
+            let exponent = |d: f64| libm::asinh(d / point.load_n);
             let (x, low) = (exponent(curve.friction_n[i + 1]), exponent(curve.band_low_n[i + 1]));
             assert!((x / (published::MU_SILICONE * wrap) - 1.0).abs() < 0.2);
             assert!((point.force_difference.value - 2.0 * libm::sinh(x)).abs() < 1e-12);

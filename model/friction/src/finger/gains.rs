@@ -130,7 +130,7 @@ pub fn finger(curve: &FrictionCurve) -> Vec<FingerPoint> {
 /// assert_eq!(extra, ["4.6 %", "6.2 %"], "half of 9 to 12 %");
 /// ```
 pub fn extra_holding_of(force_difference: f64) -> f64 {
-    libm::expm1((force_difference / 2.0).asinh())
+    libm::expm1(libm::asinh(force_difference / 2.0))
 }
 
 /// Force difference from a measurement of the paper.

@@ -34,7 +34,7 @@ struct Summary {
     effects: Vec<Vec<String>>,
     /// Ids of effects that are not excluded at their size of consequence.
     not_excluded: Vec<String>,
-    /// The text of `model.toml`; empty for a rig without a switch, whose model has no friction of a part.
+    /// The text of `model.toml`; empty for a rig without a switch: its model does not predict a part.
     model: String,
 }
 

@@ -280,8 +280,7 @@ impl ModelFile {
             }
             if let Some(row) = rows.iter().position(|row| row.unknown.contains(quantity)) {
                 let (column, id) = (quantity.column(), &term.id);
-                let problem =
-                    format!("row {} has no {column}, on which `{id}` of the model depends", row + 1);
+                let problem = format!("row {} lacks {column}, which `{id}` of the model needs", row + 1);
                 let help = format!("give {column} in every row, or predict with baseline.toml");
                 return Err(Diagnostic::new(problem).with_help(help));
             }
@@ -411,7 +410,7 @@ impl ModelFile {
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
         let stays =
             |id: &str| self.vocabulary.named(id).is_some_and(|e| e.description().side == Side::Switch);
-        // A change between sessions is no effect: the curve is that of the latest session.
+        // The curve is that of the latest session: a change between sessions is not an effect.
         let is_change = |term: &&TermEntry| term.structure.as_ref().is_some_and(Structure::is_change);
         let terms = self.terms.iter().filter(|term| !is_change(term));
         let (inside, outside) = terms.map(|t| t.id.as_str()).partition(|id| stays(id));
@@ -465,7 +464,7 @@ mod tests {
         assert!(file.predict(std::slice::from_ref(&row), Session::New, "model.toml").is_ok());
         row.unknown = row.unknown.with(Optional::Position);
         let error = file.predict(&[row.clone()], Session::New, "model.toml").unwrap_err();
-        assert!(error.problem().contains("row 1 has no position_mm"), "{error}");
+        assert!(error.problem().contains("row 1 lacks position_mm"), "{error}");
         let baseline = ModelFile::new(&calibration.baseline);
         assert!(baseline.predict(&[row], Session::New, "baseline.toml").is_ok());
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use pinswitch_friction::Direction;
+use pinswitch_measurements::table::push_line;
 
 use crate::column::{Column, reference};
 use crate::decimal::Decimal;
@@ -107,23 +108,6 @@ impl Table {
         }
         out
     }
-}
-
-/// Appends one CSV line, quoting the cells that need it.
-fn push_line<'a>(out: &mut String, cells: impl Iterator<Item = &'a str>) {
-    for (i, cell) in cells.enumerate() {
-        if i > 0 {
-            out.push(',');
-        }
-        if cell.contains([',', '"', '\n', '\r']) || cell.starts_with('#') {
-            out.push('"');
-            out.push_str(&cell.replace('"', "\"\""));
-            out.push('"');
-        } else {
-            out.push_str(cell);
-        }
-    }
-    out.push('\n');
 }
 
 /// Returns the question about a word that is not a known direction.

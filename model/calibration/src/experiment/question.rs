@@ -239,7 +239,7 @@ impl Agenda {
         }
         // Curves and designs extend beyond the recorded loads.
         let to_n = published::heaviest_load_n();
-        // A part without a switch has no curve.
+        // Only parts with a switch have curves.
         if highest_n <= COVERED * to_n && !model.frame.is_plain() {
             let column = agenda.add(Contribution::AboveLoads { from_n: highest_n, to_n });
             let id = format!("{FRICTION_ABOVE}{highest_n:.0}_N");

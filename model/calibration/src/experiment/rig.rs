@@ -366,7 +366,7 @@ mod tests {
         }
     }
 
-    /// A rig without silicone and pins is not asked for them.
+    /// Plans for a rig without silicone and pins do without them.
     #[test]
     fn rigs_of_plain_tables_have_their_angles_and_loads() {
         let mut rows = crate::test_session::session(1);

@@ -5,88 +5,17 @@ use std::ops::Range;
 
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
-use serde::Serialize;
 
 use super::cycles::{HalfCycle, half_cycles};
+use super::defects::{missing_repetitions, odd_speeds, sample_defects};
 use super::direction::{ACCEPTED, Evidence, directions};
 use super::finding::Finding;
 use super::log::Log;
 use super::moves::{Move, Moves, Schedule, Source, moves, stop_s};
 use super::run_plan::Rig;
+use super::segmented::{Motion, MoveMark, Plateau, Reading, Segmented};
 use super::two_levels::noise_about_slope;
 use crate::median::median;
-
-/// Kind of the motion in a log.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Motion {
-    /// Moves with rests between them.
-    #[default]
-    Rests,
-    /// Continuous cycles.
-    Cycles,
-}
-
-impl Motion {
-    /// Returns the word of reports.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Rests => "rests",
-            Self::Cycles => "cycles",
-        }
-    }
-}
-
-/// One plateau: the steady reading after a move, or in the middle of a half-cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Plateau {
-    /// Direction of the move.
-    pub direction: Direction,
-    /// Number of the repetition in its direction, from 1.
-    pub repetition: u32,
-    /// Settled force in newtons.
-    #[serde(rename = "force_N")]
-    pub force_n: f64,
-    /// Actuator position in millimetres, if the log has it.
-    pub position_mm: Option<f64>,
-    /// Measured load in newtons, if the log has it.
-    #[serde(rename = "load_N")]
-    pub load_n: Option<f64>,
-    /// Rest before the end of the reading, in seconds.
-    pub dwell_s: f64,
-    /// End of the reading in seconds since the log began.
-    pub time_s: f64,
-    /// Number of averaged samples, without spikes.
-    pub samples: usize,
-}
-
-/// A move for a figure of the log.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MoveMark {
-    /// Start in seconds since the log began.
-    pub from_s: f64,
-    /// End in seconds since the log began.
-    pub to_s: f64,
-    /// Direction; `None` for a move that is left out.
-    pub direction: Option<Direction>,
-}
-
-/// Plateaus and findings of one log.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Segmented {
-    /// Plateaus in the order of time.
-    pub plateaus: Vec<Plateau>,
-    /// Defects of the log.
-    pub findings: Vec<Finding>,
-    /// Kind of the motion.
-    pub motion: Motion,
-    /// Column that shows the moves.
-    pub source: Source,
-    /// Moves in the order of time.
-    pub moves: Vec<MoveMark>,
-    /// Median speed of the moves in millimetres per second, if the log has a position.
-    pub speed_mm_s: Option<f64>,
-}
 
 /// Averaging time at the end of a plateau in seconds.
 const READ_S: f64 = 1.0;
@@ -117,20 +46,6 @@ const MOST_UNCERTAIN: (usize, f64) = (2, 0.1);
 /// Relative departures of a measured value from the declared one.
 const DWELL_DEPARTURE: f64 = 0.05;
 const ON_DEPARTURE: f64 = 0.2;
-const RATE_DEPARTURE: f64 = 0.05;
-const STROKE_DEPARTURE: f64 = 0.05;
-
-/// A move with its reading, before its direction is known.
-#[derive(Clone, Copy, Debug)]
-struct Reading {
-    span: Move,
-    evidence: Evidence,
-    position_mm: Option<f64>,
-    load_n: Option<f64>,
-    dwell_s: f64,
-    time_s: f64,
-    samples: usize,
-}
 
 /// Finds the plateaus and the defects of a log. `load_n` is the declared load.
 ///
@@ -170,7 +85,7 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
     add_plateaus(log, rig, load_n, &readings, &mut out)?;
     missing_repetitions(&readings, &mut out);
     odd_speeds(log, rig, &readings, &mut out);
-    defects(log, rig, spikes, &mut out.findings);
+    sample_defects(log, rig, spikes, &mut out.findings);
     Ok(out)
 }
 
@@ -578,102 +493,4 @@ fn settled_force(force_n: &[f64], least: usize) -> Option<(f64, usize)> {
         .filter(|f| (**f - centre).abs() <= bound)
         .fold((0.0, 0usize), |(sum, count), f| (sum + f, count + 1));
     (count >= least).then(|| (sum / count as f64, count))
-}
-
-/// Adds the pauses in which a repetition is missing.
-fn missing_repetitions(readings: &[Reading], out: &mut Segmented) {
-    if out.motion == Motion::Cycles {
-        return;
-    }
-    let mut periods: Vec<f64> = readings.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
-    let period_s = median(&mut periods);
-    for pair in out.plateaus.windows(2) {
-        let between = pair[0].time_s..pair[1].time_s;
-        if out.moves.iter().any(|m| m.direction.is_none() && between.contains(&m.from_s)) {
-            continue; // The repetition is left out, not missing.
-        }
-        // The experimenter may pause between the directions.
-        if pair[0].direction == pair[1].direction && pair[1].time_s - pair[0].time_s > 1.6 * period_s {
-            out.findings
-                .push(Finding::MissingRepetition { direction: pair[0].direction, after: pair[0].repetition });
-        }
-    }
-}
-
-/// Adds the moves of an unusual length, and a stroke that departs from the declared one.
-fn odd_speeds(log: &Log, rig: &Rig, readings: &[Reading], out: &mut Segmented) {
-    let mut lengths: Vec<(Direction, u32, f64)> = Vec::new();
-    let mut speeds = Vec::new();
-    let mut counts = [0u32; 2];
-    for (r, mark) in readings.iter().zip(&out.moves) {
-        let Some(direction) = mark.direction else { continue };
-        let slot = usize::from(direction == Direction::Concentric);
-        counts[slot] += 1;
-        let Some(travel_mm) = r.evidence.travel_mm else { continue };
-        lengths.push((direction, counts[slot], travel_mm.abs()));
-        speeds.push(travel_mm.abs() / (stop_s(log, r.span) - log.time_s[r.span.from]).max(1e-9));
-    }
-    if !speeds.is_empty() {
-        out.speed_mm_s = Some(median(&mut speeds));
-    }
-    for direction in [Direction::Eccentric, Direction::Concentric] {
-        let mut all: Vec<f64> = lengths.iter().filter(|l| l.0 == direction).map(|l| l.2).collect();
-        let typical = median(&mut all);
-        for (_, repetition, length) in lengths.iter().filter(|l| l.0 == direction) {
-            let ratio = length / typical.max(1e-9);
-            if !(0.8..=1.25).contains(&ratio) {
-                out.findings.push(Finding::OddSpeed { direction, repetition: *repetition, ratio });
-            }
-        }
-    }
-    let positions = log.position_mm.as_deref().filter(|_| !lengths.is_empty());
-    if let (Some(positions), Some(declared)) = (positions, rig.stroke_mm) {
-        let low = positions.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if (high - low - declared).abs() > STROKE_DEPARTURE * declared {
-            out.findings.push(Finding::Departure { field: "rig.stroke_mm", declared, measured: high - low });
-        }
-    }
-}
-
-/// Adds the defects of the samples.
-fn defects(log: &Log, rig: &Rig, spikes: usize, findings: &mut Vec<Finding>) {
-    if spikes > 0 {
-        findings.push(Finding::Spikes { samples: spikes });
-    }
-    let step = log.period_s();
-    if let Some(declared) = rig.sample_rate_hz
-        && (1.0 / step / declared - 1.0).abs() > RATE_DEPARTURE
-    {
-        findings.push(Finding::Departure { field: "rig.sample_rate_hz", declared, measured: 1.0 / step });
-    }
-    // Jitter moves a stamp by up to a quarter of a step; a lost sample doubles the gap.
-    let lost: f64 = (1..log.time_s.len())
-        .filter(|i| !log.breaks.contains(i))
-        .map(|i| ((log.time_s[i] - log.time_s[i - 1]) / step).round() - 1.0)
-        .filter(|n| *n > 0.0)
-        .sum();
-    if lost > 0.0 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a positive whole number"
-        )]
-        findings.push(Finding::LostSamples { samples: lost as usize });
-    }
-    if log.unusable > 0 {
-        findings.push(Finding::UnusableLines { lines: log.unusable });
-    }
-    for (end, at) in [
-        log.force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        log.force_n.iter().copied().fold(f64::INFINITY, f64::min),
-    ]
-    .into_iter()
-    .map(|end| (end, log.force_n.iter().filter(|f| (**f - end).abs() < 1e-9).count()))
-    {
-        let share = at as f64 / log.force_n.len() as f64;
-        if share > 0.01 {
-            findings.push(Finding::Clipped { force_n: end, share });
-        }
-    }
 }

@@ -11,8 +11,9 @@ use super::clock::SessionClock;
 use super::finding::Finding;
 use super::log::{DeclaredLoad, Log};
 use super::moves::Source;
-use super::plateaus::{Motion, Segmented, segment};
+use super::plateaus::segment;
 use super::run_plan::{RunPlan, SeriesPlan};
+use super::segmented::{Motion, Segmented};
 use crate::median::median;
 use crate::table::{Labels, Optional, PlateauRow, Sweep, Unknown};
 

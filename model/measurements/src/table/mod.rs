@@ -1,6 +1,7 @@
 //! Plateau tables and their rows (`model/doc/file-formats.md`).
 
 mod columns;
+mod csv_line;
 mod follows;
 mod friction_gap;
 mod joined;
@@ -16,6 +17,7 @@ mod units;
 mod unknown;
 mod whole_series;
 
+pub use csv_line::push_line;
 pub use plateau_table::PlateauTable;
 pub use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use readings::readings_by_session;

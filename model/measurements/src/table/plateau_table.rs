@@ -8,6 +8,7 @@ use pinswitch_friction::published::{self, GROOVES};
 use pinswitch_friction::{Direction, Substrate};
 
 use super::columns::{COLUMNS, LABELS, WRAP_ANGLE, column_name};
+use super::csv_line::push_line;
 use super::row::{Labels, PlateauRow, Sweep};
 use super::row_cells::RowCells;
 use super::substrate_word::{WORDS, substrate_word};
@@ -240,23 +241,6 @@ impl PlateauTable {
         }
         out
     }
-}
-
-/// Appends one CSV line, quoting the cells that need it.
-fn push_line<'a>(out: &mut String, cells: impl Iterator<Item = &'a str>) {
-    for (i, cell) in cells.enumerate() {
-        if i > 0 {
-            out.push(',');
-        }
-        if cell.contains([',', '"', '\n', '\r']) {
-            out.push('"');
-            out.push_str(&cell.replace('"', "\"\""));
-            out.push('"');
-        } else {
-            out.push_str(cell);
-        }
-    }
-    out.push('\n');
 }
 
 /// Returns the line of the record that starts at a byte, from 1. The csv crate's own count is one

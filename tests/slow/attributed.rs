@@ -64,9 +64,7 @@ fn unknown_effects_are_not_attributed() {
     ];
     for (name, plan) in plans(&names) {
         let report = calibrated(&plan);
-        // A wave of fewer than four series a cycle is finer than the structure of the search.
-        let may_be_open = name.ends_with("wave in time") && report.verdict == Verdict::Inconclusive;
-        assert!(may_be_open || report.verdict == Verdict::Unattributed, "{name}: {:?}", report.effects);
+        assert_eq!(report.verdict, Verdict::Unattributed, "{name}: {:?}", report.effects);
     }
 }
 

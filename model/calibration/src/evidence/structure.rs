@@ -24,9 +24,10 @@ const INTERVAL_PROBABILITY: f64 = 0.4;
 const WAVE_PROBABILITY: f64 = 0.2;
 /// Steps between the numbers of cycles of waves, and the largest number.
 const WAVE_STEP: f64 = 0.5;
-const MOST_CYCLES: f64 = 16.0;
-/// Series of a cycle, below which a wave is finer than the sampling.
-const SERIES_OF_CYCLE: f64 = 4.0;
+const MOST_CYCLES: f64 = 40.0;
+/// Series of a cycle, below which a wave is finer than the sampling (Nyquist's limit); one of a series is
+/// its schedule.
+const SERIES_OF_CYCLE: f64 = 2.0;
 /// Series up to which every interval is a variant; in a longer table, only those up to its end.
 const MOST_INTERVAL_SERIES: usize = 24;
 /// Covariate of noise.

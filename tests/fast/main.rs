@@ -42,6 +42,7 @@ mod solid_files;
 mod structure;
 mod table_columns;
 mod terminal;
+mod transactions;
 mod verification;
 mod view;
 mod writing;

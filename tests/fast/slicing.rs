@@ -124,6 +124,50 @@ fn a_missing_slicer_is_a_warning() {
     assert!(!plain.contains_key("slicing.json") && json(&plain["manifest.json"])["print"].is_null());
 }
 
+/// Whether a process runs with `word` in its command line.
+fn is_running(word: &str) -> bool {
+    let output = std::process::Command::new("pgrep").args(["-f", word]).output().unwrap();
+    !output.stdout.is_empty()
+}
+
+#[test]
+fn a_slicer_ends_with_its_time_and_its_caller() {
+    let folder = tempfile::tempdir().unwrap();
+    let slicer = substitute_slicer(folder.path());
+    // It hangs after it has written its settings.
+    let hanging = SUBSTITUTE_SLICER.replace("size=$(wc", "sleep 1000\nsize=$(wc");
+    std::fs::write(&slicer, hanging).unwrap();
+    let command = |out: &str| {
+        let mut command = binary();
+        command.args(["generate", "three-single", "--slice", "--format", "stl", "--out", out]);
+        command.current_dir(folder.path()).env("PINSWITCH_SLICER", &slicer);
+        command
+    };
+    let mut timed = command("timed");
+    let output = timed.env("PINSWITCH_SLICER_SECONDS", "1.5").output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && text.contains("it took longer than 1.5 s"), "{text}");
+    assert!(text.contains("PINSWITCH_SLICER_SECONDS"), "{text}");
+    assert!(folder.path().join("timed/shell.stl").exists(), "the parts are written");
+    let word = slicer.to_str().unwrap();
+    assert!(!is_running(word), "the slicer is still running");
+    let mut caller = command("killed").spawn().unwrap();
+    let becomes = |wanted: bool| {
+        (0..600).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            is_running(word) == wanted
+        })
+    };
+    assert!(becomes(true));
+    caller.kill().unwrap();
+    caller.wait().unwrap();
+    assert!(becomes(false), "the slicer has survived its caller");
+    let mut refused = command("refused");
+    let output = refused.env("PINSWITCH_SLICER_SECONDS", "never").output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && text.contains("PINSWITCH_SLICER_SECONDS = never"), "{text}");
+}
+
 #[test]
 fn failing_slicers_are_errors() {
     let folder = tempfile::tempdir().unwrap();

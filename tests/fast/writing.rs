@@ -267,7 +267,7 @@ fn concurrent_runs_fail_immediately() {
             assert!(
                 lost.status.code() == Some(1)
                     && output.starts_with(
-                        "error: set: cannot write: another run is writing into this folder\n  help: "
+                        "error: set: cannot write: another run is writing into this folder: process "
                     )
                     && output.lines().count() == 2,
                 "{output}"

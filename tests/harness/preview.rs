@@ -73,6 +73,13 @@ impl Preview {
         serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
     }
 
+    /// Returns the largest memory of the server so far in kilobytes; `None` on systems without `/proc`.
+    pub(crate) fn peak_memory_kb(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+        line.trim().trim_end_matches(" kB").parse().ok()
+    }
+
     /// Returns the number of running child processes, or `None` on systems without `/proc`.
     pub(crate) fn children(&self) -> Option<usize> {
         let threads = std::fs::read_dir(format!("/proc/{}/task", self.child.id())).ok()?;

@@ -85,9 +85,7 @@ pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
-pub use destination::{
-    Destination, DestinationError, DestinationLock, Folder, is_dangling_symlink, temporary_file, write_help,
-};
+pub use destination::{Destination, DestinationError, DestinationLock, Folder};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::{Refusal, VariantOutcome};
 pub use merge::{MergeError, merge};
@@ -95,7 +93,7 @@ pub use obstructions::obstructed_paths;
 pub use products::ProductError;
 pub use run::{Observer, Options, RunError, ShardStamp, check_destination, partial_folder, run};
 pub use shard::{Shard, ShardError};
-pub use source::{Reach, SweepSource, read_at_most};
+pub use source::{Reach, SweepSource};
 pub use stamp::{Stamp, StampError};
 pub use sweep::{Sweep, UncheckedSweep};
 pub use table::{Cell, Column, ColumnType, Row, Schema};

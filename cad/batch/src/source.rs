@@ -1,7 +1,7 @@
 //! The texts of a sweep: its own file, its base configuration and its rows. `batch.json` contains
 //! them, so that a batch can be resumed or merged without the files that it was started from.
 
-use std::io::{Error, ErrorKind, Read};
+use std::io::{Error, ErrorKind};
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,6 +9,8 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml_edit::{Document, Item, TomlError};
+
+use pinswitch_store::read_at_most;
 
 use super::diagnostics::{at_span, field_error};
 use super::hexadecimal;
@@ -20,22 +22,6 @@ use pinswitch_switch::templates;
 const MAX_SWEEP_BYTES: u64 = 1 << 20;
 /// Most bytes of a table of rows, for which only the offsets of rows are kept.
 const MAX_ROWS_BYTES: u64 = 256 << 20;
-
-/// Reads a file of at most `most` bytes; no more than these are read from an endless one.
-///
-/// # Errors
-/// Those of the system, and [`ErrorKind::FileTooLarge`].
-pub fn read_at_most(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
-    let too_large = || Error::new(ErrorKind::FileTooLarge, format!("the file has more than {most} bytes"));
-    let file = std::fs::File::open(path)?;
-    if file.metadata()?.len() > most {
-        return Err(too_large());
-    }
-    let mut bytes = Vec::new();
-    // A pipe has no length.
-    file.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most { Err(too_large()) } else { Ok(bytes) }
-}
 
 /// The texts of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

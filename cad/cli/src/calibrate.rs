@@ -22,7 +22,7 @@ use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, SEED, print_text};
 use crate::input::{InputFile, files_read, was_read};
-use crate::write::write_listed;
+use crate::write::SetFolder;
 use plans::{plans, with_forms};
 use spinner::Spinner;
 use summary::summary;
@@ -82,19 +82,20 @@ pub(super) fn check_stale_form(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes the form of an earlier run from the folder. A file that a user has edited at its begin stays.
-pub(super) fn remove_stale_form(folder: &Path) {
-    let path = folder.join(FORM_FILE);
-    if std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(FORM_HEADER)) {
-        // A form that stays is harmless: its first line identifies it, and no report refers to it.
-        let _ = std::fs::remove_file(path);
-    }
+/// Returns the name of the form of an earlier run, if the folder contains one. A file that a user has edited at its
+/// begin stays.
+pub(super) fn stale_form(folder: &SetFolder) -> Result<&'static [&'static str], Failure> {
+    let existing = folder.existing(FORM_FILE)?;
+    let is_stale = existing.is_some_and(|bytes| bytes.starts_with(FORM_HEADER.as_bytes()));
+    Ok(if is_stale { &[FORM_FILE] } else { &[] })
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.published {
         return published(&arguments.out);
     }
+    // Locked before the work, which may take minutes.
+    let out = SetFolder::lock(&arguments.out)?;
     let vocabulary = with_forms(arguments.effects.vocabulary()?, &arguments.plan)?;
     let plans = plans(&arguments.plan, &arguments.tables, &vocabulary)?;
     let (mut table, name) = joined(&arguments.tables)?;
@@ -127,13 +128,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(form) => {
             let text = format!("{FORM_HEADER}{}", own_effects_text([&form.definition]));
             files.insert(0, OutputFile { name: FORM_FILE.to_owned(), bytes: text.into_bytes() });
-            write_listed(&arguments.out, &files, COMMAND, &[])?;
+            out.replace_listed(&files, COMMAND, &[])?;
         }
         None => {
             check_stale_form(&arguments.out)?;
-            write_listed(&arguments.out, &files, COMMAND, &[FORM_FILE])?;
-            // Only now: if the disk is full, the earlier result stays complete.
-            remove_stale_form(&arguments.out);
+            out.replace_listed(&files, COMMAND, stale_form(&out)?)?;
         }
     }
     print_text(&summary(&calibration.report))
@@ -229,7 +228,7 @@ fn published(out: &Path) -> Result<(), Failure> {
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
-    write_listed(out, &files, COMMAND, &[])?;
+    SetFolder::lock(out)?.replace_listed(&files, COMMAND, &[])?;
     print_text(&text)
 }
 

@@ -14,13 +14,13 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
-use super::calibrate::{FORM_FILE, remove_stale_form};
+use super::calibrate::{FORM_FILE, stale_form};
 use super::calibrated_curve::read_model;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, print_json, print_text};
 use crate::input::{read_file, read_text_file, was_read};
-use crate::write::write_listed;
+use crate::write::SetFolder;
 
 /// Plan the runs that answer most open questions of a calibration.
 ///
@@ -66,6 +66,7 @@ fn minutes(text: &str) -> Result<f64, Diagnostic> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = SetFolder::lock(&arguments.out)?;
     let folder = &arguments.calibration;
     let rig = match &arguments.rig {
         None => None,
@@ -107,11 +108,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if tests_form && !is_there {
         files.push(file(FORM_FILE, read_text_file(&form)?.into_bytes()));
     }
-    let is_stale = !tests_form && !is_there;
-    write_listed(&arguments.out, &files, "experiment", if is_stale { &[FORM_FILE] } else { &[] })?;
-    if is_stale {
-        remove_stale_form(&arguments.out);
-    }
+    let stale = if tests_form || is_there { &[] } else { stale_form(&out)? };
+    out.replace_listed(&files, "experiment", stale)?;
     if arguments.json { print_json(&proposal) } else { print_text(&summary(&proposal, &arguments.out)) }
 }
 

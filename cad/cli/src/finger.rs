@@ -21,7 +21,7 @@ use super::range::Range;
 use super::source::Source;
 use super::terminal::to_json;
 use super::{Failure, print_json, print_text};
-use crate::write::write_set;
+use crate::write::SetFolder;
 
 /// Conditions that are compared by default.
 const PUBLISHED: [&str; 4] = ["six-single", "three-double", "three-single", "silicone-only"];
@@ -133,6 +133,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         arguments.configs.iter().map(String::as_str).collect()
     };
+    let out = arguments.out.as_deref().map(SetFolder::lock).transpose()?;
     let layouts =
         names.iter().map(|name| layout(name, arguments, &path, &joints_deg)).collect::<Result<_, _>>()?;
     let (low, high) = HUMAN_FORCE_DIFFERENCE;
@@ -147,9 +148,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         joint_path: path,
         layouts,
     };
-    if let Some(folder) = &arguments.out {
-        write_set(folder, &files(&report)?)?;
-        log::info!("{}: finger.svg, finger.csv, finger.json", folder.display());
+    if let Some(out) = out {
+        out.replace(&files(&report)?)?;
+        log::info!("{}: finger.svg, finger.csv, finger.json", out.folder().display());
     }
     if arguments.json { print_json(&report) } else { print_text(&table(&report)) }
 }

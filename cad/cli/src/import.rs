@@ -11,7 +11,7 @@ use pinswitch_switch::output::OutputFile;
 
 use super::terminal::print_line;
 use super::{Failure, print_json, print_text};
-use crate::write::write_listed;
+use crate::write::SetFolder;
 
 /// Largest unpacked file in bytes.
 const MAX_UNPACKED: u64 = 1 << 29;
@@ -207,7 +207,7 @@ fn write(arguments: &Arguments, import: &Import) -> Result<(), Failure> {
         OutputFile { name, bytes: output.to_csv().into_bytes() },
     ];
     let folder = out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    write_listed(folder, &files, "import", &[])?;
+    SetFolder::shared(folder)?.replace_listed(&files, "import", &[])?;
     Ok(())
 }
 

@@ -95,7 +95,7 @@ pub(super) fn sources_from(folder: &Path) -> Vec<SourceFile> {
 /// A [`Diagnostic`] if it cannot be read or was changed.
 fn manifest_in(folder: &Path) -> Result<Option<Provenance>, Diagnostic> {
     let path = folder.join(PROVENANCE);
-    let bytes = match pinswitch_batch::read_at_most(&path, MAX_TEXT) {
+    let bytes = match pinswitch_store::read_at_most(&path, MAX_TEXT) {
         Ok(bytes) => bytes,
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         Err(e) => {
@@ -140,7 +140,7 @@ fn warn_of_changed_sources(record: &ProvenanceRecord, path: &Path, folder: &Path
         if !is_new || !of.is_file() {
             continue;
         }
-        let Ok(bytes) = pinswitch_batch::read_at_most(&of, MAX_TABLE) else { continue };
+        let Ok(bytes) = pinswitch_store::read_at_most(&of, MAX_TABLE) else { continue };
         if sha256(&bytes) != source.sha256 {
             warn(record.outdated(path, &of));
         }
@@ -164,7 +164,7 @@ fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
     if path.is_dir() {
         return Err(Failure::bad_input(refused("is a folder", "give a file")));
     }
-    let bytes = pinswitch_batch::read_at_most(path, most).map_err(|e| {
+    let bytes = pinswitch_store::read_at_most(path, most).map_err(|e| {
         Failure::bad_input(match e.kind() {
             std::io::ErrorKind::FileTooLarge => {
                 refused(&format!("is longer than {most} bytes"), "check that this is the right file")

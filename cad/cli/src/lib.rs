@@ -54,6 +54,10 @@ struct Cli {
     command: Command,
     #[command(flatten)]
     verbosity: Verbosity<InfoLevel>,
+    /// Wait up to SECONDS for another run that writes into the same folder; without it, fail at once.
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 0, hide_default_value = true)]
+    #[arg(value_parser = clap::value_parser!(u64).range(0..=write::MAX_WAIT_S))]
+    wait: u64,
 }
 
 /// Declares the subcommands: the file of each, its place in the help, and its function.
@@ -99,6 +103,7 @@ commands! {
     Completions: completions,
     Man: man,
     Answer: answer,
+    Supervise: supervise,
 }
 
 /// Runs the command that the arguments name. Exit codes: 0 done, 1 failed, 2 bad input.
@@ -108,6 +113,7 @@ pub fn run() -> ExitCode {
         Err(e) => return usage::report(e),
     };
     terminal::start_log(cli.verbosity.log_level_filter());
+    write::wait_for_locks(cli.wait);
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

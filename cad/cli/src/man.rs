@@ -8,7 +8,7 @@ use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::output::OutputFile;
 
 use super::{Cli, Failure};
-use crate::write::write_set;
+use crate::write::SetFolder;
 
 /// Write the manual pages.
 ///
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pages = pages().map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
-    write_set(&arguments.out, &pages)?;
+    SetFolder::lock(&arguments.out)?.replace(&pages)?;
     log::info!("{}: {} pages", arguments.out.display(), pages.len());
     Ok(())
 }

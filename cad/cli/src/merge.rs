@@ -2,6 +2,8 @@
 
 use clap::Args;
 use pinswitch_batch::{Destination, merge};
+
+use crate::write::lock_policy;
 use pinswitch_diagnostic::Diagnostic;
 
 use super::{Failure, print_json};
@@ -27,7 +29,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let open = |place: &String| Destination::open(place, ".partial-merge").map_err(Failure::bad_input);
+    let open = |place: &String| {
+        let destination = Destination::open(place, ".partial-merge").map_err(Failure::bad_input)?;
+        Ok::<_, Failure>(destination.with_lock_policy(lock_policy()))
+    };
     let out = match (&arguments.out, arguments.places.as_slice()) {
         (Some(out), _) => out,
         (None, [only]) => only,

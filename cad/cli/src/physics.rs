@@ -17,7 +17,7 @@ use serde::Serialize;
 use super::source::Source;
 use super::terminal::to_json;
 use super::{Failure, print_json, print_text};
-use crate::write::write_set;
+use crate::write::SetFolder;
 
 /// Chi-squared above which a published fact counts against a hypothesis.
 const MIN_CHI_SQUARED: f64 = 1.0;
@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let svg = contact_svg(&title, &profiles).map_err(Failure::failed)?;
         let files = [("contact.svg", svg.into_bytes()), ("physics.json", to_json(&report)?)]
             .map(|(name, bytes)| OutputFile { name: name.to_owned(), bytes });
-        write_set(folder, &files)?;
+        SetFolder::lock(folder)?.replace(&files)?;
         log::info!("{}: contact.svg, physics.json", folder.display());
     }
     if arguments.json { print_json(&report) } else { print_text(&text(&report)) }

@@ -17,6 +17,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 
 use super::second_kernel::requested_kernel;
 use super::terminal::print_line;
+use super::write::lock_policy;
 use super::{Failure, print_json, print_text, slicing};
 
 /// Most variants without `--yes`.
@@ -92,7 +93,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let range = arguments.shard.range(count);
     let variants = Variants::new(counted.check().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
-    let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
+    let open = || {
+        let destination =
+            Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input)?;
+        Ok::<_, Failure>(destination.with_lock_policy(lock_policy()))
+    };
     if arguments.dry_run {
         let mut failing = Vec::new();
         if arguments.out.is_some() {

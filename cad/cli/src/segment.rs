@@ -15,7 +15,7 @@ use pinswitch_switch::output::OutputFile;
 
 use super::terminal::to_json;
 use super::{Failure, print_text};
-use crate::write::write_listed;
+use crate::write::SetFolder;
 
 /// Convert raw logs to a plateau table.
 ///
@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    write_listed(out, &files, "segment", &[])?;
+    SetFolder::shared(out)?.replace_listed(&files, "segment", &[])?;
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print_text(&summary)
 }

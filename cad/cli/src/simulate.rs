@@ -22,7 +22,7 @@ use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, print_text};
 use crate::input::read_text_file;
-use crate::write::write_listed;
+use crate::write::SetFolder;
 
 /// Simulate a friction rig with known effects and noise.
 ///
@@ -131,8 +131,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Diagnostic::new("--out is missing").with_help("give --out DIR, or --study"),
         ));
     };
+    let place = SetFolder::lock(out)?;
     if let Some(runs) = &arguments.runs {
-        return rehearsal(arguments, runs, out);
+        return rehearsal(arguments, runs, &place);
     }
     let (plan, name) = plan(arguments)?;
     let text = plan.to_text().map_err(Failure::failed)?;
@@ -148,11 +149,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.next {
         files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
     }
-    write_listed(out, &files, COMMAND, &[]).map_err(Failure::from)
+    place.replace_listed(&files, COMMAND, &[]).map_err(Failure::from)
 }
 
 /// Simulates planned runs on the rig of a model or of a plan, and writes their table.
-fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failure> {
+fn rehearsal(arguments: &Arguments, runs: &Path, place: &SetFolder) -> Result<(), Failure> {
     let name = runs.display().to_string();
     let runs = read_runs(&read_text_file(runs)?, &name).map_err(Failure::bad_input)?;
     let rig = match &arguments.rig {
@@ -179,7 +180,7 @@ fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
     };
     let table = PlateauTable::write(&rows).into_bytes();
     let files = [OutputFile { name: "plateaus.csv".to_owned(), bytes: table }];
-    write_listed(out, &files, COMMAND, &[]).map_err(Failure::from)
+    place.replace_listed(&files, COMMAND, &[]).map_err(Failure::from)
 }
 
 /// Returns the plan with the effects of the command line, and its name for errors.

@@ -1,8 +1,11 @@
 //! `--slice`: print times and filament of a set, from an installed slicer.
 
-use pinswitch_diagnostic::Diagnostic;
+use std::time::Duration;
+
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_slicer::{
-    PROGRAM_VARIABLE, PrintSettings, SETTINGS_FILE, SLICING_FILE, Slicer, SlicerError, Slicing, find,
+    LIMIT_VARIABLE, PROGRAM_VARIABLE, PrintSettings, RunLimits, SETTINGS_FILE, SLICING_FILE, Slicer,
+    SlicerError, Slicing, find,
 };
 use pinswitch_switch::built::Built;
 use pinswitch_switch::formats::named;
@@ -12,6 +15,10 @@ use pinswitch_switch::set::Set;
 
 use super::Failure;
 use super::terminal::{to_json, warn};
+
+/// Range of [`LIMIT_VARIABLE`].
+const MIN_LIMIT_S: f64 = 0.1;
+const MAX_LIMIT_S: f64 = 86_400.0;
 
 /// Finds the slicer of this machine. Without one, warns with what to install and returns `None`.
 ///
@@ -31,7 +38,31 @@ pub(super) fn installed() -> Result<Option<Slicer>, Failure> {
             ),
         );
     }
-    Ok(slicer)
+    let seconds = variable(LIMIT_VARIABLE).map(|text| limit(&text.to_string_lossy())).transpose()?;
+    Ok(slicer.map(|slicer| {
+        let limits = RunLimits::default();
+        let slicer = slicer.with_limits(RunLimits { time: seconds.unwrap_or(limits.time), ..limits });
+        // Without its own path, this program cannot end the slicer when it is killed.
+        match std::env::current_exe() {
+            Ok(program) => {
+                slicer.with_supervisor(vec![program, "--quiet".into(), "supervise".into(), "--".into()])
+            }
+            Err(_) => slicer,
+        }
+    }))
+}
+
+/// Returns the time of [`LIMIT_VARIABLE`].
+fn limit(text: &str) -> Result<Duration, Failure> {
+    let seconds = text.trim().parse().ok().filter(|s| (MIN_LIMIT_S..=MAX_LIMIT_S).contains(s));
+    let seconds = seconds.ok_or_else(|| {
+        Failure::bad_input(
+            Diagnostic::new("not a time for slicing a file")
+                .with_location(Location::field(LIMIT_VARIABLE, text))
+                .with_help(format!("give a number of seconds from {MIN_LIMIT_S} to {MAX_LIMIT_S}")),
+        )
+    })?;
+    Ok(Duration::from_secs_f64(seconds))
 }
 
 /// Returns the failure of a slicer's error, with its exit code.

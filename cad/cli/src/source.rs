@@ -265,7 +265,16 @@ fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure
 /// Returns the text of a configuration: the file itself, or the configuration in a 3MF that pinswitch wrote.
 fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Failure> {
     if !bytes.starts_with(b"PK") {
-        return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
+        let text = text(bytes, file).map_err(Failure::bad_input)?;
+        if text.trim().is_empty() {
+            // Valid, since every field has a default, but hardly intended.
+            return Err(Failure::bad_input(
+                Diagnostic::new("the file is empty")
+                    .with_location(Location::file(file))
+                    .with_help("write a configuration with `pinswitch init`, or give a template"),
+            ));
+        }
+        return Ok((text, Kind::Text));
     }
     let package =
         read_three_mf(&bytes).map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file(file)))?;

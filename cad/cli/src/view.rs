@@ -6,8 +6,9 @@ use std::process::Command;
 use std::sync::Arc;
 
 use clap::Args;
-use pinswitch_app::server::{ConfigurationSource, FieldOverride, Server, ServerError};
+use pinswitch_app::server::{ConfigurationSource, FieldOverride, Server, ServerError, SourceWriteError};
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_store::{RewriteError, rewrite_file};
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::Prediction;
@@ -15,7 +16,7 @@ use pinswitch_switch::prediction::Prediction;
 use super::input::{read_file, read_text_file};
 use super::law::LawChoice;
 use super::source::Source;
-use super::write::write_back;
+use super::write::{lock_policy, write_error};
 use super::{Failure, print_text};
 
 /// Show a configuration in the browser, and change it there.
@@ -75,6 +76,20 @@ impl ViewSource {
         Self { file: source.file(), program: std::env::current_exe().ok(), source, law }
     }
 
+    /// Returns the followed file, if it is an ordinary one: a pipe cannot be read again, and a server must not wait for
+    /// one.
+    fn ordinary_file(&self) -> Result<&Path, Diagnostic> {
+        let file = self.required_file()?;
+        match std::fs::metadata(file) {
+            Ok(facts) if !facts.is_file() && !facts.is_dir() => {
+                Err(Diagnostic::new("is not an ordinary file")
+                    .with_location(Location::file(file.display().to_string()))
+                    .with_help("give a file that can be read again"))
+            }
+            _ => Ok(file),
+        }
+    }
+
     fn required_file(&self) -> Result<&Path, Diagnostic> {
         self.file.as_deref().ok_or_else(|| Diagnostic::new("the server follows a template, not a file"))
     }
@@ -97,15 +112,20 @@ impl ConfigurationSource for ViewSource {
     }
 
     fn read(&self) -> Result<Vec<u8>, Diagnostic> {
-        read_file(self.required_file()?).map_err(|failure| diagnostic(&failure))
+        read_file(self.ordinary_file()?).map_err(|failure| diagnostic(&failure))
     }
 
     fn read_text(&self) -> Result<String, Diagnostic> {
-        read_text_file(self.required_file()?).map_err(|failure| diagnostic(&failure))
+        read_text_file(self.ordinary_file()?).map_err(|failure| diagnostic(&failure))
     }
 
-    fn write(&self, text: &str) -> Result<(), Diagnostic> {
-        write_back(self.required_file()?, text.as_bytes()).map_err(Diagnostic::from_error)
+    fn write(&self, expected: Option<&str>, text: &str) -> Result<(), SourceWriteError> {
+        let file = self.required_file()?;
+        let expected = expected.map(str::as_bytes);
+        rewrite_file(file, expected, text.as_bytes(), lock_policy()).map_err(|e| match e {
+            RewriteError::Changed => SourceWriteError::Changed,
+            RewriteError::System(e) => SourceWriteError::Failed(write_error(file, e).into()),
+        })
     }
 
     fn configuration(&self, text: &str) -> Result<Configuration, Diagnostic> {

@@ -68,4 +68,5 @@ pub use pinswitch_report as report;
 pub use pinswitch_simulation as simulation;
 pub use pinswitch_slicer as slicer;
 pub use pinswitch_solid as solid;
+pub use pinswitch_store as store;
 pub use pinswitch_switch as switch;

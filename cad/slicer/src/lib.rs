@@ -16,12 +16,14 @@
 //! # Ok::<(), GcodeError>(())
 //! ```
 
+mod bounded;
 mod estimate;
 mod run;
 mod settings;
 mod slicing;
 
+pub use bounded::{RunLimits, supervise};
 pub use estimate::{GcodeError, PrintEstimate};
-pub use run::{PROGRAM_VARIABLE, PreparedSlicer, Slicer, SlicerError, find};
+pub use run::{LIMIT_VARIABLE, PROGRAM_VARIABLE, PreparedSlicer, Slicer, SlicerError, find};
 pub use settings::PrintSettings;
 pub use slicing::{SETTINGS_FILE, SLICING_FILE, SlicedFile, Slicing};

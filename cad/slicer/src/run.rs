@@ -3,12 +3,14 @@
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fmt;
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt, neutral};
 use tempfile::TempDir;
 
+use crate::bounded::{self, Run, RunError, RunLimits};
 use crate::estimate::{GcodeError, PrintEstimate};
 use crate::settings::{PrintSettings, program_version, without_time};
 
@@ -16,6 +18,8 @@ use crate::settings::{PrintSettings, program_version, without_time};
 const NAMES: [&str; 4] = ["prusa-slicer", "PrusaSlicer", "prusa-slicer-console.exe", "prusa-slicer.exe"];
 /// Environment variable with the program; it takes precedence over the search path.
 pub const PROGRAM_VARIABLE: &str = "PINSWITCH_SLICER";
+/// Environment variable with the longest time in seconds in which a slicer slices one file.
+pub const LIMIT_VARIABLE: &str = "PINSWITCH_SLICER_SECONDS";
 /// Most characters of a slicer's message.
 const MAX_MESSAGE: usize = 300;
 
@@ -40,6 +44,15 @@ pub enum SlicerError {
         file: String,
         /// The last line of its output, and its exit status.
         output: String,
+    },
+    /// The program exceeded a limit, and was ended.
+    Stopped {
+        /// The program.
+        program: String,
+        /// The file that it was given.
+        file: String,
+        /// The limit.
+        limit: String,
     },
     /// The G-code lacks an estimate.
     Gcode {
@@ -68,6 +81,10 @@ impl SlicerError {
             Self::Refused { program, file, output } => {
                 Diagnostic::new(format!("{program} did not slice {file}: {output}"))
             }
+            Self::Stopped { program, file, limit } => {
+                Diagnostic::new(format!("{program} did not slice {file}: {limit}, and was ended"))
+                    .with_help(format!("repeat it, or give a longer time in {LIMIT_VARIABLE}"))
+            }
             Self::Gcode { program, file, source } => {
                 Diagnostic::new(format!("{program} sliced {file} without an estimate: {source}"))
                     .with_help("use PrusaSlicer 2.5 or later")
@@ -87,7 +104,7 @@ impl Error for SlicerError {
         match self {
             Self::Io { source, .. } => Some(source),
             Self::Gcode { source, .. } => Some(source),
-            Self::NoProgram(_) | Self::Refused { .. } => None,
+            Self::NoProgram(_) | Self::Refused { .. } | Self::Stopped { .. } => None,
         }
     }
 }
@@ -102,6 +119,9 @@ impl From<SlicerError> for Diagnostic {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slicer {
     program: PathBuf,
+    limits: RunLimits,
+    /// Program with arguments that runs the slicer, and ends it when this process ends.
+    supervisor: Vec<PathBuf>,
 }
 
 /// Finds the slicer that `variable` (the value of [`PROGRAM_VARIABLE`]) names, or else the first
@@ -116,13 +136,30 @@ pub fn find(variable: Option<&OsStr>, search_path: Option<&OsStr>) -> Result<Opt
         Some(named) => {
             let program = if named.is_file() { Some(named.to_owned()) } else { on_path(named) };
             let program = program.ok_or_else(|| SlicerError::NoProgram(named.display().to_string()))?;
-            Ok(Some(Slicer { program }))
+            Ok(Some(Slicer::new(program)))
         }
-        None => Ok(NAMES.iter().find_map(|name| on_path(Path::new(name))).map(|program| Slicer { program })),
+        None => Ok(NAMES.iter().find_map(|name| on_path(Path::new(name))).map(Slicer::new)),
     }
 }
 
 impl Slicer {
+    fn new(program: PathBuf) -> Self {
+        Self { program, limits: RunLimits::default(), supervisor: Vec::new() }
+    }
+
+    /// The slicer with other limits for each run.
+    #[must_use]
+    pub fn with_limits(self, limits: RunLimits) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// The slicer, run by a program with arguments that calls [`supervise`](crate::supervise): it ends
+    /// when this process ends, however that happens.
+    #[must_use]
+    pub fn with_supervisor(self, supervisor: Vec<PathBuf>) -> Self {
+        Self { supervisor, ..self }
+    }
+
     /// Lets the slicer write a settings file from its options.
     ///
     /// # Errors
@@ -131,14 +168,13 @@ impl Slicer {
         let io = |source| self.io(source);
         let folder = tempfile::Builder::new().prefix("pinswitch-slicer").tempdir().map_err(io)?;
         let file = folder.path().join("settings.ini");
-        let output = self.run(
+        let name = "its settings";
+        let ended = self.run(
             folder.path(),
             settings.options().iter().map(OsStr::new).chain([OsStr::new("--save"), file.as_os_str()]),
+            (name, &file),
         )?;
-        let text = std::fs::read_to_string(&file)
-            .ok()
-            .filter(|_| output.status.success())
-            .ok_or_else(|| self.refused("its settings", &output))?;
+        let text = self.written(&file, &ended).ok_or_else(|| self.refused(name, &ended))?;
         let version = program_version(&text).unwrap_or("an unknown slicer").to_owned();
         Ok(PreparedSlicer {
             settings_text: without_time(&text),
@@ -153,36 +189,50 @@ impl Slicer {
         &self,
         folder: &Path,
         options: impl Iterator<Item = &'a OsStr>,
-    ) -> Result<Output, SlicerError> {
+        (name, written): (&str, &Path),
+    ) -> Result<Run, SlicerError> {
         // An empty data folder excludes the user's settings, so that results are reproducible.
         let mut command = Command::new(&self.program);
-        command.arg("--datadir").arg(folder).args(options).current_dir(folder).stdin(Stdio::null());
-        command.output().map_err(|e| self.io(e))
+        command.arg("--datadir").arg(folder).args(options).current_dir(folder);
+        bounded::run(&command, &self.supervisor, written, self.limits).map_err(|e| match e {
+            RunError::Io(e) => self.io(e),
+            RunError::Limit(limit) => SlicerError::Stopped {
+                program: self.program.display().to_string(),
+                file: name.to_owned(),
+                limit,
+            },
+        })
+    }
+
+    /// Returns the text that a run has written; `None` if it failed: it may have written a part.
+    fn written(&self, file: &Path, ended: &Run) -> Option<String> {
+        if !ended.status.success() {
+            return None;
+        }
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(file).ok().filter(|f| f.metadata().is_ok_and(|f| f.is_file()))?;
+        file.take(self.limits.written_bytes).read_to_end(&mut bytes).ok()?;
+        Some(String::from_utf8_lossy(&bytes).into_owned())
     }
 
     fn io(&self, source: std::io::Error) -> SlicerError {
         SlicerError::Io { program: self.program.display().to_string(), source }
     }
 
-    fn refused(&self, file: &str, output: &Output) -> SlicerError {
+    fn refused(&self, file: &str, ended: &Run) -> SlicerError {
         SlicerError::Refused {
             program: self.program.display().to_string(),
             file: file.to_owned(),
-            output: outcome(output),
+            output: outcome(ended),
         }
     }
 }
 
-/// Describes how a program ended: the last line of its output, of standard error if it is not
-/// empty, and its exit status.
-fn outcome(output: &Output) -> String {
-    let last = |bytes: &[u8]| {
-        let text = String::from_utf8_lossy(bytes).into_owned();
-        text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
-    };
-    let line = last(&output.stderr).or_else(|| last(&output.stdout));
-    let line = line.unwrap_or_else(|| "no output".to_owned());
-    format!("{} ({})", excerpt(&neutral(&line), MAX_MESSAGE), output.status)
+/// Describes how a program ended: the last line of its message, and its exit status.
+fn outcome(ended: &Run) -> String {
+    let text = String::from_utf8_lossy(&ended.message);
+    let line = text.lines().rev().map(str::trim).find(|line| !line.is_empty()).unwrap_or("no output");
+    format!("{} ({})", excerpt(&neutral(line), MAX_MESSAGE), ended.status)
 }
 
 /// A slicer with its settings in a temporary folder.
@@ -228,13 +278,9 @@ impl PreparedSlicer {
             gcode.as_os_str(),
             file.as_os_str(),
         ]);
-        let output = self.slicer.run(folder.path(), options.into_iter())?;
-        // A slicer that fails may have written a part of its file.
-        let text = std::fs::read(&gcode)
-            .ok()
-            .filter(|_| output.status.success())
-            .ok_or_else(|| self.slicer.refused(name, &output))?;
-        PrintEstimate::from_gcode(&String::from_utf8_lossy(&text)).map_err(|source| SlicerError::Gcode {
+        let ended = self.slicer.run(folder.path(), options.into_iter(), (name, &gcode))?;
+        let text = self.slicer.written(&gcode, &ended).ok_or_else(|| self.slicer.refused(name, &ended))?;
+        PrintEstimate::from_gcode(&text).map_err(|source| SlicerError::Gcode {
             program: self.slicer.program.display().to_string(),
             file: name.to_owned(),
             source,

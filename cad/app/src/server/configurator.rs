@@ -9,9 +9,9 @@ use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use serde::Deserialize;
 
-use super::ConfigurationSource;
 use super::state::stamp;
 use super::worker::Worker;
+use super::{ConfigurationSource, SourceWriteError};
 use crate::{Answer, Engine, Values, changed_values, configuration};
 
 /// The engines, each for one request at a time, and the configuration that the server shows.
@@ -128,9 +128,15 @@ impl Configurator {
         answer.await.unwrap_or_else(|e| Answer::Json(engine_stopped(e)))
     }
 
-    /// Writes changed values into the file and returns the result as JSON. A file that has changed
-    /// since the page last read it stays unchanged; its stamp and values are returned.
-    pub(super) fn save(&self, request: &[u8]) -> String {
+    /// Writes changed values into the file, outside of the server's thread, and returns the result as JSON.
+    /// A file that has changed since the page last read it stays unchanged; its stamp and values are
+    /// returned.
+    pub(super) async fn save(self: Arc<Self>, request: Bytes) -> String {
+        let saved = tokio::task::spawn_blocking(move || self.saved(&request)).await;
+        saved.unwrap_or_else(|e| error_json(&format!("the file is not saved: {e}")))
+    }
+
+    fn saved(&self, request: &[u8]) -> String {
         match self.write(request) {
             Ok(SavedFile { file, stamp, overridden }) => {
                 serde_json::json!({ "saved": file, "stamp": stamp, "overridden": overridden }).to_string()
@@ -161,8 +167,18 @@ impl Configurator {
         if !is_missing && request.stamp.is_some_and(|known| known != current) {
             return Err(SaveError::Changed { stamp: current, values: changed_values(&shown) });
         }
-        let text = rewritten(&text, &name, &shown, &wanted).map_err(Diagnostic::from_error)?;
-        self.source.write(&text)?;
+        let before = text;
+        let text = rewritten(&before, &name, &shown, &wanted).map_err(Diagnostic::from_error)?;
+        match self.source.write((!is_missing).then_some(&*before), &text) {
+            Ok(()) => {}
+            Err(SourceWriteError::Failed(diagnostic)) => return Err(SaveError::Other(diagnostic)),
+            // An editor saved between the two.
+            Err(SourceWriteError::Changed) => {
+                let text = self.source.read_text()?;
+                let values = changed_values(&self.source.configuration(&text)?);
+                return Err(SaveError::Changed { stamp: stamp(text.as_bytes()), values });
+            }
+        }
         let overridden = self.overridden(&shown, &wanted);
         Ok(SavedFile { file: name, stamp: stamp(text.as_bytes()), overridden })
     }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_store::read_own;
 use tokio::sync::watch;
 
 use super::ConfigurationSource;
@@ -17,6 +18,9 @@ const SETTLE_TIME: Duration = Duration::from_millis(300);
 const MISSING_SETTLE_TIME: Duration = Duration::from_secs(2);
 /// As [`SETTLE_TIME`], for a file that looks truncated.
 const TRUNCATED_SETTLE_TIME: Duration = Duration::from_secs(2);
+
+/// Longest file that is followed, in bytes: some times the largest 3MF of a set.
+const MAX_FOLLOWED_BYTES: u64 = 64 << 20;
 
 /// The content of a file, and since when it is unchanged.
 #[derive(Debug)]
@@ -102,21 +106,27 @@ pub(super) fn follow(states: &watch::Sender<State>, source: &dyn ConfigurationSo
     let mut is_lost = false;
     loop {
         std::thread::sleep(POLL_INTERVAL);
-        if !file_watch.is_settled(std::fs::read(file).ok(), Instant::now()) {
+        // A file that cannot be read counts as missing.
+        let (content, obstacle) = match read_own(file, MAX_FOLLOWED_BYTES) {
+            Ok(content) => (content, None),
+            Err(e) => (None, Some(e)),
+        };
+        if !file_watch.is_settled(content, Instant::now()) {
             let was_lost = is_lost;
             is_lost = file_watch.is_lost(Instant::now());
             if is_lost && !was_lost {
-                report(
-                    states,
-                    &problem("the file is missing", "restore it; the last valid version is shown"),
-                );
+                let text = match obstacle {
+                    Some(e) => format!("the file cannot be read: {e}"),
+                    None => "the file is missing".to_owned(),
+                };
+                report(states, &problem(&text, "restore it; the last valid version is shown"));
             }
             continue;
         }
         is_lost = false;
         let version = states.borrow().version + 1;
         let state = if file_watch.shown.trim_ascii().is_empty() {
-            // Valid, since every field has a default, but hardly intended.
+            // As on the command line.
             Err(problem("the file is empty", "restore it; the last valid version is shown"))
         } else {
             // From the settled content: another save may have begun.

@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use http_body_util::{BodyExt, Collected, Full, Limited};
+use http_body_util::{BodyExt, Full};
 use hyper::body::{Bytes, Incoming};
 use hyper::header::{HOST, HeaderValue, ORIGIN};
 use hyper::server::conn::http1;
@@ -15,7 +15,7 @@ use hyper::{HeaderMap, Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use pinswitch_switch::formats::page::page_policy;
 use tokio::net::TcpListener;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::{Semaphore, SemaphorePermit, watch};
 
 use super::configurator::Configurator;
 use super::state::{State, data_after, values_after};
@@ -37,7 +37,12 @@ const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
 /// Longest life of a connection, which carries one answer; a search or a calibration takes minutes.
 const CONNECTION_TIMEOUT: Duration = Duration::from_secs(600);
 /// Time in which the body of a request must arrive.
-const BODY_TIMEOUT: Duration = Duration::from_secs(60);
+const BODY_TIMEOUT: Duration = Duration::from_secs(30);
+/// Most bytes of all long bodies that arrive or are answered at once. A request beyond it is refused,
+/// and can be repeated.
+const MAX_ARRIVING_BYTES: usize = 128 << 20;
+/// Longest body that does not count: that of a design. All connections together have few of these bytes.
+const MAX_SHORT_BODY_BYTES: usize = 64 << 10;
 /// Longest body of a request, in bytes. The engine refuses a table of this size and recommends the
 /// command line.
 const MAX_BODY_BYTES: usize = 64 << 20;
@@ -49,10 +54,23 @@ const POST_PATHS: [&str; 2] = ["/answer", "/save"];
 struct Site {
     states: watch::Receiver<State>,
     long_polls: Semaphore,
+    /// Bytes that long bodies may still have.
+    arriving_bytes: Semaphore,
     address: SocketAddr,
     policy: String,
     configurator: Arc<Configurator>,
     configurator_policy: String,
+}
+
+/// Why the body of a request is not accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum BodyError {
+    /// It is longer than [`MAX_BODY_BYTES`].
+    TooLong,
+    /// Other bodies have [`MAX_ARRIVING_BYTES`].
+    Busy,
+    /// The connection ended.
+    Ended,
 }
 
 /// Answers requests until the process ends.
@@ -65,6 +83,7 @@ pub(super) async fn serve(
     let site = Arc::new(Site {
         states,
         long_polls: Semaphore::new(MAX_LONG_POLLS),
+        arriving_bytes: Semaphore::new(MAX_ARRIVING_BYTES),
         address,
         policy: page_policy(),
         configurator: Arc::new(configurator),
@@ -142,25 +161,64 @@ impl Site {
 
     /// Answers a request of the configurator.
     async fn answer_post(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
-        let body = tokio::time::timeout(BODY_TIMEOUT, Limited::new(body, MAX_BODY_BYTES).collect()).await;
-        let request = match body.map(|body| body.map(Collected::to_bytes)) {
-            Ok(Ok(request)) => request,
-            Ok(Err(_)) => {
-                let reason = format!("the request is larger than {} MB", MAX_BODY_BYTES >> 20);
-                return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason);
+        let arrived = tokio::time::timeout(BODY_TIMEOUT, self.body(body)).await;
+        let (status, reason) = match arrived {
+            // The permits are returned after the answer.
+            Ok(Ok((request, _permits))) => {
+                let configurator = Arc::clone(&self.configurator);
+                let answer = match path {
+                    "/save" => Answer::Json(configurator.save(request).await),
+                    _ => configurator.answer(request).await,
+                };
+                return match answer {
+                    Answer::Json(text) => self.response(StatusCode::OK, "application/json", text),
+                    Answer::Bytes(bytes) => self.response(StatusCode::OK, "application/octet-stream", bytes),
+                };
             }
+            Ok(Err(BodyError::TooLong)) => {
+                let reason = format!("the request is larger than {} MB", MAX_BODY_BYTES >> 20);
+                (StatusCode::PAYLOAD_TOO_LARGE, reason)
+            }
+            Ok(Err(BodyError::Busy)) => {
+                let reason = "other long requests are being answered: repeat it later".to_owned();
+                (StatusCode::SERVICE_UNAVAILABLE, reason)
+            }
+            Ok(Err(BodyError::Ended)) => (StatusCode::BAD_REQUEST, "the request ended early".to_owned()),
             Err(_) => {
                 let reason = format!("the request did not arrive within {} s", BODY_TIMEOUT.as_secs());
-                return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason);
+                (StatusCode::REQUEST_TIMEOUT, reason)
             }
         };
-        if path == "/save" {
-            return self.response(StatusCode::OK, "application/json", self.configurator.save(&request));
+        self.response(status, "text/plain", reason)
+    }
+
+    /// Collects the body of a request, with permits for its bytes if it is long. A byte that has no permit
+    /// is not kept.
+    async fn body(&self, mut body: Incoming) -> Result<(Bytes, Option<SemaphorePermit<'_>>), BodyError> {
+        let (mut bytes, mut permits) = (Vec::new(), None::<SemaphorePermit<'_>>);
+        while let Some(frame) = body.frame().await {
+            let Ok(chunk) = frame.map_err(|_| BodyError::Ended)?.into_data() else { continue };
+            let length = bytes.len() + chunk.len();
+            if length > MAX_BODY_BYTES {
+                return Err(BodyError::TooLong);
+            }
+            let held = permits.as_ref().map_or(0, SemaphorePermit::num_permits);
+            // Vectors grow by doubling: what is counted is what is reserved.
+            if length > bytes.capacity() {
+                let reserved = length.next_power_of_two();
+                if reserved > MAX_SHORT_BODY_BYTES {
+                    let more = u32::try_from(reserved - held).map_err(|_| BodyError::TooLong)?;
+                    let more = self.arriving_bytes.try_acquire_many(more).map_err(|_| BodyError::Busy)?;
+                    match &mut permits {
+                        Some(permits) => permits.merge(more),
+                        None => permits = Some(more),
+                    }
+                }
+                bytes.reserve_exact(reserved - bytes.len());
+            }
+            bytes.extend_from_slice(&chunk);
         }
-        match Arc::clone(&self.configurator).answer(request).await {
-            Answer::Json(text) => self.response(StatusCode::OK, "application/json", text),
-            Answer::Bytes(bytes) => self.response(StatusCode::OK, "application/octet-stream", bytes),
-        }
+        Ok((bytes.into(), permits))
     }
 
     fn response(&self, status: StatusCode, kind: &str, content: impl Into<Bytes>) -> Response<Full<Bytes>> {

@@ -24,7 +24,7 @@ use tokio::sync::watch;
 use configurator::Configurator;
 use state::State;
 
-pub use source::{ConfigurationSource, FieldOverride};
+pub use source::{ConfigurationSource, FieldOverride, SourceWriteError};
 pub use worker::read_request;
 
 /// Why a server cannot start.

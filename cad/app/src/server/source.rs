@@ -34,11 +34,12 @@ pub trait ConfigurationSource: Debug + Send + Sync {
     /// If there is none, or it cannot be read as text.
     fn read_text(&self) -> Result<String, Diagnostic>;
 
-    /// Replaces the followed file by `text`, completely or not at all.
+    /// Replaces the followed file, whose content is `expected`, or which is missing, by `text`,
+    /// completely or not at all.
     ///
     /// # Errors
-    /// If there is none, or it cannot be written.
-    fn write(&self, text: &str) -> Result<(), Diagnostic>;
+    /// [`SourceWriteError`]; the file is unchanged.
+    fn write(&self, expected: Option<&str>, text: &str) -> Result<(), SourceWriteError>;
 
     /// Returns the configuration in `text`, the content of the followed file, with options applied;
     /// unlike a design it is not validated as a whole.
@@ -65,6 +66,21 @@ pub trait ConfigurationSource: Debug + Send + Sync {
     /// output, and exits when standard input ends. `None` if the server answers long requests
     /// itself.
     fn worker(&self) -> Option<Command>;
+}
+
+/// Why the followed file is not written.
+#[derive(Clone, Debug)]
+pub enum SourceWriteError {
+    /// Another program has changed it.
+    Changed,
+    /// There is none, or it cannot be written.
+    Failed(Diagnostic),
+}
+
+impl From<Diagnostic> for SourceWriteError {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::Failed(diagnostic)
+    }
 }
 
 /// An option of the front end that overrides a field of the file.

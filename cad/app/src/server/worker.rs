@@ -9,6 +9,9 @@ use pinswitch_diagnostic::Diagnostic;
 /// Longest first line of a request in bytes, more than the digits of any length.
 const MAX_LENGTH_LINE: u64 = 32;
 
+/// Longest answer, in bytes: some times that of the longest table.
+const MAX_ANSWER_BYTES: u64 = 256 << 20;
+
 /// A process that answers one request. Dropping it ends the process.
 #[derive(Debug)]
 pub(super) struct Worker(Child);
@@ -44,7 +47,10 @@ impl Worker {
             stdin.write_all(&request)?;
             stdin.flush()?;
             let mut text = String::new();
-            stdout.read_to_string(&mut text)?;
+            stdout.by_ref().take(MAX_ANSWER_BYTES).read_to_string(&mut text)?;
+            if text.len() as u64 == MAX_ANSWER_BYTES {
+                return Err(std::io::Error::other("its answer is too long"));
+            }
             std::io::Result::Ok((text, stdin))
         });
         // Standard input stays open until the process has ended: without it the process would end

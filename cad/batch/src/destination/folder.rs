@@ -5,29 +5,25 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use pinswitch_store::{FolderLock, LockPolicy, is_dangling_symlink, read_own, temporary_file, write_help};
+
 use super::{DestinationError, PARTIAL};
+
+/// Longest file that is read, in bytes: some times the largest table.
+const MAX_FILE: u64 = 4 << 30;
 
 /// A folder with a subfolder for unfinished files.
 #[derive(Debug)]
 pub struct Folder {
     pub(super) root: PathBuf,
     partial: PathBuf,
+    policy: LockPolicy,
     counter: AtomicU64,
 }
 
 /// A lock on a destination; dropping it removes the folder for unfinished files.
 #[derive(Debug)]
-pub struct DestinationLock(Option<LockedFolder>);
-
-/// A locked folder.
-#[derive(Debug)]
-struct LockedFolder {
-    /// Keeps the lock until the folder is removed.
-    _file: File,
-    partial: PathBuf,
-    /// Folders that were created for the lock, the innermost first.
-    created: Vec<PathBuf>,
-}
+pub struct DestinationLock(Option<FolderLock>);
 
 impl DestinationLock {
     /// The lock of a destination that needs none.
@@ -39,13 +35,9 @@ impl DestinationLock {
 
 impl Drop for DestinationLock {
     fn drop(&mut self) {
-        if let Some(locked) = &self.0 {
-            // The next run removes the remaining files.
-            let _ = std::fs::remove_dir_all(&locked.partial);
-            for folder in &locked.created {
-                // Fails for a folder that is not empty, as intended.
-                let _ = std::fs::remove_dir(folder);
-            }
+        if let Some(lock) = &self.0 {
+            // The next run removes the remaining files. The lock removes the folders that it created.
+            let _ = std::fs::remove_dir_all(lock.folder());
         }
     }
 }
@@ -59,51 +51,16 @@ fn if_exists<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
     }
 }
 
-/// A builder of temporary files with the permissions of ordinary files: temporary files are private
-/// by default.
-#[cfg(unix)]
-pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    builder
-}
-
-/// A builder of temporary files.
-#[cfg(not(unix))]
-pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
-    tempfile::Builder::new()
-}
-
-/// Returns whether `path` or a parent of it is a dangling or cyclic symlink; for these, the system
-/// reports only that a file exists.
-pub fn is_dangling_symlink(path: &Path) -> bool {
-    let is_link = |path: &Path| std::fs::symlink_metadata(path).is_ok_and(|file| file.is_symlink());
-    path.ancestors().any(|path| is_link(path) && std::fs::metadata(path).is_err())
-}
-
-/// Returns the remedy for a file or folder at `path` that cannot be written.
-pub fn write_help(path: &Path, error: &std::io::Error) -> &'static str {
-    if is_dangling_symlink(path) {
-        return "remove it, or give another --out";
-    }
-    match error.kind() {
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
-            "a file is in place of a folder: move it away, or give another --out"
-        }
-        ErrorKind::IsADirectory => "a folder is in place of a file: move it away, or give another --out",
-        ErrorKind::WouldBlock => "wait for the other run or end it, or give another --out",
-        ErrorKind::NotFound => "create its folder, or give another --out",
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or give another --out",
-        ErrorKind::InvalidFilename => "give a shorter --out without characters that the system refuses",
-        _ => "give an --out that can be written",
-    }
-}
-
 impl Folder {
     /// The folder `root`, which need not exist.
     pub(super) fn new(root: &str, partial: &str) -> Self {
         let root = PathBuf::from(root);
-        Self { partial: root.join(partial), root, counter: AtomicU64::new(0) }
+        Self { partial: root.join(partial), root, policy: LockPolicy::Refuse, counter: AtomicU64::new(0) }
+    }
+
+    /// The folder with another policy for the lock.
+    pub(super) fn with_lock_policy(self, policy: LockPolicy) -> Self {
+        Self { policy, ..self }
     }
 
     /// The error of a system call on file `name`; an empty name is the folder itself.
@@ -132,7 +89,7 @@ impl Folder {
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {
-        if_exists(std::fs::read(self.root.join(name)))
+        read_own(&self.root.join(name), MAX_FILE)
     }
 
     pub(super) fn size(&self, name: &str) -> std::io::Result<Option<u64>> {
@@ -224,30 +181,11 @@ impl Folder {
         Ok(names.all(|name| name.to_string_lossy().starts_with(PARTIAL)))
     }
 
-    /// Locks the folder for one shard, and removes unfinished files of a killed run; `None` if
-    /// another process has the lock.
-    pub(super) fn lock(&self) -> std::io::Result<Option<DestinationLock>> {
-        let exists = |path: &&Path| path.as_os_str().is_empty() || path.exists();
-        let created: Vec<_> =
-            self.root.ancestors().take_while(|path| !exists(path)).map(Path::to_owned).collect();
-        std::fs::create_dir_all(&self.partial)?;
-        let path = self.partial.join("lock");
-        let file = File::create(&path)?;
-        if file.try_lock().is_err() {
-            return Ok(None);
-        }
-        // A run that ended in the meantime has removed the file that was opened here: locking it
-        // has no effect.
-        let opened = same_file::Handle::from_file(file.try_clone()?)?;
-        if same_file::Handle::from_path(&path).ok().as_ref() != Some(&opened) {
-            return Ok(None);
-        }
-        for entry in std::fs::read_dir(&self.partial)?.filter_map(Result::ok) {
-            if entry.file_name() != "lock" {
-                std::fs::remove_file(entry.path())?;
-            }
-        }
-        Ok(Some(DestinationLock(Some(LockedFolder { _file: file, partial: self.partial.clone(), created }))))
+    /// Locks the folder for one shard, and removes unfinished files of a killed run.
+    pub(super) fn lock(&self) -> std::io::Result<DestinationLock> {
+        let lock = FolderLock::take(&self.partial, self.policy)?;
+        lock.clear()?;
+        Ok(DestinationLock(Some(lock)))
     }
 
     /// Returns the path of a new unfinished file.

@@ -14,8 +14,9 @@ use std::sync::Arc;
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_store::{Busy, LockPolicy};
 
-pub use folder::{DestinationLock, Folder, is_dangling_symlink, temporary_file, write_help};
+pub use folder::{DestinationLock, Folder};
 #[cfg(feature = "cloud")]
 pub use store::Store;
 
@@ -102,12 +103,29 @@ impl Destination {
     /// other running process uses.
     ///
     /// # Errors
-    /// A URL of an unknown store.
+    /// An empty path, or a URL of an unknown store.
     pub fn open(text: &str, partial: &str) -> Result<Self, DestinationError> {
+        let folder = |path: &str| Ok(Self::Folder(Folder::new(path, partial)));
         match text.strip_prefix("file://") {
-            Some(path) => Ok(Self::Folder(Folder::new(&folder_of_url(text, path)?, partial))),
-            None if !text.contains("://") => Ok(Self::Folder(Folder::new(text, partial))),
+            Some(path) => folder(&folder_of_url(text, path)?),
+            None if text.is_empty() => Err(DestinationError::new(
+                text.to_owned(),
+                "the path is empty",
+                "give a folder with --out",
+                true,
+            )),
+            None if !text.contains("://") => folder(text),
             None => Self::open_store(text),
+        }
+    }
+
+    /// The destination with another policy than [`LockPolicy::Refuse`] for a folder in use.
+    #[must_use]
+    pub fn with_lock_policy(self, policy: LockPolicy) -> Self {
+        match self {
+            Self::Folder(folder) => Self::Folder(folder.with_lock_policy(policy)),
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => self,
         }
     }
 
@@ -290,10 +308,13 @@ impl Destination {
             #[cfg(feature = "cloud")]
             Self::Store(_) => return Ok(DestinationLock::unlocked()),
         };
-        let lock = folder.lock().map_err(|e| folder.write_error("", e))?;
-        lock.ok_or_else(|| {
-            let help = "wait for it or end it, or give another --out";
-            DestinationError::new(self.name(), "another run is writing the same shard here", help, true)
+        folder.lock().map_err(|e| match e.get_ref().and_then(|e| e.downcast_ref::<Busy>()) {
+            Some(busy) => {
+                let problem = format!("another run is writing the same shard here{}", busy.holder());
+                let help = "wait for it (--wait SECONDS) or end it, or give another --out";
+                DestinationError::new(self.name(), problem, help, true)
+            }
+            None => folder.write_error("", e),
         })
     }
 
@@ -394,6 +415,12 @@ mod tests {
             assert!(error.starts_with(&format!("{url}: ")), "{error}");
         }
         assert_eq!(Destination::open("file:///a%20b", "").unwrap().name(), "/a b");
+    }
+
+    #[test]
+    fn an_empty_path_is_refused() {
+        let error = Destination::open("", "").unwrap_err().to_string();
+        assert_eq!(error, "the path is empty; give a folder with --out");
     }
 
     #[test]

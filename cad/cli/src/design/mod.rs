@@ -24,7 +24,7 @@ use super::calibrated_curve::read_model;
 use super::source::Source;
 use super::terminal::to_json;
 use super::{Failure, print_json, print_text};
-use crate::write::write_set;
+use crate::write::SetFolder;
 use progress::Bar;
 use request_options::RequestOptions;
 
@@ -105,6 +105,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => None,
     };
+    // Locked before the search, which may take minutes.
+    let out = arguments.out.as_deref().map(SetFolder::lock).transpose()?;
     let published = PublishedPhysics::default();
     let belief: &dyn Belief = match &calibrated {
         Some(calibrated) => calibrated,
@@ -129,11 +131,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         proposals: &found.proposals,
         blocked: found.blocked.as_ref(),
     };
-    if let Some(folder) = &arguments.out {
+    if let Some(out) = out {
         let files = files(&found, &report, &request)?;
-        write_set(folder, &files)?;
+        out.replace(&files)?;
         let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
-        log::info!("{}: {}", folder.display(), names.join(", "));
+        log::info!("{}: {}", out.folder().display(), names.join(", "));
     }
     if arguments.json {
         print_json(&report)?;

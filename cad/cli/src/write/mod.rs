@@ -2,19 +2,18 @@
 //!
 //! A folder has a lock, so that one process writes at a time. The next run removes the unfinished files of a killed run.
 
-mod folder_lock;
 mod record;
 mod set_folder;
-mod steps;
 
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::Duration;
 
-use pinswitch_batch::{is_dangling_symlink, temporary_file, write_help};
 use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_store::{LockPolicy, is_dangling_symlink, replace_file, write_help};
 use pinswitch_switch::output::OutputFile;
 
-use folder_lock::{FolderLock, LockMode};
 pub(crate) use record::source_of_set_with;
 pub use set_folder::{PublishError, SetFolder};
 
@@ -22,8 +21,24 @@ use crate::Failure;
 use crate::input::was_read;
 pub use crate::provenance::ManifestError;
 
-/// Begin of the names of temporary files.
-const TEMPORARY_PREFIX: &str = ".pinswitch-";
+/// How long this process waits for folders that others write into; set once, from `--wait`.
+static LOCK_POLICY: OnceLock<LockPolicy> = OnceLock::new();
+
+/// Longest `--wait`, in seconds: a day.
+pub(crate) const MAX_WAIT_S: u64 = 86_400;
+
+/// Lets every later lock of this process wait at most this long.
+pub(crate) fn wait_for_locks(seconds: u64) {
+    let policy =
+        if seconds == 0 { LockPolicy::Refuse } else { LockPolicy::Wait(Duration::from_secs(seconds)) };
+    // The first call decides; there is one.
+    let _ = LOCK_POLICY.set(policy);
+}
+
+/// Returns what this process does while another one writes into a folder.
+pub(crate) fn lock_policy() -> LockPolicy {
+    LOCK_POLICY.get().copied().unwrap_or(LockPolicy::Refuse)
+}
 
 /// A file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -82,6 +97,11 @@ impl From<WriteError> for Failure {
     }
 }
 
+/// The error of the system for the file or folder at `path`.
+pub(crate) fn write_error(path: &Path, source: std::io::Error) -> WriteError {
+    WriteError::at(path)(source)
+}
+
 /// Describes the obstacle, which the message of the system ("File exists") does not name.
 fn reason(path: &Path, error: &std::io::Error) -> String {
     match error.kind() {
@@ -106,40 +126,7 @@ fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
 /// [`WriteError`]; the old file is unchanged.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     refuse_obstacle(path)?;
-    write_whole(path, bytes)
-}
-
-/// Writes `bytes` to a file that was read in order to change it. If `path` is a symlink, writes its target.
-///
-/// # Errors
-/// As [`write_file`].
-pub fn write_back(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let file = if path.is_symlink() { path.canonicalize() } else { Ok(path.to_owned()) };
-    write_whole(&file.map_err(WriteError::at(path))?, bytes)
-}
-
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    match std::fs::metadata(path) {
-        Ok(existing) if existing.is_dir() => {
-            return Err(WriteError::at(path)(ErrorKind::IsADirectory.into()));
-        }
-        // A pipe or a terminal is written to, not replaced by a file.
-        Ok(existing) if !existing.is_file() => {
-            return std::fs::write(path, bytes).map_err(WriteError::at(path));
-        }
-        _ => {}
-    }
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    if !folder.is_dir() {
-        return Err(WriteError::at(path)(ErrorKind::NotFound.into()));
-    }
-    let lock = FolderLock::take(folder, LockMode::WaitUntilFree).map_err(WriteError::at(path))?;
-    lock.remove_unfinished().map_err(WriteError::at(path))?;
-    let mut temporary =
-        temporary_file().prefix(TEMPORARY_PREFIX).tempfile_in(folder).map_err(WriteError::at(path))?;
-    temporary.write_all(bytes).map_err(WriteError::at(path))?;
-    temporary.persist(path).map_err(|e| WriteError::at(path)(e.error))?;
-    Ok(())
+    replace_file(path, bytes, lock_policy()).map_err(WriteError::at(path))
 }
 
 /// Writes all files into `folder`, which is created if necessary. Every file is complete on disk before the first one gets
@@ -148,21 +135,7 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 /// # Errors
 /// [`WriteError`] with the path.
 pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> {
-    SetFolder::wait(folder)?.replace(files)
-}
-
-/// As [`write_set`], of files that a later command reads: lists them in `provenance.json` in `folder` with `command` and
-/// the files that it has read. Entries of `stale` files are removed from the manifest.
-///
-/// # Errors
-/// [`WriteError`] with the path.
-pub(crate) fn write_listed(
-    folder: &Path,
-    files: &[OutputFile],
-    command: &str,
-    stale: &[&str],
-) -> Result<(), WriteError> {
-    SetFolder::wait(folder)?.replace_listed(files, command, stale)
+    SetFolder::lock(folder)?.replace(files)
 }
 
 #[cfg(test)]
@@ -184,22 +157,6 @@ mod tests {
         write_set(folder.path(), &[file("a"), file("b")]).unwrap();
         assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn writing_back_keeps_a_symlink() {
-        let place = tempfile::tempdir().unwrap();
-        let [file, link] = ["there/mine.toml", "link.toml"].map(|name| place.path().join(name));
-        std::fs::create_dir(place.path().join("there")).unwrap();
-        std::fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink("there/mine.toml", &link).unwrap();
-        write_back(&link, b"new").unwrap();
-        assert!(link.is_symlink());
-        assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
-        std::fs::remove_file(&file).unwrap();
-        let error = write_back(&link, b"new").unwrap_err().to_string();
-        assert!(error.contains("dangling symlink"), "{error}");
     }
 
     #[cfg(unix)]

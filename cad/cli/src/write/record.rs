@@ -1,7 +1,6 @@
 //! The files that earlier runs have written into a folder, from its manifest and from the journal of a killed run.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::ErrorKind;
 use std::path::{Component, Path};
 
 use pinswitch_switch::documents::SourceEntry;
@@ -11,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::WriteError;
-use super::folder_lock::JOURNAL;
+use pinswitch_store::{JOURNAL, read_own};
 
 /// Files that pinswitch wrote, with the SHA-256 of each content that it gave them, and their source.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -98,16 +97,15 @@ pub(super) fn is_plain(name: &str) -> bool {
     matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
 }
 
-/// Reads a file; `None` if it does not exist.
+/// Longest file under a name of pinswitch that is read, in bytes: some times the largest part.
+const MAX_EXISTING: u64 = 4 << 30;
+
+/// Reads a file under a name that pinswitch gives; `None` if it does not exist.
 ///
 /// # Errors
-/// The error of the file system.
+/// As [`read_own`].
 pub(super) fn read_existing(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
-    match std::fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(e),
-    }
+    read_own(path, MAX_EXISTING)
 }
 
 fn sha256(bytes: &[u8]) -> String {

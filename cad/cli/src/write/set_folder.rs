@@ -12,15 +12,13 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::output::OutputFile;
 
-use super::folder_lock::{FolderLock, JOURNAL, LockMode};
+use pinswitch_store::{FolderLock, JOURNAL, LockPolicy, SINGLE_FILE_TIME, Staging, Step};
+
 use super::record::{Record, is_plain, read_existing};
-use super::steps::Step;
-use super::{WriteError, refuse_obstacle};
+use super::{WriteError, lock_policy, refuse_obstacle};
 use crate::input::sources_from;
 use crate::provenance::{PROVENANCE, Provenance};
 
-/// Name of the folder for staged files.
-const STAGED: &str = ".pinswitch-staged";
 /// Most characters of a source in an error.
 const MAX_SOURCE: usize = 120;
 
@@ -80,7 +78,7 @@ impl From<PublishError> for Diagnostic {
 #[derive(Debug)]
 pub struct SetFolder {
     folder: PathBuf,
-    lock: FolderLock,
+    staging: Staging,
 }
 
 impl SetFolder {
@@ -88,20 +86,29 @@ impl SetFolder {
     /// that stays empty is removed at the end.
     ///
     /// # Errors
-    /// [`WriteError`] if another process writes there, or the folder cannot be written.
+    /// [`WriteError`] if another process writes there for longer than `--wait`, or the folder cannot be written.
     pub fn lock(folder: &Path) -> Result<Self, WriteError> {
-        Self::locked(folder, LockMode::FailIfBusy)
+        Self::locked(folder, lock_policy())
     }
 
-    /// As [`Self::lock`], but waits until no other process writes there.
-    pub(super) fn wait(folder: &Path) -> Result<Self, WriteError> {
-        Self::locked(folder, LockMode::WaitUntilFree)
+    /// As [`Self::lock`], for a few files next to others: waits for a second at least, so that commands that write into
+    /// the same folder at the same time succeed.
+    ///
+    /// # Errors
+    /// As [`Self::lock`].
+    pub(crate) fn shared(folder: &Path) -> Result<Self, WriteError> {
+        Self::locked(folder, lock_policy().at_least(SINGLE_FILE_TIME))
     }
 
-    fn locked(folder: &Path, mode: LockMode) -> Result<Self, WriteError> {
-        let lock = FolderLock::take(folder, mode).map_err(WriteError::at(folder))?;
-        lock.remove_unfinished().map_err(WriteError::at(folder))?;
-        Ok(Self { folder: folder.to_owned(), lock })
+    /// Returns the folder.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    fn locked(folder: &Path, policy: LockPolicy) -> Result<Self, WriteError> {
+        let lock = FolderLock::take(folder, policy);
+        let staging = lock.and_then(Staging::new).map_err(WriteError::at(folder))?;
+        Ok(Self { folder: folder.to_owned(), staging })
     }
 
     /// Whether a set made from `source` may be written here.
@@ -140,30 +147,41 @@ impl SetFolder {
     ///
     /// # Errors
     /// [`WriteError`].
-    pub(super) fn replace(&self, files: &[OutputFile]) -> Result<(), WriteError> {
-        self.take(&self.replacement(files)?)
+    pub(crate) fn replace(&self, files: &[OutputFile]) -> Result<(), WriteError> {
+        self.take(&self.replacement(files, &[])?)
     }
 
-    /// Stages `files`; returns the steps that replace them.
-    fn replacement(&self, files: &[OutputFile]) -> Result<Vec<Step>, WriteError> {
+    /// Stages `files`; returns the steps that replace them and remove the `stale` ones.
+    fn replacement(&self, files: &[OutputFile], stale: &[&str]) -> Result<Vec<Step>, WriteError> {
         self.refuse_obstacles(files)?;
-        let steps = self.stage(files)?;
-        let first = steps.last().map(|seal| Step::Remove(seal.target().clone()));
-        Ok(first.into_iter().chain(steps).collect())
+        let mut steps = self.stage(files)?;
+        let seal = steps.pop();
+        let removed = stale.iter().map(|name| self.staging.remove(name));
+        let first = seal.as_ref().map(|seal| Step::Remove(seal.target().clone()));
+        Ok(first.into_iter().chain(steps).chain(removed).chain(seal).collect())
     }
 
-    /// As [`Self::replace`], and lists the files in the manifest of the folder, with every file that this process has read
-    /// as their source. Entries of `stale` files are removed.
+    /// As [`Self::replace`], and removes the `stale` files, and lists the files in the manifest of the folder, with every
+    /// file that this process has read as their source.
     ///
     /// # Errors
     /// [`WriteError`]; of a damaged or foreign manifest before anything changes.
-    pub(super) fn replace_listed(
+    pub(crate) fn replace_listed(
         &self,
         files: &[OutputFile],
         command: &str,
         stale: &[&str],
     ) -> Result<(), WriteError> {
-        self.replace(&self.listed(files, command, stale)?)
+        self.take(&self.replacement(&self.listed(files, command, stale)?, stale)?)
+    }
+
+    /// Reads the file `name` in this folder; `None` if it does not exist.
+    ///
+    /// # Errors
+    /// [`WriteError`] for a pipe, a device, or a file that cannot be read.
+    pub(crate) fn existing(&self, name: &str) -> Result<Option<Vec<u8>>, WriteError> {
+        let path = self.folder.join(name);
+        read_existing(&path).map_err(WriteError::at(&path))
     }
 
     /// Returns `files` with the manifest that lists them, before the last file.
@@ -221,18 +239,13 @@ impl SetFolder {
         Record::read(&self.folder)
     }
 
-    /// Writes the files into the staging folder; returns the steps that rename them.
+    /// Stages the files; returns the steps that rename them.
     fn stage(&self, files: &[OutputFile]) -> Result<Vec<Step>, WriteError> {
-        let staged = self.folder.join(STAGED);
-        std::fs::create_dir_all(&staged).map_err(WriteError::at(&staged))?;
-        files
-            .iter()
-            .map(|file| {
-                let (from, to) = (staged.join(&file.name), self.folder.join(&file.name));
-                std::fs::write(&from, &file.bytes).map_err(WriteError::at(&to))?;
-                Ok(Step::Rename { from, to })
-            })
-            .collect()
+        let staged = |file: &OutputFile| {
+            let step = self.staging.stage(&file.name, &file.bytes);
+            step.map_err(WriteError::at(&self.folder.join(&file.name)))
+        };
+        files.iter().map(staged).collect()
     }
 
     fn take(&self, steps: &[Step]) -> Result<(), WriteError> {
@@ -277,7 +290,7 @@ impl SetFolder {
             let path = self.folder.join(name);
             match std::fs::symlink_metadata(&path) {
                 Ok(existing) if existing.is_file() => {
-                    let bytes = std::fs::read(&path).map_err(WriteError::at(&path))?;
+                    let bytes = read_existing(&path).map_err(WriteError::at(&path))?.unwrap_or_default();
                     if before.wrote(name, &bytes) { stale.push(path) } else { changed.push(name.clone()) }
                 }
                 Ok(_) => changed.push(name.clone()),
@@ -285,13 +298,6 @@ impl SetFolder {
             }
         }
         Ok((stale, changed))
-    }
-}
-
-impl Drop for SetFolder {
-    fn drop(&mut self) {
-        // The next run removes files that cannot be removed now.
-        let _ = self.lock.remove_unfinished();
     }
 }
 
@@ -344,7 +350,7 @@ mod tests {
         plan.steps.iter().take(steps).for_each(|step| step.take().unwrap());
         // The lock ends with the process; the staged files stay.
         let half = folder.join(".pinswitch-half");
-        let _ = std::fs::rename(folder.join(STAGED), &half);
+        let _ = std::fs::rename(folder.join(".pinswitch-staged"), &half);
         drop(place);
         std::fs::create_dir_all(&half).unwrap();
         std::fs::write(half.join("x"), "half").unwrap();
@@ -400,7 +406,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let folder = SetFolder::lock(place.path()).unwrap();
         let steps =
-            |text: &str| folder.replacement(&folder.listed(&set(text), "test", &[]).unwrap()).unwrap();
+            |text: &str| folder.replacement(&folder.listed(&set(text), "test", &[]).unwrap(), &[]).unwrap();
         let count = steps("old").len();
         for killed in 0..=count {
             folder.take(&steps("old")).unwrap();

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} triangles, {} faults", examination.facts.triangles, examination.faults.len());
     examination.faults.iter().for_each(|fault| println!("  {fault}"));
 
-    let step = step_part(StepPart { name: "bracket", solid: &bracket });
+    let step = step_part(StepPart { name: "bracket", solid: &bracket }, Vector3::zeros());
     for (name, bytes) in [("bracket.stl", stl_bytes(&mesh)?), ("bracket.step", step.into_bytes())] {
         let path = folder.join(name);
         std::fs::write(&path, &bytes)?;

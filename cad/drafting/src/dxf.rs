@@ -1,8 +1,8 @@
 //! DXF (R12), in millimetres of the part.
 //!
 //! Every view is a block at 1:1, so that measurements in it are those of the part. In model space the sheets are side by
-//! side, each scaled so that its main views are 1:1; details are inserted at the scale in their title. R12 has no unit and no
-//! time stamp, and every CAD program reads it.
+//! side, each scaled so that its main views are 1:1; details are inserted at the scale in their title. R12 has no unit; the
+//! variable of later versions for it, millimetres, is written all the same. The file has no time stamp.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ const GAP_MM: f64 = 20.0;
 #[must_use]
 pub fn drawing_dxf(sheets: &[Sheet]) -> String {
     let mut text =
-        String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$MEASUREMENT\n70\n1\n0\nENDSEC\n");
+        String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n0\nENDSEC\n");
     tables(&mut text);
     text += "0\nSECTION\n2\nBLOCKS\n";
     for sheet in sheets {

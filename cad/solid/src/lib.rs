@@ -34,7 +34,7 @@
 //!
 //! let stl = stl_bytes(&mesh)?;
 //! assert_eq!(stl.len(), 84 + 50 * mesh.triangles.len());
-//! assert!(step_part(StepPart { name: "washer", solid: &washer }).contains("CYLINDRICAL_SURFACE"));
+//! assert!(step_part(StepPart { name: "washer", solid: &washer }, Vector3::zeros()).contains("CYLINDRICAL_SURFACE"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -25,6 +25,7 @@ pub mod design_search;
 pub mod documents;
 pub mod feasibility;
 pub mod formats;
+pub mod hardware;
 pub mod output;
 mod parallel;
 pub mod parts;

@@ -1,6 +1,5 @@
 //! Scenes to render: the assembly, its exploded view, its steps, and the print plates.
 
-mod rig_hardware;
 mod stage;
 
 use crate::built::{Built, BuiltPart};

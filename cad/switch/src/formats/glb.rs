@@ -3,6 +3,7 @@
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::hardware::hardware;
 use crate::output::{OutputFile, SetError};
 use crate::parts::Material;
 use crate::prediction::Prediction;
@@ -16,11 +17,14 @@ pub(super) const FORMAT: Format = Format {
     make,
 };
 
+/// Colour of bought steel: red, green, blue.
+const STEEL: [u8; 3] = [158, 160, 164];
 /// Opacity of silicone.
 const SILICONE_OPACITY: f64 = 0.78;
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
-    let placed: Vec<(&str, Mesh, GlbMaterial<'_>)> = built
+    let bought = hardware(built.design());
+    let mut placed: Vec<(&str, Mesh, GlbMaterial<'_>)> = built
         .assembly()
         .filter_map(|body| {
             let mesh = body.part.pose?.apply(body.mesh.clone());
@@ -34,6 +38,12 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
             Some((body.part.name.as_str(), mesh, material))
         })
         .collect();
+    for body in &bought {
+        let mesh = body.solid.mesh(built.design().tolerance());
+        let mesh = mesh.map_err(SetError::encoding)?;
+        let material = GlbMaterial { name: "steel", colour: STEEL, opacity: 1.0, metal: true };
+        placed.push((&body.name, mesh, material));
+    }
     let bodies: Vec<GlbBody<'_>> =
         placed.iter().map(|(name, mesh, material)| GlbBody { name, mesh, material: *material }).collect();
     let bytes = glb(manifest.name.as_ref(), &bodies).map_err(SetError::encoding)?;

@@ -1,15 +1,13 @@
 //! Pictures of the steps of the assembly: present bodies in grey, and added bodies in colour, at a distance.
 
-use super::rig_hardware::{in_the_plate, on_the_bolt};
 use crate::built::{Built, MeshedBody};
 use crate::config::MountKind;
 use crate::design::Design;
-use crate::documents::{BEARING_MM, bill_of_materials};
+use crate::documents::BEARING_MM;
+use crate::hardware::{Hardware, HardwareKind, hardware};
 use crate::parts::{Part, Role, SPACER};
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
-use pinswitch_solid::profile::{Contour, Point2, polar};
 use pinswitch_solid::render::{Body, View};
-use pinswitch_solid::solid::Solid;
 
 /// A step of the assembly, named after the bodies that it adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,9 +45,9 @@ const RISE_DEG: f64 = 32.0;
 const SHELL_GREY: [u8; 3] = [224, 224, 222];
 const BED_GREY: [u8; 3] = [202, 204, 206];
 const PLATE_GREY: [u8; 3] = [214, 214, 212];
-pub(super) const METAL_GREY: [u8; 3] = [158, 160, 164];
+const METAL_GREY: [u8; 3] = [158, 160, 164];
 /// Colour of added steel: pins, screws, dowels.
-pub(super) const STEEL: [u8; 3] = [206, 72, 52];
+const STEEL: [u8; 3] = [206, 72, 52];
 /// Colour of the added tendon.
 const TENDON: [u8; 3] = [38, 128, 96];
 /// Colour of an added mount.
@@ -70,12 +68,12 @@ const SPARE_APART_MM: f64 = 5.0;
 const SMALL_APART_MM: f64 = 6.0;
 
 /// A body of a step in its position.
-pub(super) struct Item {
-    pub(super) mesh: Mesh,
-    pub(super) grey: [u8; 3],
-    pub(super) colour: [u8; 3],
+struct Item {
+    mesh: Mesh,
+    grey: [u8; 3],
+    colour: [u8; 3],
     /// Displacement while its step adds it, in the frame of the assembly.
-    pub(super) apart: Vector3,
+    apart: Vector3,
 }
 
 /// Returns the view of a step: from the side of the left support, unless a large plate would hide the added bodies.
@@ -160,18 +158,26 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
         }
         Stage::Mount => {
             let plate = mount(|part| !is_spacer(part), z(-MOUNT_APART_MM));
-            plate.chain(in_the_plate(design, -MOUNT_APART_MM)).collect()
+            let is_in_plate =
+                |kind| matches!(kind, HardwareKind::Bolt | HardwareKind::StopScrew | HardwareKind::StopNut);
+            plate.chain(bought(design, is_in_plate, |_| -MOUNT_APART_MM)).collect()
         }
         Stage::Pulley => {
             let colour = Role::Accessory.colour();
             let pulley = of(|role| role == Role::Accessory, PLATE_GREY, colour, z(PULLEY_APART_MM));
-            let bought = on_the_bolt(design, [PULLEY_APART_MM - BEARING_MM, NUT_APART_MM]);
+            let is_on_bolt =
+                |kind| matches!(kind, HardwareKind::Bearing | HardwareKind::Washer | HardwareKind::BoltNut);
+            let apart = |body: &Hardware| match body.kind {
+                HardwareKind::Bearing => PULLEY_APART_MM - BEARING_MM,
+                _ => NUT_APART_MM,
+            };
+            let bought = bought(design, is_on_bolt, apart);
             mount(is_spacer, z(SPACER_APART_MM)).chain(pulley).chain(bought).collect()
         }
         Stage::Tendon => of(|role| role == Role::Tendon, METAL_GREY, TENDON, y(TENDON_APART_MM)),
-        Stage::Inserts => inserts(design),
-        Stage::Dowels => dowels(design),
-        Stage::Fasteners => fasteners(design),
+        Stage::Inserts => put_in(design, |kind| kind == HardwareKind::Insert),
+        Stage::Dowels => put_in(design, |kind| kind == HardwareKind::Dowel),
+        Stage::Fasteners => put_in(design, |kind| matches!(kind, HardwareKind::Screw | HardwareKind::Nut)),
     }
 }
 
@@ -188,79 +194,30 @@ fn spares(design: &Design, pin: Option<&Mesh>) -> Vec<Item> {
     pin.into_iter().flat_map(|pin| (0..number).map(move |i| spare(pin, i))).collect()
 }
 
-/// A prism of steel between two heights; `None` for an outline without area.
-fn steel(design: &Design, outline: &Contour, [from_mm, to_mm]: [f64; 2], apart_mm: f64) -> Option<Item> {
-    let mesh = Solid::prism(outline, &[], from_mm, to_mm, 0.0).ok()?.mesh(design.tolerance()).ok()?;
-    Some(Item { mesh, grey: METAL_GREY, colour: STEEL, apart: Vector3::new(0.0, 0.0, apart_mm) })
+/// Bought bodies of some kinds, each at a distance along the axis.
+fn bought(
+    design: &Design,
+    is_wanted: impl Fn(HardwareKind) -> bool,
+    apart_mm: impl Fn(&Hardware) -> f64,
+) -> Vec<Item> {
+    let item = |body: Hardware| {
+        let mesh = body.solid.mesh(design.tolerance()).ok()?;
+        let apart = Vector3::new(0.0, 0.0, apart_mm(&body));
+        Some(Item { mesh, grey: METAL_GREY, colour: STEEL, apart })
+    };
+    hardware(design).into_iter().filter(|body| is_wanted(body.kind)).filter_map(item).collect()
 }
 
-fn on_fasteners(design: &Design) -> Vec<Point2> {
-    design.fastener_angles_rad().into_iter().map(|angle| polar(design.fastener_radius_mm(), angle)).collect()
-}
-
-/// An insert at each end of each hole of the shell.
-fn inserts(design: &Design) -> Vec<Item> {
-    let Some([bore_mm, length_mm]) = design.fastening().insert_mm else { return Vec::new() };
-    let width = design.configuration().shell.width_mm;
-    let pair = |at: Point2| {
-        let outline = Contour::circle(at, bore_mm / 2.0);
-        let apart = length_mm + SMALL_APART_MM;
-        let left = steel(design, &outline, [0.0, length_mm], -apart);
-        [left, steel(design, &outline, [width - length_mm, width], apart)]
-    };
-    on_fasteners(design).into_iter().flat_map(pair).flatten().collect()
-}
-
-fn dowels(design: &Design) -> Vec<Item> {
-    let c = design.configuration();
-    let (length, middle) = (design.dowel_length_mm(), c.shell.width_mm / 2.0);
-    let one = |angle: f64| {
-        let at = polar(design.fastener_radius_mm(), angle);
-        let outline = Contour::circle(at, c.fasteners.dowel_diameter_mm / 2.0);
-        steel(design, &outline, [middle - length / 2.0, middle + length / 2.0], length + SMALL_APART_MM)
-    };
-    design.dowel_angles_rad().into_iter().filter_map(one).collect()
-}
-
-/// Screws with heads and nuts, with the lengths of the bill of materials.
-fn fasteners(design: &Design) -> Vec<Item> {
-    let Some(bill) = bill_of_materials(design).fasteners else { return Vec::new() };
-    let c = design.configuration();
-    let fastening = design.fastening();
-    let hole = c.fasteners.hole_diameter_mm;
-    let shank = hole / 2.0 * 0.92;
-    let [head_wide, head_high] = fastening.thread.map_or([1.8 * hole, hole], |t| t.head_mm);
-    let [flats, nut_high] = fastening.thread.map_or([1.8 * hole, 0.8 * hole], |t| t.nut_mm);
-    let sunk = fastening.counterbore.map_or(0.0, |r| r.depth_mm);
-    let mount_mm = if c.mount.kind != MountKind::None { c.mount.plate_mm } else { 0.0 };
-    let left_face = -(c.support.plate_mm + mount_mm) + sunk;
-    let right_face = c.shell.width_mm + c.support.plate_mm;
-    let screw = |at: Point2, face: f64, inwards: f64, length_mm: f64| {
-        let apart = -inwards * (length_mm + SMALL_APART_MM);
-        let ordered = |a: f64, b: f64| [a.min(b), a.max(b)];
-        let stem = ordered(face, face + inwards * length_mm);
-        let head = ordered(face - inwards * head_high, face);
-        let part = |radius, span| steel(design, &Contour::circle(at, radius), span, apart);
-        [part(shank, stem), part(head_wide / 2.0, head)]
-    };
-    let nut = |at: Point2| {
-        let seat = right_face - fastening.nut_trap.map_or(0.0, |r| r.depth_mm);
-        let corner =
-            |i: u32| at + polar(flats / 3f64.sqrt(), f64::from(i) * std::f64::consts::FRAC_PI_3).coords;
-        let outline = Contour::polygon((0..6).rev().map(corner).collect());
-        steel(design, &outline, [seat, seat + nut_high], SUPPORT_APART_MM)
-    };
-    let mut all = Vec::new();
-    for at in on_fasteners(design) {
-        all.extend(screw(at, left_face, 1.0, bill.length_mm).into_iter().flatten());
-        if bill.inserts > 0 {
-            let length_mm = bill.right_length_mm.unwrap_or(bill.length_mm);
-            all.extend(screw(at, right_face - sunk, -1.0, length_mm).into_iter().flatten());
-        } else {
-            all.extend(nut(at));
-        }
-    }
-    all
+/// Bought bodies that are put in from outside: each at its length and [`SMALL_APART_MM`].
+fn put_in(design: &Design, is_wanted: impl Fn(HardwareKind) -> bool) -> Vec<Item> {
+    bought(design, is_wanted, |body| {
+        let length = body.solid.bounds().map_or(0.0, |(low, high)| high.z - low.z);
+        let apart = match body.kind {
+            HardwareKind::Nut => SUPPORT_APART_MM,
+            _ => length + SMALL_APART_MM,
+        };
+        if body.from_right { apart } else { -apart }
+    })
 }
 
 #[cfg(test)]
@@ -303,29 +260,6 @@ mod tests {
         let plain = built("");
         for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley] {
             assert!(items(&plain, stage).is_empty(), "{stage:?}");
-        }
-    }
-
-    /// Screws start at the outer face. Their tips are beyond the nut, or in the shell between the inserts.
-    #[test]
-    fn screws_have_the_length_of_the_bill() {
-        for (text, tips_meet) in [("", false), ("[fasteners]\nkind = \"insert\"\n", true)] {
-            let built = built(text);
-            let c = built.design().configuration();
-            let all = items(&built, Stage::Fasteners);
-            let span = |item: &Item| item.mesh.bounds().map(|(low, high)| (low.z, high.z)).unwrap();
-            let longest = |item: &&Item| span(item).1 - span(item).0 > 4.0;
-            let stems: Vec<(f64, f64)> = all.iter().filter(longest).map(span).collect();
-            assert_eq!(stems.len(), if tips_meet { 4 } else { 2 });
-            for (low, high) in stems {
-                let outer = c.shell.width_mm + c.support.plate_mm;
-                assert!(low >= -c.support.plate_mm - 1e-9 || !tips_meet, "{low}");
-                assert!(tips_meet || high > outer, "{high}");
-                assert!(
-                    !tips_meet || high - low < c.support.plate_mm + c.shell.width_mm / 2.0,
-                    "{low} to {high}"
-                );
-            }
         }
     }
 }

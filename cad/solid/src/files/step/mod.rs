@@ -37,9 +37,9 @@ struct Product {
     frame: Id,
 }
 
-/// Returns the STEP file of one part, in the frame of the axis of the pulley.
-pub fn step_part(part: StepPart<'_>) -> String {
-    let mut out = StepWriter::default();
+/// Returns the STEP file of one part, moved by `shift_mm`: the frame of its mesh on the print bed.
+pub fn step_part(part: StepPart<'_>, shift_mm: Vector3) -> String {
+    let mut out = StepWriter::shifted(shift_mm);
     let contexts = contexts(&mut out);
     solid_product(&mut out, &contexts, part);
     out.file(part.name)

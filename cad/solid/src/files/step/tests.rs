@@ -32,7 +32,7 @@ fn twisted_sector() -> Solid {
 }
 
 fn text(solid: &Solid) -> String {
-    step_part(StepPart { name: "plate", solid })
+    step_part(StepPart { name: "plate", solid }, Vector3::zeros())
 }
 
 fn solids(text: &str) -> Result<Vec<StepSolid>, StepError> {

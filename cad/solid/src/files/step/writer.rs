@@ -20,9 +20,16 @@ impl std::fmt::Display for Id {
 pub(super) struct StepWriter {
     data: String,
     last: usize,
+    /// Added to every point.
+    shift: Vector3,
 }
 
 impl StepWriter {
+    /// A file in which everything is moved by `shift_mm`.
+    pub(super) fn shifted(shift_mm: Vector3) -> Self {
+        Self { shift: shift_mm, ..Self::default() }
+    }
+
     /// Adds an entity and returns its number.
     pub(super) fn add(&mut self, entity: &str) -> Id {
         self.last += 1;
@@ -31,6 +38,7 @@ impl StepWriter {
     }
 
     pub(super) fn point(&mut self, p: Point3) -> Id {
+        let p = p + self.shift;
         self.add(&format!("CARTESIAN_POINT('',({},{},{}))", real(p.x), real(p.y), real(p.z)))
     }
 
@@ -46,7 +54,7 @@ impl StepWriter {
 
     /// Adds the frame of the model.
     pub(super) fn origin(&mut self) -> Id {
-        self.placement(Point3::origin(), Vector3::z(), Vector3::x())
+        self.placement(Point3::origin() - self.shift, Vector3::z(), Vector3::x())
     }
 
     /// Returns the file, with the name `name`.

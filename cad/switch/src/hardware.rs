@@ -1,0 +1,317 @@
+//! Bought hardware of the assembly as exact solids: inserts, dowels, screws, nuts, and the hardware of a mounting plate.
+//!
+//! Lengths are those of the bill of materials. Threads are smooth: a shank has the nominal diameter.
+
+use crate::config::MountKind;
+use crate::design::{AXLE_HEAD_MM, Design, Hole, Recess, STOP_SCREW, Thread, axle_recess, stop_recess};
+use crate::documents::{AXLE_NUT_MM, BEARING_MM, bill_of_materials};
+use crate::parts::spacer_mm;
+use pinswitch_solid::profile::{Contour, Point2, polar};
+use pinswitch_solid::solid::{Facing, Solid};
+
+/// Radii of the M8 bolt, its washer (ISO 7089) and the rings of a 608 bearing (ISO 15), mm.
+const AXLE_MM: f64 = 4.0;
+const WASHER_MM: [f64; 2] = [4.2, 8.0];
+const BEARING_RING_MM: [f64; 2] = [4.0, 11.0];
+/// Thickness of the washer, mm.
+const WASHER_HIGH_MM: f64 = 1.6;
+/// Radius of an M3 shank, mm.
+const STOP_SHANK_MM: f64 = 1.5;
+/// Share of a hole that a screw without a metric thread fills.
+const SHANK_SHARE: f64 = 0.92;
+
+/// The kind of a bought body, which is the begin of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HardwareKind {
+    /// A heat-set insert.
+    Insert,
+    /// A dowel.
+    Dowel,
+    /// A socket screw through support and shell.
+    Screw,
+    /// Its nut.
+    Nut,
+    /// The bolt of the guide pulley.
+    Bolt,
+    /// A screw of the sheath stop.
+    StopScrew,
+    /// Its nut.
+    StopNut,
+    /// The bearing of the guide pulley.
+    Bearing,
+    /// The washer on its bolt.
+    Washer,
+    /// The nut on its bolt.
+    BoltNut,
+}
+
+impl HardwareKind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Insert => "insert",
+            Self::Dowel => "dowel",
+            Self::Screw => "screw",
+            Self::Nut => "nut",
+            Self::Bolt => "bolt",
+            Self::StopScrew => "stop-screw",
+            Self::StopNut => "stop-nut",
+            Self::Bearing => "bearing",
+            Self::Washer => "washer",
+            Self::BoltNut => "bolt-nut",
+        }
+    }
+}
+
+/// A bought body in its position in the assembly.
+#[derive(Clone, Debug)]
+pub struct Hardware {
+    /// Kind.
+    pub kind: HardwareKind,
+    /// Kind and number, such as `screw-2`.
+    pub name: String,
+    /// Exact solid, in the frame of the assembly.
+    pub solid: Solid,
+    /// Whether it is put in from the right side, at larger z.
+    pub from_right: bool,
+}
+
+/// Returns all bought bodies of the assembly except pins and tendon.
+pub fn hardware(design: &Design) -> Vec<Hardware> {
+    let mut all = Vec::new();
+    let mut add = |kind: HardwareKind, from_right: bool, solid: Option<Solid>| {
+        all.extend(solid.map(|solid| (kind, from_right, solid)));
+    };
+    fasteners(design, &mut add);
+    dowels(design, &mut add);
+    in_the_plate(design, &mut add);
+    on_the_bolt(design, &mut add);
+    let mut named: Vec<Hardware> = Vec::with_capacity(all.len());
+    for (kind, from_right, solid) in all {
+        let number = named.iter().filter(|body| body.kind == kind).count() + 1;
+        named.push(Hardware { kind, name: format!("{}-{number}", kind.name()), solid, from_right });
+    }
+    named
+}
+
+/// Adds inserts, screws and nuts at every hole of the shell.
+fn fasteners(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    let c = design.configuration();
+    let fastening = design.fastening();
+    let places: Vec<Point2> =
+        design.fastener_angles_rad().into_iter().map(|a| polar(design.fastener_radius_mm(), a)).collect();
+    let width = c.shell.width_mm;
+    for at in &places {
+        if let Some([bore_mm, length_mm]) = fastening.insert_mm {
+            let outline = Contour::circle(*at, bore_mm / 2.0);
+            add(HardwareKind::Insert, false, prism(&outline, None, [0.0, length_mm]));
+            add(HardwareKind::Insert, true, prism(&outline, None, [width - length_mm, width]));
+        }
+    }
+    let Some(bill) = bill_of_materials(design).fasteners else { return };
+    let hole = c.fasteners.hole_diameter_mm;
+    let shank_mm = fastening.thread.as_ref().and_then(radius_mm).unwrap_or(hole / 2.0 * SHANK_SHARE);
+    let [head_wide, head_high] = fastening.thread.map_or([1.8 * hole, hole], |t| t.head_mm);
+    let [flats, nut_high] = fastening.thread.map_or([1.8 * hole, 0.8 * hole], |t| t.nut_mm);
+    let depth = |recess: Option<Recess>| recess.map_or(0.0, |r| r.depth_mm);
+    let left_face = if c.mount.kind == MountKind::None {
+        -c.support.plate_mm + depth(fastening.counterbore)
+    } else {
+        -(c.support.plate_mm + c.mount.plate_mm) + depth(fastening.mount_counterbore)
+    };
+    let right_face = width + c.support.plate_mm;
+    let radii = [shank_mm, head_wide / 2.0];
+    for at in places {
+        add(HardwareKind::Screw, false, Some(screw(at, radii, left_face, bill.length_mm, head_high)));
+        if bill.inserts > 0 {
+            let length_mm = bill.right_length_mm.unwrap_or(bill.length_mm);
+            let face = right_face - depth(fastening.counterbore);
+            add(HardwareKind::Screw, true, Some(screw(at, radii, face, -length_mm, head_high)));
+        } else {
+            let seat = right_face - depth(fastening.nut_trap);
+            let bore = Contour::circle(at, shank_mm).reversed();
+            add(HardwareKind::Nut, true, prism(&hexagon(at, flats), Some(bore), [seat, seat + nut_high]));
+        }
+    }
+}
+
+fn dowels(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    let c = design.configuration();
+    let (half, middle) = (design.dowel_length_mm() / 2.0, c.shell.width_mm / 2.0);
+    for angle in design.dowel_angles_rad() {
+        let at = polar(design.fastener_radius_mm(), angle);
+        let outline = Contour::circle(at, c.fasteners.dowel_diameter_mm / 2.0);
+        add(HardwareKind::Dowel, true, prism(&outline, None, [middle - half, middle + half]));
+    }
+}
+
+/// Heights of the outer and the inner face of the mounting plate in the assembly.
+fn faces_mm(design: &Design) -> [f64; 2] {
+    let c = design.configuration();
+    [-(c.support.plate_mm + c.mount.plate_mm), -c.support.plate_mm]
+}
+
+/// Adds the bolt of the axle, and screws and nuts of the sheath stop.
+fn in_the_plate(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    let (Some(mounting), Some(bill)) = (design.mounting(), bill_of_materials(design).mount) else { return };
+    let [outer, inner] = faces_mm(design);
+    if let (Some(Hole { centre, .. }), Some(length_mm)) = (mounting.axle, bill.axle_length_mm) {
+        let [flats, high] = AXLE_HEAD_MM;
+        let seat = outer + axle_recess().depth_mm;
+        let head = hexagon(centre, flats);
+        add(
+            HardwareKind::Bolt,
+            false,
+            Some(stepped(&head, [seat - high, seat], &Contour::circle(centre, AXLE_MM), length_mm)),
+        );
+    }
+    let screws = mounting.sheath.into_iter().flat_map(|stop| stop.screws);
+    for (Hole { centre, .. }, length_mm) in screws.zip(std::iter::repeat(bill.stop_screw_length_mm)) {
+        let Some(length_mm) = length_mm else { continue };
+        let ([wide, high], [flats, nut_high]) = (STOP_SCREW.head_mm, STOP_SCREW.nut_mm);
+        let seat = outer + stop_recess().depth_mm;
+        let floor = inner + design.sheath_floor_mm();
+        let radii = [STOP_SHANK_MM, wide / 2.0];
+        add(HardwareKind::StopScrew, false, Some(screw(centre, radii, seat, length_mm, high)));
+        let bore = Contour::circle(centre, STOP_SHANK_MM).reversed();
+        let span = [floor, floor + nut_high];
+        add(HardwareKind::StopNut, false, prism(&hexagon(centre, flats), Some(bore), span));
+    }
+}
+
+/// Adds bearing, washer and nut on the bolt of the axle.
+fn on_the_bolt(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    let Some(axle) = design.mounting().and_then(|m| m.axle) else { return };
+    let bearing = faces_mm(design)[1] + spacer_mm(design);
+    let washer = bearing + BEARING_MM;
+    let nut = washer + WASHER_HIGH_MM;
+    let ring = |[inner, outer]: [f64; 2], span| {
+        let bore = Contour::circle(axle.centre, inner).reversed();
+        prism(&Contour::circle(axle.centre, outer), Some(bore), span)
+    };
+    add(HardwareKind::Bearing, true, ring(BEARING_RING_MM, [bearing, washer]));
+    add(HardwareKind::Washer, true, ring(WASHER_MM, [washer, nut]));
+    let bore = Contour::circle(axle.centre, AXLE_MM).reversed();
+    let outline = hexagon(axle.centre, AXLE_HEAD_MM[0]);
+    add(HardwareKind::BoltNut, true, prism(&outline, Some(bore), [nut, nut + AXLE_NUT_MM]));
+}
+
+/// Radius of a metric thread, mm, from its name.
+fn radius_mm(thread: &Thread) -> Option<f64> {
+    thread.name.strip_prefix('M')?.parse::<f64>().ok().map(|diameter| diameter / 2.0)
+}
+
+fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
+    let corner =
+        |i: u32| middle + polar(flats_mm / 3f64.sqrt(), f64::from(i) * std::f64::consts::FRAC_PI_3).coords;
+    // Angles of `polar` run clockwise.
+    Contour::polygon((0..6).rev().map(corner).collect())
+}
+
+/// A body between two heights, with a bore or without; `None` for an outline without area.
+fn prism(outline: &Contour, bore: Option<Contour>, [from_mm, to_mm]: [f64; 2]) -> Option<Solid> {
+    let holes: Vec<Contour> = bore.into_iter().collect();
+    Solid::prism(outline, &holes, from_mm, to_mm, 0.0).ok()
+}
+
+/// A screw with a round head on `face_mm`, whose shank of signed length points up or down.
+fn screw(at: Point2, [shank_mm, head_mm]: [f64; 2], face_mm: f64, length_mm: f64, high_mm: f64) -> Solid {
+    let (shank, head) = (Contour::circle(at, shank_mm), Contour::circle(at, head_mm));
+    let head_span = if length_mm > 0.0 { [face_mm - high_mm, face_mm] } else { [face_mm, face_mm + high_mm] };
+    stepped(&head, head_span, &shank, length_mm)
+}
+
+/// A head between two heights, and a thinner shank of signed length, up from its upper or down from its lower face.
+fn stepped(head: &Contour, [low_mm, high_mm]: [f64; 2], shank: &Contour, length_mm: f64) -> Solid {
+    let mut solid = Solid::new();
+    let (bottom, top) = solid.extrude(head, low_mm, high_mm);
+    if length_mm > 0.0 {
+        let foot = solid.boss(shank, high_mm, high_mm + length_mm);
+        solid.cap(Facing::Down, bottom, &[]);
+        solid.cap(Facing::Up, top, &[foot]);
+    } else {
+        let (tip, root) = solid.extrude(shank, low_mm + length_mm, low_mm);
+        solid.cap(Facing::Down, tip, &[]);
+        solid.cap(Facing::Down, bottom, &[root]);
+        solid.cap(Facing::Up, top, &[]);
+    }
+    solid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::read;
+    use pinswitch_solid::validity::{Expectation, examine};
+
+    fn of(text: &str) -> (Design, Vec<Hardware>) {
+        let design = Design::new(read(text, "x.toml").unwrap().0).unwrap();
+        let all = hardware(&design);
+        (design, all)
+    }
+
+    fn count(all: &[Hardware], kind: HardwareKind) -> usize {
+        all.iter().filter(|body| body.kind == kind).count()
+    }
+
+    /// The assembly contains every bought body of the bill of materials, each as a valid solid.
+    #[test]
+    fn every_bought_body_is_there() {
+        for text in [
+            "",
+            "[fasteners]\nkind = \"screw\"\n",
+            "[fasteners]\nkind = \"insert\"\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
+            "[mount]\nkind = \"flange\"\n",
+        ] {
+            let (design, all) = of(text);
+            let bill = bill_of_materials(&design);
+            let fasteners = bill.fasteners.unwrap();
+            assert_eq!(count(&all, HardwareKind::Screw), fasteners.number, "{text}");
+            assert_eq!(count(&all, HardwareKind::Nut), fasteners.nuts, "{text}");
+            assert_eq!(count(&all, HardwareKind::Insert), fasteners.inserts, "{text}");
+            assert_eq!(count(&all, HardwareKind::Dowel), bill.dowels.map_or(0, |d| d.number), "{text}");
+            let mount = bill.mount;
+            let bearings = mount.as_ref().and_then(|m| m.bearing).iter().count();
+            for kind in
+                [HardwareKind::Bearing, HardwareKind::Bolt, HardwareKind::Washer, HardwareKind::BoltNut]
+            {
+                assert_eq!(count(&all, kind), bearings, "{text} {kind:?}");
+            }
+            let stops = mount.and_then(|m| m.stop_screw_length_mm).map_or(0, |_| 2);
+            assert_eq!(count(&all, HardwareKind::StopScrew), stops, "{text}");
+            assert_eq!(count(&all, HardwareKind::StopNut), stops, "{text}");
+            for body in &all {
+                let mesh = body.solid.mesh(design.tolerance()).unwrap();
+                let report = examine(&mesh, &Expectation::default());
+                assert!(report.faults.is_empty(), "{text} {}: {:?}", body.name, report.faults);
+                let share = report.facts.volume_mm3 / body.solid.volume_mm3();
+                assert!((share - 1.0).abs() < 0.02, "{text} {}: {share}", body.name);
+            }
+            let mut names: Vec<_> = all.iter().map(|body| &body.name).collect();
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), all.len());
+        }
+    }
+
+    /// Screws start at the outer face. Their tips are beyond the nut, or in the shell between the inserts.
+    #[test]
+    fn screws_have_the_length_of_the_bill() {
+        for (text, tips_meet) in [("", false), ("[fasteners]\nkind = \"insert\"\n", true)] {
+            let (design, all) = of(text);
+            let c = design.configuration();
+            let fastening = design.fastening();
+            let head_mm = fastening.thread.unwrap().head_mm[1];
+            let length_mm = bill_of_materials(&design).fasteners.unwrap().length_mm;
+            let screws: Vec<_> = all.iter().filter(|body| body.kind == HardwareKind::Screw).collect();
+            assert_eq!(screws.len(), if tips_meet { 4 } else { 2 });
+            for body in screws {
+                let (low, high) = body.solid.bounds().map(|(low, high)| (low.z, high.z)).unwrap();
+                assert!((high - low - head_mm - length_mm).abs() < 1e-9, "{low} to {high}");
+                let outer = c.shell.width_mm + c.support.plate_mm;
+                assert!(tips_meet || high > outer, "{high}");
+                let middle = c.shell.width_mm / 2.0;
+                assert!(!tips_meet || (if body.from_right { low > middle } else { high < middle }));
+            }
+        }
+    }
+}

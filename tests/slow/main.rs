@@ -14,7 +14,7 @@ mod campaign;
 mod changed_digits;
 mod closed_loop;
 mod effects_aside;
-mod generate_kill;
+mod kills;
 mod proposals;
 mod random_configurations;
 mod second_rig;

@@ -141,7 +141,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         set = set.predicted_from(hash).map_err(Failure::failed)?;
     }
     let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
-    for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
+    for changed in place.publish(&set.files, arguments.force).map_err(refused)? {
         let location = Location::file(folder.join(changed).display().to_string());
         warn(Diagnostic::new("was changed since it was written, and stays").with_location(location));
     }

@@ -164,6 +164,12 @@ fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
     if path.is_dir() {
         return Err(Failure::bad_input(refused("is a folder", "give a file")));
     }
+    // A run that was killed may have left the folder between two results.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    pinswitch_store::recover(folder).map_err(|e| {
+        let problem = "cannot complete the changes of an interrupted run in its folder";
+        Failure::bad_input(refused(problem, "run that command again, or restore the folder").with_source(e))
+    })?;
     let bytes = pinswitch_store::read_at_most(path, most).map_err(|e| {
         Failure::bad_input(match e.kind() {
             std::io::ErrorKind::FileTooLarge => {

@@ -10,6 +10,7 @@ use crate::lock::{FolderLock, LockPolicy};
 use crate::place::{
     read_own, require_ordinary, require_path, require_writable, temporary_file, without_waiting,
 };
+use crate::staging::Staging;
 
 /// Time for which a single file waits for others, which take milliseconds: commands that run at the same time and each
 /// write one file into a folder succeed.
@@ -42,8 +43,9 @@ pub fn replace_file(path: &Path, bytes: &[u8], policy: LockPolicy) -> Result<()>
         Ok(existing) if !existing.is_file() => return write_to_special(path, bytes),
         _ => {}
     }
-    let (_lock, temporary) = staged_next_to(path, bytes, policy)?;
+    let (staging, temporary) = staged_next_to(path, bytes, policy)?;
     temporary.persist(path).map_err(|e| e.error)?;
+    drop(staging);
     Ok(())
 }
 
@@ -118,14 +120,13 @@ fn staged_next_to(
     path: &Path,
     bytes: &[u8],
     policy: LockPolicy,
-) -> Result<(FolderLock, tempfile::NamedTempFile)> {
+) -> Result<(Staging, tempfile::NamedTempFile)> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     if !folder.is_dir() {
         return Err(ErrorKind::NotFound.into());
     }
     let existing = replaceable(path)?;
-    let lock = FolderLock::take(folder, policy.at_least(SINGLE_FILE_TIME))?;
-    lock.remove_unfinished()?;
+    let lock = Staging::new(FolderLock::take(folder, policy.at_least(SINGLE_FILE_TIME))?)?;
     let mut temporary = temporary_file().prefix(TEMPORARY_PREFIX).tempfile_in(folder)?;
     temporary.write_all(bytes)?;
     if let Some(existing) = existing {

@@ -3,7 +3,8 @@
 //! | type or function | purpose |
 //! | --- | --- |
 //! | [`FolderLock`] | one process writes into a folder at a time; [`LockPolicy`] decides whether others wait |
-//! | [`Staging`] | stages the files of a folder, then renames and removes them |
+//! | [`Staging`] | stages the files of a folder, then replaces and removes files in one step |
+//! | [`recover`] | completes that step, if a run was killed in it |
 //! | [`replace_file`] | replaces one file |
 //! | [`rewrite_file`] | replaces a file that a person may be editing at the same time |
 //! | [`read_own`] | reads a file under a name that pinswitch gives, if it is an ordinary file |
@@ -14,15 +15,13 @@
 //! a command.
 //!
 //! ```
-//! use pinswitch_store::{FolderLock, LockPolicy, Staging};
+//! use pinswitch_store::{FolderLock, LockPolicy, Staging, Step};
 //!
 //! # let place = tempfile::tempdir()?;
 //! let folder = place.path().join("set");
 //! let staging = Staging::new(FolderLock::take(&folder, LockPolicy::Refuse)?)?;
-//! let steps = [staging.stage("a.txt", b"one")?, staging.remove("old.txt")];
-//! for step in &steps {
-//!     step.take()?;
-//! }
+//! let steps = [staging.stage("a.txt", b"one")?, Step::Remove("old.txt".to_owned())];
+//! staging.commit(&steps)?;
 //! drop(staging);
 //! assert_eq!(std::fs::read(folder.join("a.txt"))?, b"one");
 //! # Ok::<(), std::io::Error>(())
@@ -36,7 +35,7 @@ mod staging;
 pub use file::{RewriteError, SINGLE_FILE_TIME, replace_file, rewrite_file};
 pub use lock::{Busy, FolderLock, LockPolicy};
 pub use place::{is_dangling_symlink, read_at_most, read_own, temporary_file, write_help};
-pub use staging::{JOURNAL, Staging, Step};
+pub use staging::{CommitError, Staging, Step, is_plain, recover};
 
 /// Begin of the names of temporary files.
 pub const TEMPORARY_PREFIX: &str = ".pinswitch-";

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use crate::TEMPORARY_PREFIX;
 use crate::place::{require_ordinary, require_path, without_waiting};
-use crate::staging::JOURNAL;
+use crate::staging::LOG;
 
 /// Name of the locked file.
 const LOCK_FILE: &str = ".pinswitch-lock";
@@ -148,12 +148,12 @@ impl FolderLock {
         &self.folder
     }
 
-    /// Removes the unfinished files of killed runs, except the journal.
+    /// Removes the unfinished files of killed runs, except a log of committed changes.
     ///
     /// # Errors
     /// The error of the file system.
     pub fn remove_unfinished(&self) -> Result<()> {
-        self.remove_entries(|name| name.starts_with(TEMPORARY_PREFIX) && name != JOURNAL)
+        self.remove_entries(|name| name.starts_with(TEMPORARY_PREFIX) && name != LOG)
     }
 
     /// Removes all entries of a folder that contains unfinished files only.

@@ -1,67 +1,86 @@
-//! Staged files of a locked folder, and the steps that give them their names. A process may be killed between any two
-//! steps.
+//! Staged files of a locked folder, and their commit: a write-ahead log, as databases have.
+//!
+//! All files are staged. Then a log of the changes gets its name, which is the commit: from here on the changes are made,
+//! by this process or, if it is killed, by the next one that writes or reads in the folder ([`recover`]). Before the
+//! commit the folder is the old one, after it the new one.
 
-use std::io::{ErrorKind, Result};
-use std::path::{Path, PathBuf};
+use std::io::{Error, ErrorKind, Result};
+use std::path::{Component, Path};
+use std::time::Duration;
 
 use crate::file::stage_at;
-use crate::lock::FolderLock;
+use crate::lock::{FolderLock, LockPolicy};
+use crate::place::read_own;
 
 /// Name of the folder for staged files.
 const STAGED: &str = ".pinswitch-staged";
-/// Name of the journal of planned changes, which remains when a run is killed.
-pub const JOURNAL: &str = ".pinswitch-journal";
+/// Name of the log of committed changes, which remains when a run is killed.
+pub(crate) const LOG: &str = ".pinswitch-commit";
+/// First field of the log.
+const LOG_SCHEMA: &str = "pinswitch-commit/1";
+/// Longest log that is read, in bytes: some times the names of the largest set.
+const MAX_LOG: u64 = 16 << 20;
+/// Time for which a reader waits for a run that is making its changes.
+const READER_TIME: Duration = Duration::from_secs(2);
 
-/// A locked folder with a place for staged files. Dropping it removes them.
+/// A locked folder with a place for staged files. Dropping it removes them, unless they are committed.
 #[derive(Debug)]
 pub struct Staging(FolderLock);
 
-/// An atomic change of a folder.
+/// A change of a file in the folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Renames a staged file to its final name.
-    Rename {
-        /// Path of the staged file.
-        from: PathBuf,
-        /// Final path.
-        to: PathBuf,
-    },
-    /// Removes a file, if it exists.
-    Remove(PathBuf),
+    /// The staged file of this name gets its place.
+    Rename(String),
+    /// The file of this name is removed, if it exists.
+    Remove(String),
 }
 
 impl Step {
-    /// Returns the final path, or the path that is removed.
-    pub fn target(&self) -> &PathBuf {
+    /// Returns the name of the file.
+    pub fn name(&self) -> &str {
         match self {
-            Self::Rename { to, .. } => to,
-            Self::Remove(path) => path,
+            Self::Rename(name) | Self::Remove(name) => name,
         }
     }
+}
 
-    /// Makes the change.
-    ///
-    /// # Errors
+/// Why a commit failed.
+#[derive(Debug)]
+pub struct CommitError {
+    /// Name of the file that cannot be changed; empty for the folder.
+    pub name: String,
     /// The error of the file system.
-    pub fn take(&self) -> Result<()> {
-        match self {
-            Self::Rename { from, to } => std::fs::rename(from, to),
-            Self::Remove(path) => match std::fs::remove_file(path) {
-                Err(e) if e.kind() == ErrorKind::NotFound => Ok(()),
-                other => other,
-            },
-        }
+    pub source: Error,
+}
+
+impl CommitError {
+    fn at(name: &str) -> impl FnOnce(Error) -> Self + '_ {
+        |source| Self { name: name.to_owned(), source }
+    }
+}
+
+impl From<CommitError> for Error {
+    fn from(error: CommitError) -> Self {
+        error.source
     }
 }
 
 impl Staging {
-    /// Removes the unfinished files of killed runs from a locked folder.
+    /// Makes the committed changes of a killed run, and removes unfinished files.
     ///
     /// # Errors
     /// The error of the file system.
     pub fn new(lock: FolderLock) -> Result<Self> {
-        lock.remove_unfinished()?;
-        Ok(Self(lock))
+        let staging = Self(lock);
+        if let Some(log) = read_own(&staging.folder().join(LOG), MAX_LOG)? {
+            let steps = parse(&log).ok_or_else(|| {
+                Error::new(ErrorKind::InvalidData, format!("{LOG} in it is not a log of pinswitch"))
+            })?;
+            staging.make(&steps)?;
+        }
+        staging.0.remove_unfinished()?;
+        Ok(staging)
     }
 
     /// Returns the folder.
@@ -69,28 +88,229 @@ impl Staging {
         self.0.folder()
     }
 
-    /// Writes the file `name`, a name without folders, with the permissions and the owner of the file that it will
-    /// replace. Returns the step that replaces it.
+    /// Writes the file `name` with the permissions and the owner of the file that it will replace.
+    /// Returns the step that replaces it.
     ///
     /// # Errors
-    /// `PermissionDenied` if the file that it would replace is write-protected; the error of the file system.
+    /// `InvalidInput` if the name is a path; `PermissionDenied` if the file that it would replace is write-protected;
+    /// the error of the file system.
     pub fn stage(&self, name: &str, bytes: &[u8]) -> Result<Step> {
+        if !is_plain(name) {
+            return Err(ErrorKind::InvalidInput.into());
+        }
         let staged = self.folder().join(STAGED);
         std::fs::create_dir_all(&staged)?;
-        let (from, to) = (staged.join(name), self.folder().join(name));
-        stage_at(&from, &to, bytes)?;
-        Ok(Step::Rename { from, to })
+        stage_at(&staged.join(name), &self.folder().join(name), bytes)?;
+        Ok(Step::Rename(name.to_owned()))
     }
 
-    /// Returns the step that removes the file `name`.
-    pub fn remove(&self, name: &str) -> Step {
-        Step::Remove(self.folder().join(name))
+    /// Makes all changes, in their order: all or, if this process is killed before the commit, none.
+    ///
+    /// # Errors
+    /// [`CommitError`]. If it is at the first change, nothing has changed; later, the next run completes the changes.
+    pub fn commit(&self, steps: &[Step]) -> std::result::Result<(), CommitError> {
+        self.log(steps).map_err(CommitError::at(LOG))?;
+        self.make(steps)
+    }
+
+    /// Writes the log.
+    fn log(&self, steps: &[Step]) -> Result<()> {
+        let staged = self.folder().join(STAGED);
+        std::fs::create_dir_all(&staged)?;
+        std::fs::write(staged.join(LOG), text(steps))?;
+        std::fs::rename(staged.join(LOG), self.folder().join(LOG))
+    }
+
+    /// Makes the changes of a log, of which some may have been made, and removes the log.
+    fn make(&self, steps: &[Step]) -> std::result::Result<(), CommitError> {
+        for (nth, step) in steps.iter().enumerate() {
+            let (name, path) = (step.name(), self.folder().join(step.name()));
+            let staged = self.folder().join(STAGED).join(name);
+            let made = match step {
+                Step::Rename(_) => std::fs::rename(&staged, &path),
+                // A killed run has removed the old file and put the new one in its place.
+                Step::Remove(_) if is_replaced(steps, name) && !staged.exists() => Ok(()),
+                Step::Remove(_) => std::fs::remove_file(&path),
+            };
+            match made {
+                // A killed run has made it.
+                Err(e) if e.kind() == ErrorKind::NotFound => {}
+                Err(e) => {
+                    if nth == 0 {
+                        let _ = std::fs::remove_file(self.folder().join(LOG));
+                    }
+                    return Err(CommitError::at(name)(e));
+                }
+                Ok(()) => {}
+            }
+        }
+        std::fs::remove_file(self.folder().join(LOG)).map_err(CommitError::at(LOG))
     }
 }
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // The next run removes files that cannot be removed now.
-        let _ = self.0.remove_unfinished();
+        // Committed files are needed by the next run, which also removes files that cannot be removed now.
+        if !self.folder().join(LOG).exists() {
+            let _ = self.0.remove_unfinished();
+        }
+    }
+}
+
+/// Makes the changes that a killed run has committed in `folder`, before a file in it is read.
+///
+/// # Errors
+/// `WouldBlock` if a run is making changes for longer than two seconds; the error of the file system.
+pub fn recover(folder: &Path) -> Result<()> {
+    if !folder.join(LOG).exists() {
+        return Ok(());
+    }
+    FolderLock::take(folder, LockPolicy::Wait(READER_TIME)).and_then(Staging::new).map(drop)
+}
+
+/// Whether `name` is a plain file name, not a path.
+pub fn is_plain(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
+}
+
+/// Whether a staged file gets this name.
+fn is_replaced(steps: &[Step], name: &str) -> bool {
+    steps.iter().any(|step| matches!(step, Step::Rename(renamed) if renamed == name))
+}
+
+/// The log: fields that end with a zero byte, which no file name contains.
+fn text(steps: &[Step]) -> Vec<u8> {
+    let fields = steps.iter().flat_map(|step| match step {
+        Step::Rename(name) => ["rename", name],
+        Step::Remove(name) => ["remove", name],
+    });
+    std::iter::once(LOG_SCHEMA).chain(fields).flat_map(|field| field.bytes().chain([0])).collect()
+}
+
+/// Reads a log; `None` if it is not one, or contains paths.
+fn parse(log: &[u8]) -> Option<Vec<Step>> {
+    let mut fields = std::str::from_utf8(log).ok()?.strip_suffix('\0')?.split('\0');
+    if fields.next() != Some(LOG_SCHEMA) {
+        return None;
+    }
+    let mut steps = Vec::new();
+    while let Some(kind) = fields.next() {
+        let name = fields.next().filter(|name| is_plain(name))?.to_owned();
+        steps.push(match kind {
+            "rename" => Step::Rename(name),
+            "remove" => Step::Remove(name),
+            _ => return None,
+        });
+    }
+    Some(steps)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn open(folder: &Path) -> Staging {
+        Staging::new(FolderLock::take(folder, LockPolicy::Refuse).unwrap()).unwrap()
+    }
+
+    fn files(folder: &Path) -> BTreeMap<String, String> {
+        let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+        files
+            .map(|f| {
+                (f.file_name().into_string().unwrap(), std::fs::read_to_string(f.path()).unwrap_or_default())
+            })
+            .collect()
+    }
+
+    /// Replaces `a` and `b`, adds `c`, and removes `gone`.
+    fn staged(staging: &Staging) -> Vec<Step> {
+        let mut steps = vec![Step::Remove("b".to_owned())];
+        steps.extend(["a", "c", "b"].map(|name| staging.stage(name, b"new").unwrap()));
+        steps.push(Step::Remove("gone".to_owned()));
+        steps
+    }
+
+    fn old(folder: &Path) {
+        for name in ["a", "b", "gone", "mine"] {
+            std::fs::write(folder.join(name), "old").unwrap();
+        }
+    }
+
+    #[test]
+    fn a_killed_commit_is_completed() {
+        let pairs = |list: &[(&str, &str)]| -> BTreeMap<String, String> {
+            list.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect()
+        };
+        let before = pairs(&[("a", "old"), ("b", "old"), ("gone", "old"), ("mine", "old")]);
+        let after = pairs(&[("a", "new"), ("b", "new"), ("c", "new"), ("mine", "old")]);
+        for made in 0..=6 {
+            let place = tempfile::tempdir().unwrap();
+            let folder = place.path();
+            old(folder);
+            {
+                let staging = open(folder);
+                let steps = staged(&staging);
+                // Before the commit, nothing has changed.
+                if made == 0 {
+                    drop(staging);
+                    assert_eq!(files(folder), before);
+                    continue;
+                }
+                staging.log(&steps).unwrap();
+                for step in steps.iter().take(made - 1) {
+                    let path = folder.join(step.name());
+                    match step {
+                        Step::Rename(name) => std::fs::rename(folder.join(STAGED).join(name), path).unwrap(),
+                        Step::Remove(_) => std::fs::remove_file(path).unwrap(),
+                    }
+                }
+            }
+            recover(folder).unwrap();
+            assert_eq!(files(folder), after, "after {made} changes");
+            recover(folder).unwrap();
+        }
+        let place = tempfile::tempdir().unwrap();
+        old(place.path());
+        let staging = open(place.path());
+        staging.commit(&staged(&staging)).unwrap();
+        drop(staging);
+        assert_eq!(files(place.path()), after);
+    }
+
+    #[test]
+    fn a_foreign_log_changes_nothing() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("in");
+        std::fs::create_dir(&folder).unwrap();
+        std::fs::write(place.path().join("dear"), "dear").unwrap();
+        for log in [
+            "pinswitch-commit/1\0remove\0../dear\0",
+            "pinswitch-commit/1\0remove\0/etc/x\0",
+            "pinswitch-commit/1\0remove\0",
+            "pinswitch-commit/2\0remove\0a\0",
+            "pinswitch-commit/1\0link\0a\0",
+            "",
+            "x",
+        ] {
+            std::fs::write(folder.join(LOG), log).unwrap();
+            let error = recover(&folder).unwrap_err();
+            assert!(error.to_string().contains("not a log of pinswitch"), "{log:?}: {error}");
+        }
+        assert!(place.path().join("dear").exists());
+    }
+
+    #[test]
+    fn an_obstacle_at_the_first_change_changes_nothing() {
+        let place = tempfile::tempdir().unwrap();
+        old(place.path());
+        std::fs::create_dir(place.path().join("z")).unwrap();
+        let staging = open(place.path());
+        let steps = [staging.stage("z", b"new").unwrap(), staging.stage("a", b"new").unwrap()];
+        assert_eq!(staging.commit(&steps).unwrap_err().name, "z");
+        drop(staging);
+        assert_eq!(std::fs::read(place.path().join("a")).unwrap(), b"old");
+        assert!(!place.path().join(LOG).exists());
     }
 }

@@ -1,16 +1,15 @@
-//! The files that earlier runs have written into a folder, from its manifest and from the journal of a killed run.
+//! The files that the last run has written into a folder, from its manifest.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Component, Path};
+use std::path::Path;
 
 use pinswitch_switch::documents::SourceEntry;
-use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::set::MANIFEST;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::WriteError;
-use pinswitch_store::{JOURNAL, read_own};
+use pinswitch_store::{is_plain, read_own};
 
 /// Files that pinswitch wrote, with the SHA-256 of each content that it gave them, and their source.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -34,7 +33,7 @@ struct ListedFile {
 }
 
 impl Record {
-    /// Reads the manifest and the journal of `folder`. A manifest of another program is ignored.
+    /// Reads the manifest of `folder`. A manifest of another program is ignored.
     ///
     /// # Errors
     /// [`WriteError`] if one of them exists and cannot be read.
@@ -52,24 +51,7 @@ impl Record {
             record.add(MANIFEST, sha256(&bytes));
             listing.files.into_iter().for_each(|file| record.add(&file.file, file.sha256));
         }
-        if let Some(bytes) = read(JOURNAL)?
-            && let Ok(killed) = serde_json::from_slice::<Self>(&bytes)
-        {
-            // The killed run is later than the run that wrote the manifest.
-            record.source = killed.source.or(record.source);
-            for (name, hashes) in killed.files {
-                hashes.into_iter().for_each(|hash| record.add(&name, hash));
-            }
-        }
         Ok(record)
-    }
-
-    /// Returns the record with `files` added.
-    pub(super) fn with(&self, files: &[OutputFile], source: &SourceEntry) -> Self {
-        let mut all = self.clone();
-        all.source = Some(source.clone());
-        files.iter().for_each(|file| all.add(&file.name, sha256(&file.bytes)));
-        all
     }
 
     /// Whether pinswitch gave the file this content.
@@ -89,12 +71,6 @@ impl Record {
 pub(crate) fn source_of_set_with(file: &Path, bytes: &[u8]) -> Option<SourceEntry> {
     let record = Record::read(file.parent()?).ok()?;
     record.wrote(file.file_name()?.to_str()?, bytes).then_some(record.source)?
-}
-
-/// Whether `name` is a plain file name, not a path.
-pub(super) fn is_plain(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
 }
 
 /// Longest file under a name of pinswitch that is read, in bytes: some times the largest part.

@@ -1,9 +1,7 @@
 //! A folder with one set of files, which is replaced as a whole.
 //!
-//! A new set is staged in a subfolder. Then a journal that lists all files of pinswitch gets its name, the old manifest is
-//! removed, the staged files get their names, stale files are removed, the new manifest gets its name, and the journal is
-//! removed. If a run is killed between any two steps, the folder has the old set, the new set, or no manifest; the next
-//! run reads the journal and knows which files to replace. Other files are left alone.
+//! A new set is staged and committed. If a run is killed before the commit, the folder has the old set. If it is killed
+//! during the commit, the folder has no manifest, and the next run completes the commit. Other files are left alone.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -12,9 +10,9 @@ use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::output::OutputFile;
 
-use pinswitch_store::{FolderLock, JOURNAL, LockPolicy, SINGLE_FILE_TIME, Staging, Step};
+use pinswitch_store::{FolderLock, LockPolicy, SINGLE_FILE_TIME, Staging, Step, is_plain};
 
-use super::record::{Record, is_plain, read_existing};
+use super::record::{Record, read_existing};
 use super::{WriteError, lock_policy, refuse_obstacle};
 use crate::input::sources_from;
 use crate::provenance::{PROVENANCE, Provenance};
@@ -131,14 +129,9 @@ impl SetFolder {
     ///
     /// # Errors
     /// [`PublishError`].
-    pub fn publish(
-        &self,
-        files: &[OutputFile],
-        source: &SourceEntry,
-        force: bool,
-    ) -> Result<Vec<String>, PublishError> {
-        let plan = self.plan(files, source, force)?;
-        self.take(&plan.steps)?;
+    pub fn publish(&self, files: &[OutputFile], force: bool) -> Result<Vec<String>, PublishError> {
+        let plan = self.plan(files, force)?;
+        self.commit(&plan.steps)?;
         Ok(plan.changed)
     }
 
@@ -148,7 +141,7 @@ impl SetFolder {
     /// # Errors
     /// [`WriteError`].
     pub(crate) fn replace(&self, files: &[OutputFile]) -> Result<(), WriteError> {
-        self.take(&self.replacement(files, &[])?)
+        self.commit(&self.replacement(files, &[])?)
     }
 
     /// Stages `files`; returns the steps that replace them and remove the `stale` ones.
@@ -156,8 +149,8 @@ impl SetFolder {
         self.refuse_obstacles(files)?;
         let mut steps = self.stage(files)?;
         let seal = steps.pop();
-        let removed = stale.iter().map(|name| self.staging.remove(name));
-        let first = seal.as_ref().map(|seal| Step::Remove(seal.target().clone()));
+        let removed = stale.iter().map(|name| Step::Remove((*name).to_owned()));
+        let first = seal.as_ref().map(|seal| Step::Remove(seal.name().to_owned()));
         Ok(first.into_iter().chain(steps).chain(removed).chain(seal).collect())
     }
 
@@ -172,7 +165,7 @@ impl SetFolder {
         command: &str,
         stale: &[&str],
     ) -> Result<(), WriteError> {
-        self.take(&self.replacement(&self.listed(files, command, stale)?, stale)?)
+        self.commit(&self.replacement(&self.listed(files, command, stale)?, stale)?)
     }
 
     /// Reads the file `name` in this folder; `None` if it does not exist.
@@ -213,25 +206,19 @@ impl SetFolder {
         }
     }
 
-    fn plan(&self, files: &[OutputFile], source: &SourceEntry, force: bool) -> Result<Plan, PublishError> {
+    fn plan(&self, files: &[OutputFile], force: bool) -> Result<Plan, PublishError> {
         self.refuse_obstacles(files)?;
         let before = self.record()?;
         if !force {
             self.refuse_foreign(files, &before)?;
         }
         let (stale, changed) = self.stale(files, &before)?;
-        let record = before.with(files, source);
-        let journal = serde_json::to_vec(&record)
-            .map_err(|e| WriteError::at(&self.folder.join(JOURNAL))(std::io::Error::other(e)))?;
-        let journal = self.stage(&[OutputFile::new(JOURNAL, journal)])?;
         let mut named = self.stage(files)?;
         let seal = named.pop();
-        let mut steps = journal;
-        steps.extend(seal.as_ref().map(|seal| Step::Remove(seal.target().clone())));
+        let mut steps: Vec<Step> = seal.iter().map(|seal| Step::Remove(seal.name().to_owned())).collect();
         steps.extend(named);
         steps.extend(stale.into_iter().map(Step::Remove));
         steps.extend(seal);
-        steps.push(Step::Remove(self.folder.join(JOURNAL)));
         Ok(Plan { steps, changed })
     }
 
@@ -248,8 +235,8 @@ impl SetFolder {
         files.iter().map(staged).collect()
     }
 
-    fn take(&self, steps: &[Step]) -> Result<(), WriteError> {
-        steps.iter().try_for_each(|step| step.take().map_err(WriteError::at(step.target())))
+    fn commit(&self, steps: &[Step]) -> Result<(), WriteError> {
+        self.staging.commit(steps).map_err(|e| WriteError::at(&self.folder.join(&e.name))(e.source))
     }
 
     /// Refuses names that are paths and places that are occupied by folders or inputs, before anything changes.
@@ -280,18 +267,18 @@ impl SetFolder {
 
     /// Returns the files of the previous set that the new one lacks: the unchanged ones, and the names of the changed
     /// ones.
-    fn stale(
-        &self,
-        files: &[OutputFile],
-        before: &Record,
-    ) -> Result<(Vec<PathBuf>, Vec<String>), WriteError> {
+    fn stale(&self, files: &[OutputFile], before: &Record) -> Result<(Vec<String>, Vec<String>), WriteError> {
         let (mut stale, mut changed) = (Vec::new(), Vec::new());
         for name in before.files.keys().filter(|name| files.iter().all(|file| file.name != **name)) {
             let path = self.folder.join(name);
             match std::fs::symlink_metadata(&path) {
                 Ok(existing) if existing.is_file() => {
                     let bytes = read_existing(&path).map_err(WriteError::at(&path))?.unwrap_or_default();
-                    if before.wrote(name, &bytes) { stale.push(path) } else { changed.push(name.clone()) }
+                    if before.wrote(name, &bytes) {
+                        stale.push(name.clone())
+                    } else {
+                        changed.push(name.clone())
+                    }
                 }
                 Ok(_) => changed.push(name.clone()),
                 Err(_) => {}
@@ -311,7 +298,6 @@ struct Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::provenance::sha256;
     use pinswitch_switch::set::MANIFEST;
     use sha2::{Digest, Sha256};
     use std::collections::BTreeMap;
@@ -319,7 +305,7 @@ mod tests {
     type Files = BTreeMap<String, Vec<u8>>;
 
     /// Returns files with these contents, and their manifest.
-    fn set(source: &str, contents: &[(&str, &str)]) -> (Vec<OutputFile>, SourceEntry) {
+    fn set(source: &str, contents: &[(&str, &str)]) -> Vec<OutputFile> {
         let source = SourceEntry::new(source);
         let entry = |(name, text): &(&str, &str)| {
             let sha256: String = Sha256::digest(text).iter().map(|b| format!("{b:02x}")).collect();
@@ -329,7 +315,7 @@ mod tests {
         let manifest = serde_json::json!({ "schema": "pinswitch.set/1", "source": source, "files": entries });
         let mut files: Vec<_> = contents.iter().map(|(name, text)| OutputFile::new(*name, *text)).collect();
         files.push(OutputFile::new(MANIFEST, manifest.to_string()));
-        (files, source)
+        files
     }
 
     fn there(folder: &Path) -> Files {
@@ -342,88 +328,14 @@ mod tests {
         files.iter().map(|f| (f.name.clone(), f.bytes.clone())).collect()
     }
 
-    /// Leaves the folder as a process that is killed after `steps` steps. Returns whether these are all steps.
-    fn killed_after(steps: usize, folder: &Path, files: &[OutputFile], source: &SourceEntry) -> bool {
-        let place = SetFolder::lock(folder).unwrap();
-        let plan = place.plan(files, source, true).unwrap();
-        let last = steps >= plan.steps.len();
-        plan.steps.iter().take(steps).for_each(|step| step.take().unwrap());
-        // The lock ends with the process; the staged files stay.
-        let half = folder.join(".pinswitch-half");
-        let _ = std::fs::rename(folder.join(".pinswitch-staged"), &half);
-        drop(place);
-        std::fs::create_dir_all(&half).unwrap();
-        std::fs::write(half.join("x"), "half").unwrap();
-        last
-    }
-
-    #[test]
-    fn a_killed_run_leaves_no_mixture() {
-        let (old, old_source) =
-            set("a.toml", &[("a", "old"), ("b", "old"), ("gone", "old"), ("same", "same")]);
-        let (new, new_source) =
-            set("a.toml", &[("a", "new"), ("b", "new"), ("more", "new"), ("same", "same")]);
-        let (third, third_source) = set("a.toml", &[("a", "third")]);
-        for steps in 0.. {
-            let place = tempfile::tempdir().unwrap();
-            let folder = place.path().join("out");
-            SetFolder::lock(&folder).unwrap().publish(&old, &old_source, false).unwrap();
-            std::fs::write(folder.join("mine"), "dear").unwrap();
-            let last = killed_after(steps, &folder, &new, &new_source);
-            let mut left = there(&folder);
-            assert_eq!(left.remove("mine").unwrap(), b"dear");
-            assert!(
-                !left.contains_key(MANIFEST) || left == bytes(&old) || left == bytes(&new),
-                "after {steps} steps: {:?}",
-                left.keys()
-            );
-            // A third set leaves no files of both, and no unfinished file.
-            SetFolder::lock(&folder).unwrap().publish(&third, &third_source, false).unwrap();
-            let mut left = there(&folder);
-            assert_eq!(left.remove("mine").unwrap(), b"dear");
-            assert_eq!(left, bytes(&third), "after {steps} steps");
-            let hidden = std::fs::read_dir(&folder).unwrap().count() - third.len() - 1;
-            assert_eq!(hidden, 0, "after {steps} steps");
-            if last {
-                assert!(steps > 8);
-                break;
-            }
-        }
-    }
-
-    /// A killed run leaves the set without its last file, or a file that its manifest refuses.
-    #[test]
-    fn a_killed_run_leaves_no_believed_mixture() {
-        let set = |text: &str| ["a", "b", "seal"].map(|name| OutputFile::new(name, text));
-        let is_intact = |folder: &Path| {
-            let manifest = Provenance::parse(&std::fs::read(folder.join(PROVENANCE)).unwrap()).unwrap();
-            let is_listed = |name| {
-                let hash = sha256(&std::fs::read(folder.join(name)).unwrap_or_default());
-                manifest.check(name, &hash).is_ok_and(|record| record.is_some())
-            };
-            ["a", "b", "seal"].into_iter().all(is_listed)
-        };
-        let place = tempfile::tempdir().unwrap();
-        let folder = SetFolder::lock(place.path()).unwrap();
-        let steps =
-            |text: &str| folder.replacement(&folder.listed(&set(text), "test", &[]).unwrap(), &[]).unwrap();
-        let count = steps("old").len();
-        for killed in 0..=count {
-            folder.take(&steps("old")).unwrap();
-            assert!(is_intact(place.path()));
-            folder.take(&steps("new")[..killed]).unwrap();
-            assert_eq!(is_intact(place.path()), killed == 0 || killed == count, "after {killed} steps");
-        }
-    }
-
     #[test]
     fn an_obstacle_changes_nothing() {
         let place = tempfile::tempdir().unwrap();
-        let (old, source) = set("a.toml", &[("a", "old")]);
-        SetFolder::lock(place.path()).unwrap().publish(&old, &source, false).unwrap();
+        let old = set("a.toml", &[("a", "old")]);
+        SetFolder::lock(place.path()).unwrap().publish(&old, false).unwrap();
         std::fs::create_dir(place.path().join("b")).unwrap();
-        let (new, source) = set("a.toml", &[("a", "new"), ("b", "new")]);
-        let error = SetFolder::lock(place.path()).unwrap().publish(&new, &source, true).unwrap_err();
+        let new = set("a.toml", &[("a", "new"), ("b", "new")]);
+        let error = SetFolder::lock(place.path()).unwrap().publish(&new, true).unwrap_err();
         let error = Diagnostic::from(error).to_string();
         assert!(error.contains("/b: cannot write") && error.contains("move it away"), "{error}");
         assert_eq!(there(place.path()), bytes(&old));
@@ -437,29 +349,29 @@ mod tests {
         std::fs::write(place.path().join("dear"), "dear").unwrap();
         std::fs::create_dir(folder.join("sub")).unwrap();
         std::fs::write(folder.join("sub/dear"), "dear").unwrap();
-        let (files, _) = set("a.toml", &[("../dear", "dear"), ("sub/dear", "dear"), ("sub", "dear")]);
+        let files = set("a.toml", &[("../dear", "dear"), ("sub/dear", "dear"), ("sub", "dear")]);
         std::fs::write(folder.join(MANIFEST), &files.last().unwrap().bytes).unwrap();
-        let (new, source) = set("a.toml", &[("a", "new")]);
-        SetFolder::lock(&folder).unwrap().publish(&new, &source, false).unwrap();
+        let new = set("a.toml", &[("a", "new")]);
+        SetFolder::lock(&folder).unwrap().publish(&new, false).unwrap();
         assert!(place.path().join("dear").exists() && folder.join("sub/dear").exists());
     }
 
     #[test]
     fn foreign_and_changed_files_stay() {
         let place = tempfile::tempdir().unwrap();
-        let (old, source) = set("a.toml", &[("a", "old"), ("b", "old")]);
+        let old = set("a.toml", &[("a", "old"), ("b", "old")]);
         std::fs::write(place.path().join("a"), "mine").unwrap();
-        let error = SetFolder::lock(place.path()).unwrap().publish(&old, &source, false).unwrap_err();
+        let error = SetFolder::lock(place.path()).unwrap().publish(&old, false).unwrap_err();
         assert!(matches!(error, PublishError::Foreign(_)), "{error}");
         assert_eq!(there(place.path()).len(), 1);
-        SetFolder::lock(place.path()).unwrap().publish(&old, &source, true).unwrap();
+        SetFolder::lock(place.path()).unwrap().publish(&old, true).unwrap();
         std::fs::write(place.path().join("b"), "mine").unwrap();
-        let (both, source) = set("a.toml", &[("a", "old"), ("b", "new")]);
-        let error = SetFolder::lock(place.path()).unwrap().publish(&both, &source, false).unwrap_err();
+        let both = set("a.toml", &[("a", "old"), ("b", "new")]);
+        let error = SetFolder::lock(place.path()).unwrap().publish(&both, false).unwrap_err();
         assert!(matches!(error, PublishError::Changed(_)), "{error}");
         assert_eq!(there(place.path())["b"], b"mine");
-        let (new, source) = set("a.toml", &[("a", "new")]);
-        let changed = SetFolder::lock(place.path()).unwrap().publish(&new, &source, false).unwrap();
+        let new = set("a.toml", &[("a", "new")]);
+        let changed = SetFolder::lock(place.path()).unwrap().publish(&new, false).unwrap();
         assert_eq!(changed, ["b"]);
         assert_eq!(there(place.path())["b"], b"mine");
     }
@@ -467,9 +379,9 @@ mod tests {
     #[test]
     fn the_set_of_another_source_stays() {
         let place = tempfile::tempdir().unwrap();
-        let (old, source) = set("a/x.toml", &[("a", "old")]);
+        let old = set("a/x.toml", &[("a", "old")]);
         let folder = SetFolder::lock(place.path()).unwrap();
-        folder.publish(&old, &source, false).unwrap();
+        folder.publish(&old, false).unwrap();
         let check = |name: &str| folder.check_source(&SourceEntry::new(name));
         let text = |name: &str| check(name).map_err(|e| Diagnostic::from(e).to_string());
         assert_eq!(text("a/x.toml"), Ok(()));

@@ -54,8 +54,9 @@ mod tests {
     fn vertices(text: &str) -> Vec<[f64; 3]> {
         let entities: std::collections::BTreeMap<&str, &str> =
             text.lines().filter_map(|line| line.strip_suffix(';')?.split_once('=')).collect();
-        let vertex = |entity: &&str| entity.strip_prefix("VERTEX_POINT('',")?.strip_suffix(')');
-        let points = entities.values().filter_map(|e| vertex(&e)).map(|point| {
+        let vertex = "VERTEX_POINT('',";
+        let of_vertices = entities.values().filter_map(|e| e.strip_prefix(vertex)?.strip_suffix(')'));
+        let points = of_vertices.map(|point| {
             let numbers = entities[point].strip_prefix("CARTESIAN_POINT('',(").unwrap();
             let numbers = numbers.strip_suffix("))").unwrap().split(',');
             let numbers: Vec<f64> = numbers.map(|number| number.parse().unwrap()).collect();

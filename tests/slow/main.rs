@@ -15,6 +15,7 @@ mod changed_digits;
 mod closed_loop;
 mod effects_aside;
 mod kills;
+mod places;
 mod proposals;
 mod random_configurations;
 mod second_rig;

@@ -61,7 +61,12 @@ pub(crate) fn parse(cell: &str, order: DateOrder) -> Option<Moment> {
         None => None,
     };
     let seconds = match time {
-        Some(text) => Some(parse_time(text, half)?),
+        Some(text) => {
+            let (time, zone) = split_zone(text)?;
+            let seconds = parse_time(time, half)?;
+            // Without a date, the zone moves the start of the clock only.
+            Some(if day.is_some() { seconds.plus(zone.negated()) } else { seconds })
+        }
         None => None,
     };
     Some(Moment { day, seconds })
@@ -114,11 +119,25 @@ fn days(year: i64, month: i64, day: i64) -> Option<i64> {
     Some(era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468)
 }
 
-fn parse_time(text: &str, half: Option<&str>) -> Option<Decimal> {
-    // A zone is the same in every row: it moves the start of the clock only.
+/// Splits a time from its zone (ISO 8601), such as `+01:00`, `-0500` or `Z`; returns the seconds east of Greenwich.
+fn split_zone(text: &str) -> Option<(&str, Decimal)> {
     let text = text.trim_end_matches(['Z', 'z']);
-    let text = text.split('+').next()?;
-    let text = text.char_indices().find(|(_, c)| *c == '-').map_or(text, |(at, _)| &text[..at]);
+    let Some((at, sign)) = text.char_indices().find(|(_, c)| matches!(c, '+' | '-')) else {
+        return Some((text, Decimal::ZERO));
+    };
+    let (time, zone) = (&text[..at], &text[at + 1..]);
+    let digits: String = zone.chars().filter(|c| *c != ':').collect();
+    let number =
+        |range: std::ops::Range<usize>| digits.get(range).map_or(Some(0), |part| part.parse::<u32>().ok());
+    let (hours, minutes) = (number(0..2)?, number(2..4)?);
+    if !matches!(digits.len(), 2 | 4) || hours > 14 || minutes > 59 {
+        return None;
+    }
+    let east = Decimal::new(u128::from(hours * 3600 + minutes * 60), 0);
+    Some((time, if sign == '-' { east.negated() } else { east }))
+}
+
+fn parse_time(text: &str, half: Option<&str>) -> Option<Decimal> {
     let parts: Vec<&str> = text.split(':').collect();
     let (hours, minutes, seconds) = match parts.as_slice() {
         // Minutes and seconds, if the last part has a fraction.
@@ -158,6 +177,9 @@ mod tests {
             ("2013/02/19 09:51:39.25", Some(start + 0.25)),
             ("19.02.2013 09:51:39,25", Some(start + 0.25)),
             ("19/02/2013 9:51:39 AM", Some(start)),
+            ("2013-02-19T10:51:39+01:00", Some(start)),
+            ("2013-02-19T04:21:39.5-0530", Some(start + 0.5)),
+            ("2013-02-19T10:51:39+99:00", None),
             ("09:51:39.197", Some(35_499.197)),
             ("9:51:39 PM", Some(78_699.0)),
             ("01:23.5", Some(83.5)),

@@ -149,15 +149,30 @@ fn candidate(sheet: &Sheet, row: usize) -> Option<(Header, usize)> {
         return None;
     }
     let width = sheet.width(first_data);
-    let names = names(sheet, row, width);
+    let mut names = names(sheet, row, width);
     if names.iter().all(String::is_empty) {
         return None;
     }
     let units: Vec<_> = (0..names.len())
         .map(|column| units_row.and_then(|row| Unit::parse(sheet.cell(row, column))))
         .collect();
-    let known =
-        names.iter().zip(&units).filter(|(name, unit)| name::read(name, **unit).quantity.is_some()).count();
+    let known_in = |names: &[String]| {
+        let pairs = names.iter().zip(&units);
+        pairs.filter(|(name, unit)| name::read(name, **unit).quantity.is_some()).count()
+    };
+    let mut known = known_in(&names);
+    // Names of two lines: they are joined if the upper line has names of its own.
+    if let Some(above) = full_line_above(sheet, row, names.len()) {
+        let joined: Vec<String> = above
+            .iter()
+            .zip(&names)
+            .map(|(upper, lower)| format!("{upper} {lower}").trim().to_owned())
+            .collect();
+        let known_joined = known_in(&joined);
+        if known_in(&above).min(known_joined) >= known.max(1) {
+            (names, known) = (joined, known_joined);
+        }
+    }
     let mismatch = names.len().abs_diff(width);
     // A title, above data without names.
     if known == 0 && names.len() < width {
@@ -205,6 +220,13 @@ fn names(sheet: &Sheet, row: usize, width: usize) -> Vec<String> {
         add_groups(sheet, groups, &mut names);
     }
     names
+}
+
+/// Returns the cells of the row above, if it has a text for each of `width` columns.
+fn full_line_above(sheet: &Sheet, row: usize, width: usize) -> Option<Vec<String>> {
+    let above = row.checked_sub(1).filter(|above| !is_data(sheet, *above) && !is_comment(sheet, *above))?;
+    let is_full = sheet.width(above) == width && sheet.row(above).all(|cell| !cell.is_empty());
+    is_full.then(|| sheet.row(above).map(str::to_owned).collect())
 }
 
 fn has_loads(sheet: &Sheet, row: usize) -> bool {
@@ -257,6 +279,9 @@ mod tests {
         );
         let trailing = header("t,F,,\n0.0,1.2,,\n");
         assert_eq!(trailing.names.len(), 2);
+        let two_lines =
+            header("Time,Force,Position\nof test,of cell,of crosshead\n[s],[N],[mm]\n0.0,1.2,3\n0.1,1.3,3\n");
+        assert_eq!((two_lines.units_row, two_lines.names[1].as_str()), (Some(2), "Force of cell"));
         let groups = header("trial,1 kg,,2 kg,\n,up,down,up,down\n1,12,8,24,16\n");
         assert_eq!(groups.names[4], "2 kg down");
     }

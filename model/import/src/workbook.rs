@@ -26,6 +26,10 @@ mod reader {
 
     /// Most bytes of a workbook.
     const MAX_BYTES: usize = 64 << 20;
+    /// Serial numbers below it are times, in days: no one measured in January 1900.
+    const CLOCK_DAYS: f64 = 4.0;
+    /// Longest elapsed time in days: its hours have two digits.
+    const MAX_ELAPSED_DAYS: f64 = 4.16;
     /// Most bytes of its unpacked contents.
     const MAX_UNPACKED: u64 = 1 << 30;
 
@@ -69,6 +73,15 @@ mod reader {
         if !others.is_empty() {
             notes.push(format!("other sheets: {}; choose with --set sheet=NAME", others.join(", ")));
         }
+        let errors: Vec<String> = range
+            .used_cells()
+            .filter_map(
+                |(.., cell)| if let Data::Error(error) = cell { Some(error.to_string()) } else { None },
+            )
+            .collect();
+        if let Some(first) = errors.first() {
+            notes.push(format!("{} cells with an error, such as {first}, count as empty", errors.len()));
+        }
         Ok(Recording {
             sheet: cells(&range)?,
             format: "workbook".to_owned(),
@@ -77,6 +90,14 @@ mod reader {
             sign: Some(DecimalSign::Point),
             notes,
         })
+    }
+
+    /// A time of up to four days as hours, minutes and seconds: dates of the year 1900 are such times.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the time is bounded")]
+    fn elapsed(days: f64) -> String {
+        let milliseconds = (days.clamp(0.0, MAX_ELAPSED_DAYS) * 86_400_000.0).round() as u64;
+        let (seconds, rest) = (milliseconds / 1000, milliseconds % 1000);
+        format!("{:02}:{:02}:{:02}.{rest:03}", seconds / 3600, seconds / 60 % 60, seconds % 60)
     }
 
     fn is_number(cell: &Data) -> bool {
@@ -104,8 +125,9 @@ mod reader {
             Data::DateTime(moment) => {
                 let (year, month, day, hour, minute, second, millisecond) = moment.to_ymd_hms_milli();
                 let time = format!("{hour:02}:{minute:02}:{second:02}.{millisecond:03}");
-                if moment.as_f64() < 1.0 || moment.is_duration() {
-                    time
+                // A clock that runs on after midnight, and an elapsed time, have more than 24 hours.
+                if moment.as_f64() < CLOCK_DAYS || moment.is_duration() {
+                    elapsed(moment.as_f64())
                 } else if moment.as_f64().fract() == 0.0 {
                     format!("{year}-{month:02}-{day:02}")
                 } else {

@@ -11,6 +11,11 @@ use crate::parallel;
 
 /// Boxes per node.
 const WIDTH: usize = 8;
+/// Number of facets around a vertex from which it is a hub: their boxes all meet, so that pairs of
+/// them are found by angle ([`super::hub`]).
+const HUB_FACETS: u32 = 64;
+/// The hub of a facet or a node without one.
+const NO_HUB: u32 = u32::MAX;
 
 /// An axis-parallel box in single precision, rounded outward.
 #[derive(Clone, Copy)]
@@ -123,11 +128,45 @@ pub(super) struct Bvh {
     planes: Vec<Plane>,
     /// Nodes by level; those of the first contain the boxes of facets.
     levels: Vec<Vec<Node>>,
+    /// The hub of the facet in each slot; empty without hubs.
+    hubs: Vec<u32>,
+    /// The hub that all facets below a node share, by level; empty without hubs.
+    node_hubs: Vec<Vec<u32>>,
+}
+
+/// The hub of each facet: of its vertices with at least [`HUB_FACETS`] facets, that with the most.
+/// Empty if no vertex is a hub.
+fn hubs(mesh: &Mesh) -> Vec<u32> {
+    let mut facets = vec![0_u32; mesh.positions.len()];
+    mesh.triangles.iter().flatten().for_each(|v| facets[*v as usize] += 1);
+    if facets.iter().all(|count| *count < HUB_FACETS) {
+        return Vec::new();
+    }
+    let hub = |t: &[u32; 3]| {
+        let most = t.iter().copied().max_by_key(|v| (facets[*v as usize], std::cmp::Reverse(*v)));
+        most.filter(|v| facets[*v as usize] >= HUB_FACETS).unwrap_or(NO_HUB)
+    };
+    mesh.triangles.iter().map(hub).collect()
+}
+
+/// The hub that all of `hubs` are.
+fn common_hub(hubs: &[u32]) -> u32 {
+    if hubs.iter().all(|hub| *hub == hubs[0]) { hubs[0] } else { NO_HUB }
 }
 
 impl Bvh {
     pub(super) fn new(mesh: &Mesh) -> Self {
-        let facets = morton_order(mesh);
+        let hub_of_facet = hubs(mesh);
+        let mut facets = morton_order(mesh);
+        // Facets of one hub become neighbours, so that whole nodes share it.
+        if !hub_of_facet.is_empty() {
+            facets.sort_by_key(|f| hub_of_facet[*f as usize]);
+        }
+        let hubs: Vec<u32> = match hub_of_facet.is_empty() {
+            true => Vec::new(),
+            false => facets.iter().map(|f| hub_of_facet[*f as usize]).collect(),
+        };
+        let mut node_hubs: Vec<Vec<u32>> = vec![hubs.chunks(WIDTH).map(common_hub).collect()];
         let leaves = parallel::in_chunks(facets.len().div_ceil(WIDTH), |range| {
             let facets = &facets[WIDTH * range.start..facets.len().min(WIDTH * range.end)];
             let bounds = |f: &u32| {
@@ -140,12 +179,13 @@ impl Bvh {
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let above = below.chunks(WIDTH).map(|eight| Node::of(eight.iter().map(Node::hull))).collect();
             levels.push(above);
+            node_hubs.extend(node_hubs.last().map(|below| below.chunks(WIDTH).map(common_hub).collect()));
         }
         let planes = parallel::in_chunks(facets.len(), |slots| {
             let plane = |f: &u32| Plane::of(mesh.corners(mesh.triangles[*f as usize]));
             facets[slots].iter().map(plane).collect::<Vec<_>>()
         });
-        Self { facets, planes: planes.concat(), levels }
+        Self { facets, planes: planes.concat(), levels, hubs, node_hubs }
     }
 
     pub(super) fn leaves(&self) -> usize {
@@ -167,11 +207,32 @@ impl Bvh {
         WIDTH * leaf..self.facets.len().min(WIDTH * (leaf + 1))
     }
 
+    /// Ranges of slots whose facets share a hub, with the hub.
+    pub(super) fn hub_slots(&self) -> Vec<(u32, std::ops::Range<usize>)> {
+        let mut start = 0;
+        let groups = self.hubs.chunk_by(|a, b| a == b).map(|group| {
+            let slots = start..start + group.len();
+            start = slots.end;
+            (group[0], slots)
+        });
+        groups.filter(|(hub, _)| *hub != NO_HUB).collect()
+    }
+
+    /// The hub that all facets of a node share.
+    fn node_hub(&self, level: usize, node: usize) -> u32 {
+        self.node_hubs[level].get(node).copied().unwrap_or(NO_HUB)
+    }
+
     /// Calls `visit` once for every pair of slots whose boxes touch or overlap, the first of them
-    /// in `leaf`, the second after it. `near` is a buffer.
+    /// in `leaf`, the second after it, except facets with the same hub. `near` is a buffer.
     pub(super) fn pairs_from(&self, leaf: usize, near: &mut Vec<usize>, mut visit: impl FnMut(usize, usize)) {
         let own = &self.levels[0][leaf];
-        self.leaves_overlapping(&own.hull(), leaf + 1, near);
+        self.leaves_of_other_hubs(&own.hull(), leaf + 1, self.node_hub(0, leaf), near);
+        let mut visit = |a: usize, b: usize| {
+            if self.hubs.get(a).is_none_or(|hub| *hub == NO_HUB || *hub != self.hubs[b]) {
+                visit(a, b);
+            }
+        };
         for slot in self.slots(leaf) {
             let lane = slot % WIDTH;
             let bounds = own.lane(lane);
@@ -190,25 +251,41 @@ impl Bvh {
 
     /// Writes the leaves from `first` on whose boxes touch or overlap `bounds` to `leaves`.
     pub(super) fn leaves_overlapping(&self, bounds: &Bounds, first: usize, leaves: &mut Vec<usize>) {
+        self.leaves_of_other_hubs(bounds, first, NO_HUB, leaves);
+    }
+
+    /// As [`Self::leaves_overlapping`], without leaves whose facets all share `hub`.
+    fn leaves_of_other_hubs(&self, bounds: &Bounds, first: usize, hub: u32, leaves: &mut Vec<usize>) {
         leaves.clear();
+        let query = Query { bounds, first, hub };
         match self.levels.len() - 1 {
             // A single leaf has no parent.
             0 => leaves.extend((first == 0).then_some(0)),
-            top => self.descend(top, 0, bounds, first, leaves),
+            top => self.descend(top, 0, &query, leaves),
         }
     }
 
-    fn descend(&self, level: usize, node: usize, bounds: &Bounds, first: usize, leaves: &mut Vec<usize>) {
-        for lane in self.levels[level][node].lanes_overlapping(bounds) {
+    fn descend(&self, level: usize, node: usize, query: &Query<'_>, leaves: &mut Vec<usize>) {
+        for lane in self.levels[level][node].lanes_overlapping(query.bounds) {
             let child = WIDTH * node + lane;
             let leaves_to_its_end = (child + 1) * WIDTH.pow(level as u32 - 1);
             match level {
-                _ if leaves_to_its_end <= first => {}
+                _ if leaves_to_its_end <= query.first => {}
+                _ if query.hub != NO_HUB && self.node_hub(level - 1, child) == query.hub => {}
                 1 => leaves.push(child),
-                _ => self.descend(level - 1, child, bounds, first, leaves),
+                _ => self.descend(level - 1, child, query, leaves),
             }
         }
     }
+}
+
+/// What a search of leaves looks for.
+struct Query<'a> {
+    bounds: &'a Bounds,
+    /// The first leaf.
+    first: usize,
+    /// The hub whose leaves are skipped.
+    hub: u32,
 }
 
 /// The exact bounding box of facet `f`.

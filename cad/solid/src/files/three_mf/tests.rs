@@ -11,7 +11,7 @@ use super::write::{BaseMaterial, Object, Package, three_mf};
 use crate::files::plate::Placement;
 use crate::mesh::{Mesh, Point3, Vector3};
 
-const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>"#;
+const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="MODEL" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
 
 fn relationships() -> String {
     format!(

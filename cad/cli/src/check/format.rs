@@ -96,11 +96,10 @@ fn format_faults(stl: &StlFile) -> Vec<Fault> {
         ("oblique normals", Level::Note, stl.oblique_normals, "are not perpendicular to their facets"),
         ("invalid normals", Level::Note, stl.invalid_normals, "are not finite"),
     ];
-    let normals = of_normals.into_iter().filter(|(_, _, count, _)| *count > 0).map(
-        |(check, level, count, problem)| {
+    let normals =
+        of_normals.into_iter().filter(|(_, _, count, _)| *count > 0).map(|(check, level, count, problem)| {
             Fault::new(check, level, count, format!("{count} stored normals {problem}"))
-        },
-    );
+        });
     let trailing = (stl.trailing_bytes > 0).then(|| {
         let detail = format!("{} bytes follow the last triangle; readers ignore them", stl.trailing_bytes);
         Fault::new("trailing bytes", Level::Note, 1, detail)
@@ -133,6 +132,9 @@ pub(super) fn three_mf(
     let mut examination = Examination { faults: package.faults, ..Examination::default() };
     let incomplete = |bound| Incomplete { check: "overlap", level: Level::Error, bound };
     examination.incomplete.extend(package.bound.map(incomplete));
+    // Another size of a valid solid is a valid solid; its walls may be thinner.
+    let of_size = |bound| Incomplete { check: "thin wall", level: Level::Warning, bound };
+    examination.incomplete.extend(package.size_bound.map(of_size));
     if parts.iter().all(|part| part.status == Status::Valid) {
         match overlaps(&package.built) {
             Ok(faults) => examination.faults.extend(faults),

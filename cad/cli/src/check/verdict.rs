@@ -162,7 +162,8 @@ fn findings(examination: &Examination, indent: &str) -> String {
     let mut faults: Vec<&Fault> = examination.faults.iter().collect();
     faults.sort_by_key(|fault| std::cmp::Reverse(fault.level));
     let faults = faults.into_iter().map(|fault| format!("{}: {fault}", fault.level.name()));
-    let incomplete = examination.incomplete.iter().map(|one| format!("not completed: {}: {}", one.check, one.bound));
+    let incomplete =
+        examination.incomplete.iter().map(|one| format!("not completed: {}: {}", one.check, one.bound));
     faults.chain(incomplete).map(|line| format!("{indent}{}\n", shown(&line))).collect()
 }
 
@@ -195,13 +196,8 @@ mod tests {
         let examination = Examination { faults: vec![fault], ..Examination::default() };
         let part = PartVerdict::new(name, examination, judgement);
         let expected = Expectation::default();
-        let verdict = Verdict::of_parts(
-            "a\r.3mf".to_owned(),
-            Examination::default(),
-            vec![part],
-            &expected,
-            judgement,
-        );
+        let verdict =
+            Verdict::of_parts("a\r.3mf".to_owned(), Examination::default(), vec![part], &expected, judgement);
         let text = verdict.describe();
         assert_eq!(text.lines().count(), 3, "{text}");
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text}");

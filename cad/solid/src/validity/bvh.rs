@@ -6,7 +6,7 @@
 //! precision, rounded outward; the exact box of a facet comes from the mesh ([`corner_box`]).
 
 use super::plane::Plane;
-use crate::mesh::{Mesh, Point3};
+use crate::mesh::{Mesh, Point3, Vector3};
 use crate::parallel;
 
 /// Boxes per node.
@@ -103,6 +103,10 @@ impl Node {
 struct Lanes(u8);
 
 impl Lanes {
+    fn len(self) -> u32 {
+        self.0.count_ones()
+    }
+
     /// The lanes after `lane`.
     fn after(self, lane: usize) -> Self {
         Self((u16::from(self.0) >> (lane + 1) << (lane + 1)) as u8)
@@ -132,7 +136,73 @@ pub(super) struct Bvh {
     hubs: Vec<u32>,
     /// The hub that all facets below a node share, by level; empty without hubs.
     node_hubs: Vec<Vec<u32>>,
+    /// The corners of each leaf; empty without hubs.
+    clouds: Vec<Cloud>,
 }
+
+/// The corners of the facets of a leaf. Facets around a hub are long and thin, so that their boxes
+/// contain much that is far from them.
+struct Cloud {
+    points: Vec<Point3>,
+    /// Directions along which other clouds may be apart: the normal of a facet, and the direction
+    /// in its plane across its longest edge.
+    slabs: [Slab; 2],
+}
+
+/// The least and greatest place of the points of a cloud along a direction.
+struct Slab {
+    along: Vector3,
+    low: f64,
+    high: f64,
+}
+
+impl Slab {
+    fn of(along: Vector3, points: &[Point3]) -> Self {
+        let (low, high) = places(along, points);
+        Self { along, low, high }
+    }
+
+    /// Whether other points are certainly apart along the direction.
+    fn is_apart(&self, points: &[Point3]) -> bool {
+        let (low, high) = places(self.along, points);
+        let size = |p: &Point3| p.coords.abs().sum();
+        let reach = points.iter().map(size).fold(self.low.abs() + self.high.abs(), f64::max);
+        let rounding = CLOUD_ROUNDING * reach;
+        low - rounding > self.high || high + rounding < self.low
+    }
+}
+
+/// The least and greatest place of points along a direction.
+fn places(along: Vector3, points: &[Point3]) -> (f64, f64) {
+    let places = points.iter().map(|p| along.dot(&p.coords));
+    places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+}
+
+impl Cloud {
+    fn of(mesh: &Mesh, facets: &[u32]) -> Self {
+        let mut vertices: Vec<u32> = facets.iter().flat_map(|f| mesh.triangles[*f as usize]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let points: Vec<Point3> = vertices.iter().map(|v| mesh.positions[*v as usize]).collect();
+        let [a, b, c] = mesh.corners(mesh.triangles[facets[facets.len() / 2] as usize]);
+        let edges = [b - a, c - b, a - c];
+        let longest = edges.into_iter().fold(edges[0], |x, y| if y.norm() > x.norm() { y } else { x });
+        let normal = (b - a).cross(&(c - a));
+        let unit = |v: Vector3| v.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let slabs = [unit(normal), unit(normal.cross(&longest))].map(|along| Slab::of(along, &points));
+        Self { points, slabs }
+    }
+
+    /// Whether points are certainly apart from the corners.
+    fn is_apart_from(&self, points: &[Point3]) -> bool {
+        self.slabs.iter().any(|slab| slab.is_apart(points))
+    }
+}
+
+/// Relative rounding error of a place along a direction, with a margin.
+const CLOUD_ROUNDING: f64 = 1e-12;
+/// Number of facets of a leaf near a segment from which their corners are compared first.
+const CROWD: u32 = 3;
 
 /// The hub of each facet: of its vertices with at least [`HUB_FACETS`] facets, that with the most.
 /// Empty if no vertex is a hub.
@@ -185,7 +255,11 @@ impl Bvh {
             let plane = |f: &u32| Plane::of(mesh.corners(mesh.triangles[*f as usize]));
             facets[slots].iter().map(plane).collect::<Vec<_>>()
         });
-        Self { facets, planes: planes.concat(), levels, hubs, node_hubs }
+        let clouds = match hubs.is_empty() {
+            true => Vec::new(),
+            false => facets.chunks(WIDTH).map(|eight| Cloud::of(mesh, eight)).collect(),
+        };
+        Self { facets, planes: planes.concat(), levels, hubs, node_hubs, clouds }
     }
 
     pub(super) fn leaves(&self) -> usize {
@@ -224,10 +298,16 @@ impl Bvh {
     }
 
     /// Calls `visit` once for every pair of slots whose boxes touch or overlap, the first of them
-    /// in `leaf`, the second after it, except facets with the same hub. `near` is a buffer.
+    /// in `leaf`, the second after it, except facets with the same hub, and
+    /// facets of leaves that are apart. `near` is a buffer.
     pub(super) fn pairs_from(&self, leaf: usize, near: &mut Vec<usize>, mut visit: impl FnMut(usize, usize)) {
         let own = &self.levels[0][leaf];
         self.leaves_of_other_hubs(&own.hull(), leaf + 1, self.node_hub(0, leaf), near);
+        if let Some(cloud) = self.clouds.get(leaf) {
+            let is_apart =
+                |other: &Cloud| cloud.is_apart_from(&other.points) || other.is_apart_from(&cloud.points);
+            near.retain(|other| !is_apart(&self.clouds[*other]));
+        }
         let mut visit = |a: usize, b: usize| {
             if self.hubs.get(a).is_none_or(|hub| *hub == NO_HUB || *hub != self.hubs[b]) {
                 visit(a, b);
@@ -238,6 +318,26 @@ impl Bvh {
             let bounds = own.lane(lane);
             own.lanes_overlapping(&bounds).after(lane).for_each(|other| visit(slot, WIDTH * leaf + other));
             self.slots_overlapping(&bounds, near, |other| visit(slot, other));
+        }
+    }
+
+    /// Calls `visit` with every slot in the leaves `near` whose box touches or overlaps that of the
+    /// segment, which is `bounds`.
+    pub(super) fn slots_along(
+        &self,
+        (from, to): (Point3, Point3),
+        bounds: &Bounds,
+        near: &[usize],
+        mut visit: impl FnMut(usize),
+    ) {
+        for leaf in near {
+            let lanes = self.levels[0][*leaf].lanes_overlapping(bounds);
+            let is_crowd = lanes.len() >= CROWD;
+            let is_apart = |cloud: &Cloud| cloud.is_apart_from(&[from, to]);
+            if is_crowd && self.clouds.get(*leaf).is_some_and(is_apart) {
+                continue;
+            }
+            lanes.for_each(|lane| visit(WIDTH * leaf + lane));
         }
     }
 

@@ -19,8 +19,12 @@ pub(super) struct Bodies {
 
 /// Most components that are compared with each other.
 const MAX_COMPONENTS: usize = 10_000;
+/// The same, for each facet of the mesh.
+const FACETS_PER_FACET: usize = 8;
+/// Number of boxes around a component from which nesting is not resolved.
+const MAX_AROUND: usize = 256;
 /// Most facets of enclosing components that all components are compared with.
-const MAX_ENCLOSING_FACETS: usize = 20_000_000;
+const MAX_ENCLOSING_FACETS: usize = 4_000_000;
 
 /// Classifies the connected components of a closed mesh of volume `volume_mm3`.
 ///
@@ -40,21 +44,25 @@ pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
         bodies.bound = Some(format!("more than {MAX_COMPONENTS} separate surfaces"));
         return bodies;
     }
-    let candidates = parallel::in_chunks(components.len(), |range| {
+    let around = parallel::in_chunks(components.len(), |range| {
         let around = |i: usize| {
             let near = |j: &usize| *j != i && components[*j].surrounds(&components[i]);
-            (0..components.len()).filter(near).collect::<Vec<_>>()
+            (0..components.len()).filter(near).take(MAX_AROUND).collect::<Vec<_>>()
         };
         range.map(around).collect::<Vec<_>>()
     })
     .concat();
-    let facets: usize = candidates.iter().flatten().map(|j| components[*j].triangles.len()).sum();
-    if facets > MAX_ENCLOSING_FACETS.max(8 * mesh.triangles.len()) {
-        bodies.bound = Some(format!("more than {MAX_ENCLOSING_FACETS} facets around nested surfaces"));
+    let facets: usize = around.iter().flatten().map(|j| components[*j].triangles.len()).sum();
+    let is_nested = around.iter().any(|around| around.len() == MAX_AROUND);
+    if is_nested || facets > MAX_ENCLOSING_FACETS + FACETS_PER_FACET * mesh.triangles.len() {
+        let bound = format!(
+            "more than {MAX_AROUND} surfaces or {MAX_ENCLOSING_FACETS} facets around another surface"
+        );
+        bodies.bound = Some(bound);
         return bodies;
     }
     let depths = parallel::in_chunks(components.len(), |range| {
-        let depth = |i: usize| candidates[i].iter().filter(|j| components[**j].encloses(&components[i])).count();
+        let depth = |i: usize| around[i].iter().filter(|j| components[**j].encloses(&components[i])).count();
         range.map(depth).collect::<Vec<_>>()
     });
     let mut wrong = Vec::new();

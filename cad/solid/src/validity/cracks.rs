@@ -1,17 +1,19 @@
 //! Cracks: open edges that close when corners are joined over a distance that nobody can see.
 
-use std::collections::HashMap;
+use hashbrown::HashMap;
 
 use crate::mesh::{Mesh, Point3};
 
 /// Greatest width of a crack, mm. Wider gaps are holes. A tenth of the finest layer of a printer.
 const MAX_WIDTH_MM: f64 = 0.01;
-/// Least distance that is tried, mm: below it, corners differ by rounding only.
-const MIN_WIDTH_MM: f64 = 1e-7;
+/// Greatest width of a crack, as a share of the longest side of the mesh.
+const MAX_SHARE: f64 = 1e-4;
+/// Distances that are tried.
+const STEPS: i32 = 12;
 /// Distances that are tried per decade.
-const STEPS_PER_DECADE: i32 = 2;
+const STEPS_PER_DECADE: f64 = 2.0;
 /// Most pairs of corners per open corner that are compared.
-const MAX_PAIRS: usize = 64;
+const MAX_PAIRS: usize = 32;
 
 /// A mesh whose cracks are closed.
 pub(super) struct Joined {
@@ -24,13 +26,13 @@ pub(super) struct Joined {
 /// Returns the mesh with the corners of its open edges joined, if that closes it.
 pub(super) fn joined(mesh: &Mesh) -> Option<Joined> {
     let open = Open::of(mesh);
-    let pairs = open.pairs(mesh)?;
+    let (low, high) = mesh.bounds()?;
+    let max_width = MAX_WIDTH_MM.min(MAX_SHARE * (high - low).max());
+    let pairs = open.pairs(mesh, max_width)?;
     let closes = |width: f64| open.is_closed(&open.joined(&pairs, width, mesh.positions.len()));
-    let decades = (MAX_WIDTH_MM / MIN_WIDTH_MM).log10().round();
-    #[allow(clippy::cast_possible_truncation)]
-    let steps = decades as i32 * STEPS_PER_DECADE;
-    let width = |step: i32| MIN_WIDTH_MM * libm::pow(10.0, f64::from(step) / f64::from(STEPS_PER_DECADE));
-    let step = (0..=steps).find(|step| closes(width(*step)))?;
+    // Downward from the greatest width.
+    let width = |step: i32| max_width * libm::pow(10.0, f64::from(step - STEPS) / STEPS_PER_DECADE);
+    let step = (0..=STEPS).find(|step| closes(width(*step)))?;
     // The smallest distance between two corners that closes the mesh.
     let within = |(distance, ..): &&(f64, u32, u32)| {
         *distance <= width(step) && (step == 0 || *distance > width(step - 1))
@@ -72,10 +74,10 @@ impl Open {
     }
 
     /// Pairs of open vertices within the greatest width, by distance; `None` if there are too many.
-    fn pairs(&self, mesh: &Mesh) -> Option<Vec<(f64, u32, u32)>> {
+    fn pairs(&self, mesh: &Mesh, max_width: f64) -> Option<Vec<(f64, u32, u32)>> {
         let cell = |p: Point3| -> [i64; 3] {
             #[allow(clippy::cast_possible_truncation)]
-            p.coords.map(|x| (x / MAX_WIDTH_MM).floor() as i64).into()
+            p.coords.map(|x| (x / max_width).floor() as i64).into()
         };
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         let mut pairs = Vec::new();
@@ -84,12 +86,15 @@ impl Open {
             let point = mesh.positions[*v as usize];
             let [x, y, z] = cell(point);
             for i in 0..27 {
-                let near =
-                    [x.saturating_add(i % 3 - 1), y.saturating_add(i / 3 % 3 - 1), z.saturating_add(i / 9 - 1)];
+                let near = [
+                    x.saturating_add(i % 3 - 1),
+                    y.saturating_add(i / 3 % 3 - 1),
+                    z.saturating_add(i / 9 - 1),
+                ];
                 for other in cells.get(&near).into_iter().flatten() {
                     left = left.checked_sub(1)?;
                     let distance = (mesh.positions[*other as usize] - point).norm();
-                    if distance <= MAX_WIDTH_MM {
+                    if distance <= max_width {
                         pairs.push((distance, *other, *v));
                     }
                 }

@@ -247,7 +247,9 @@ fn examine_surface(
 
 /// Checks of facets that need not share a vertex.
 fn examine_space(mesh: &Mesh, expected: &Expectation, walls: bool, examination: &mut Examination) {
-    if !(expected.intersections || walls) {
+    // Without any area there is nothing to intersect.
+    let has_area = mesh.facets().any(|corners| facets::height_mm(corners) >= expected.min_height_mm);
+    if !(expected.intersections || walls) || !has_area {
         return;
     }
     let bvh = Bvh::new(mesh);

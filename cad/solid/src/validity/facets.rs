@@ -24,12 +24,15 @@ const MAX_COORDINATE_MM: f64 = 1e36;
 pub(super) fn not_finite(mesh: &Mesh) -> Option<Fault> {
     let is_finite = |c: &f64| c.abs() <= MAX_COORDINATE_MM;
     let count = mesh.positions.iter().filter(|p| !p.coords.iter().all(is_finite)).count();
-    let detail = format!("{count} vertices have a coordinate that is NaN, infinite or beyond {MAX_COORDINATE_MM:e} mm");
+    let detail = format!(
+        "{count} vertices have a coordinate that is NaN, infinite or beyond {MAX_COORDINATE_MM:e} mm"
+    );
     (count > 0).then(|| Fault::new("not finite", Level::Error, count, detail))
 }
 
 /// Units that files are written in by mistake, with their length in mm.
-const OTHER_UNITS: [(&str, f64); 4] = [("inches", 25.4), ("metres", 1000.0), ("feet", 304.8), ("micrometres", 1e-3)];
+const OTHER_UNITS: [(&str, f64); 4] =
+    [("inches", 25.4), ("metres", 1000.0), ("feet", 304.8), ("micrometres", 1e-3)];
 
 /// A bounding box that is too small or too large for millimetres.
 pub(super) fn implausible_size(low: [f64; 3], high: [f64; 3], (least, most): (f64, f64)) -> Option<Fault> {

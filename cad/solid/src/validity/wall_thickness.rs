@@ -54,8 +54,9 @@ pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64) -> Search {
     let count: usize = parts.iter().map(|part| part.count).sum();
     let worst = parts.iter().map(|part| part.worst).fold(None, thinner);
     let fault = worst.map(|(thickness, facet)| {
-        let detail =
-            format!("walls below {count} facets are thinner than {min_wall_mm} mm, the thinnest {thickness:.3} mm");
+        let detail = format!(
+            "walls below {count} facets are thinner than {min_wall_mm} mm, the thinnest {thickness:.3} mm"
+        );
         Fault::new("thin wall", Level::Warning, count, detail).at(centroid(mesh, facet))
     });
     let is_spent = parts.iter().any(|part| part.is_spent);
@@ -80,6 +81,7 @@ struct Ray {
     facet: usize,
     from: Point3,
     along: Vector3,
+    length_mm: f64,
     /// The exact bounding box.
     reach: (Point3, Point3),
     bounds: Bounds,
@@ -92,13 +94,14 @@ impl Ray {
         let (from, along) = (centroid(mesh, facet), -normal);
         let end = from + along * length_mm;
         let reach = (from.inf(&end), from.sup(&end));
-        Some(Self { facet, from, along, reach, bounds: Bounds::around(reach.0, reach.1) })
+        Some(Self { facet, from, along, length_mm, reach, bounds: Bounds::around(reach.0, reach.1) })
     }
 
     /// Distance to the nearest facing facet in the leaves `near`; infinite if there is none.
     fn nearest_mm(&self, mesh: &Mesh, bvh: &Bvh, near: &[usize], budget: &mut Budget) -> f64 {
         let mut nearest = f64::INFINITY;
-        bvh.slots_overlapping(&self.bounds, near, |slot| {
+        let end = self.from + self.along * self.length_mm;
+        bvh.slots_along((self.from, end), &self.bounds, near, |slot| {
             // The starting facet faces back along the ray (-1); the other side of a wall faces
             // ahead.
             budget.spend(1);

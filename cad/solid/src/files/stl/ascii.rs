@@ -146,7 +146,9 @@ impl<'a> Words<'a> {
     /// The end of the line at the last word.
     fn end_of_line(&self) -> usize {
         let rest = &self.bytes[self.at..];
-        rest.iter().position(|byte| matches!(byte, b'\r' | b'\n')).map_or(self.bytes.len(), |end| self.at + end)
+        rest.iter()
+            .position(|byte| matches!(byte, b'\r' | b'\n'))
+            .map_or(self.bytes.len(), |end| self.at + end)
     }
 
     fn skip_line(&mut self) {
@@ -182,8 +184,9 @@ impl<'a> Words<'a> {
     /// The line of a byte, from 1. A line ends with CR, LF or both.
     fn line(&self, at: usize) -> usize {
         let before = &self.bytes[..at];
-        let is_end =
-            |(i, byte): (usize, &u8)| *byte == b'\n' || (*byte == b'\r' && self.bytes.get(i + 1) != Some(&b'\n'));
+        let is_end = |(i, byte): (usize, &u8)| {
+            *byte == b'\n' || (*byte == b'\r' && self.bytes.get(i + 1) != Some(&b'\n'))
+        };
         1 + before.iter().enumerate().filter(|end| is_end((end.0, end.1))).count()
     }
 
@@ -243,12 +246,20 @@ mod tests {
         for (text, expected, deviation) in [
             (format!("SOLID A\n{}ENDSOLID A\n", ONE.to_uppercase()), 1, None),
             (format!("Solid a\r{}EndSolid a\r", ONE.replace('\n', "\r")), 1, None),
-            (format!("solid a\n{}endsolid\n", ONE.replace("normal 0 0 1", "normal nan -nan(ind) 1.#QNAN")), 1, None),
+            (
+                format!("solid a\n{}endsolid\n", ONE.replace("normal 0 0 1", "normal nan -nan(ind) 1.#QNAN")),
+                1,
+                None,
+            ),
             (one_line, 2, None),
             (format!("solid facet of a thing\n{ONE}endsolid facet of a thing\n"), 1, None),
             (format!("solid a\n{ONE}"), 1, Some("endsolid is missing")),
             (format!("solid a\n{ONE}endsolid a\nmade by a program\n\n"), 1, Some("text follows endsolid")),
-            (format!("solid a\n{ONE}endsolid a\n--\nsolid b\n{ONE}endsolid"), 2, Some("text follows endsolid")),
+            (
+                format!("solid a\n{ONE}endsolid a\n--\nsolid b\n{ONE}endsolid"),
+                2,
+                Some("text follows endsolid"),
+            ),
         ] {
             assert!(is_ascii(text.as_bytes()), "{text}");
             let (facets, deviations) = read_ascii(&mut std::io::Cursor::new(&text)).unwrap();

@@ -13,7 +13,7 @@ use super::part_name::normalized;
 /// Longest message of a library that an error repeats, in characters.
 const MAX_CHARACTERS: usize = 200;
 /// Bytes that any archive may unpack to.
-const FREE_BYTES: u64 = 8 << 20;
+const FREE_BYTES: u64 = 16 << 20;
 /// Bytes that an archive may unpack to for each of its own: the models of programs unpack to 4 to 12
 /// times their size, and endless zeros to a thousand times.
 const BYTES_PER_BYTE: u64 = 32;
@@ -41,7 +41,9 @@ impl<'a> Archive<'a> {
         let damaged = || ThreeMfReadError::Archive("it is truncated or damaged".to_owned());
         let zip = ZipArchive::new(Cursor::new(bytes)).map_err(|_| damaged())?;
         if zip.len() > MAX_ENTRIES {
-            return Err(ThreeMfReadError::Bound(format!("the ZIP archive has more than {MAX_ENTRIES} entries")));
+            return Err(ThreeMfReadError::Bound(format!(
+                "the ZIP archive has more than {MAX_ENTRIES} entries"
+            )));
         }
         let (mut parts, mut repeated) = (HashMap::new(), Vec::new());
         for i in 0..zip.len() {

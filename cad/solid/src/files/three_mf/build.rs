@@ -1,6 +1,6 @@
 //! The build: items of the plate, resolved to meshes in their places.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use super::findings::Findings;
 use super::model::{Model, ModelObject, ObjectRef, PackagedMesh};
@@ -13,6 +13,8 @@ const MAX_DEPTH: usize = 1000;
 const MAX_OBJECTS: usize = 10_000;
 /// Most meshes that are returned again because a transform changes their shape.
 const MAX_SCALED: usize = 100;
+/// Most triangles of these meshes.
+const MAX_SCALED_TRIANGLES: usize = 200_000;
 /// Most solids that are returned in their places.
 const MAX_SOLIDS: usize = 500;
 /// Most triangles of all solids in their places, and most vertices of all items.
@@ -40,6 +42,10 @@ pub(super) struct Build {
     pub(super) scaled: Vec<PackagedMesh>,
     /// The bound that ended the traversal.
     pub(super) bound: Option<String>,
+    /// The bound on meshes of another size.
+    pub(super) size_bound: Option<String>,
+    /// Triangles of meshes of another size.
+    scaled_triangles: usize,
     /// Triangles of all solids.
     triangles: usize,
     /// Vertices of all items.
@@ -66,6 +72,7 @@ impl Build {
             is_printable: true,
             path: Vec::new(),
             bounds: None,
+            sizes: HashSet::new(),
             build: Self::default(),
         };
         for (number, item) in items.iter().enumerate() {
@@ -91,6 +98,8 @@ struct Traversal<'a> {
     path: Vec<&'a ObjectRef>,
     /// Bounding box of the current item.
     bounds: Option<(Point3, Point3)>,
+    /// Objects and shapes of transforms that are not rigid.
+    sizes: HashSet<(&'a ObjectRef, [u64; 9])>,
     build: Build,
 }
 
@@ -107,7 +116,8 @@ impl<'a> Traversal<'a> {
             return;
         }
         if self.path.len() == MAX_DEPTH || self.objects == MAX_OBJECTS {
-            let bound = format!("the build has more than {MAX_OBJECTS} components, or {MAX_DEPTH} nested ones");
+            let bound =
+                format!("the build has more than {MAX_OBJECTS} components, or {MAX_DEPTH} nested ones");
             self.build.bound = Some(bound);
             return;
         }
@@ -121,9 +131,8 @@ impl<'a> Traversal<'a> {
             if object.is_solid() && self.is_printable {
                 self.place(object, mesh, &transform);
             }
-            if !transform.is_rigid() && self.build.scaled.len() < MAX_SCALED {
-                let (name, mesh) = (format!("{}, as it is built", object.name), transform.mesh(mesh));
-                self.build.scaled.push(PackagedMesh { name, is_solid: object.is_solid(), mesh });
+            if !transform.is_rigid() {
+                self.scale(reference, object, mesh, &transform);
             }
         }
         self.path.push(reference);
@@ -145,6 +154,24 @@ impl<'a> Traversal<'a> {
         }
         let (name, mesh) = (object.name.clone(), transform.mesh(mesh));
         self.build.solids.push(PlacedMesh { item: self.item, name, mesh });
+    }
+
+    /// Adds the mesh in another size or shape than that of its object, each once.
+    fn scale(&mut self, reference: &'a ObjectRef, object: &ModelObject, mesh: &Mesh, transform: &Transform) {
+        if !self.sizes.insert((reference, transform.shape())) {
+            return;
+        }
+        self.build.scaled_triangles += mesh.triangles.len();
+        if self.build.scaled.len() == MAX_SCALED
+            || self.build.scaled_triangles > MAX_SCALED_TRIANGLES.max(mesh.triangles.len())
+        {
+            self.build.size_bound = Some(format!(
+                "more than {MAX_SCALED} other sizes of objects, or {MAX_SCALED_TRIANGLES} triangles"
+            ));
+            return;
+        }
+        let (name, mesh) = (format!("{}, as it is built", object.name), transform.mesh(mesh));
+        self.build.scaled.push(PackagedMesh { name, is_solid: object.is_solid(), mesh });
     }
 
     fn extend_bounds(&mut self, mesh: &Mesh, transform: &Transform) {

@@ -197,7 +197,8 @@ impl Builder<'_> {
         }
         self.elements += 1;
         if self.elements > MAX_ELEMENTS {
-            let bound = format!("more than {MAX_ELEMENTS} XML elements in addition to vertices and triangles");
+            let bound =
+                format!("more than {MAX_ELEMENTS} XML elements in addition to vertices and triangles");
             return Err(XmlError::Bound(bound));
         }
         let attributes = self.reader.attributes.iter();
@@ -282,8 +283,9 @@ impl Builder<'_> {
             match value.and_then(number) {
                 Some(number) => *coordinate = number,
                 None => {
-                    let first =
-                        || value.map_or_else(|| format!("without {name}"), |v| format!("with {name}=\"{v}\""));
+                    let first = || {
+                        value.map_or_else(|| format!("without {name}"), |v| format!("with {name}=\"{v}\""))
+                    };
                     mesh.invalid.get_or_insert_with(|| (0, first())).0 += 1;
                 }
             }

@@ -73,7 +73,10 @@ fn check_multiproperties(element: &Element, kinds: &HashMap<&str, String>, findi
     let listed: Vec<&str> = ids.map(|id| kinds.get(id).map_or("", String::as_str)).collect();
     let count = |names: &[&str]| listed.iter().filter(|kind| names.contains(kind)).count();
     for (is_wrong, problem) in [
-        (count(&["basematerials", "compositematerials"]) > 1, "more than one group of base or composite materials"),
+        (
+            count(&["basematerials", "compositematerials"]) > 1,
+            "more than one group of base or composite materials",
+        ),
         (count(&["colorgroup"]) > 1, "more than one <colorgroup>"),
         (count(&["multiproperties"]) > 0, "another <multiproperties>"),
         (count(&[""]) > 0, "a resource that does not exist"),

@@ -98,12 +98,7 @@ impl ModelReader {
     ///
     /// # Errors
     /// [`ThreeMfReadError`] if the text is not a model of the core specification, or cannot be judged.
-    pub(super) fn model(
-        &mut self,
-        text: &str,
-        part: &str,
-        shown: &str,
-    ) -> Result<Model, ThreeMfReadError> {
+    pub(super) fn model(&mut self, text: &str, part: &str, shown: &str) -> Result<Model, ThreeMfReadError> {
         let mut document = read_document(text, shown)?;
         if !document.root.is_core("model") {
             return Err(malformed(shown, "the root element is not a model of the 3MF core specification"));
@@ -159,7 +154,8 @@ impl ModelReader {
         }
         let (meshes, components) = (object.core("mesh").count(), object.core("components").count());
         if meshes + components != 1 {
-            let detail = format!("object {id} has {meshes} meshes and {components} lists of components, not one");
+            let detail =
+                format!("object {id} has {meshes} meshes and {components} lists of components, not one");
             self.findings.error("object", "3MF core B.1.1", &detail);
         }
         if components > 0 && (object.attribute("pid").is_some() || object.attribute("pindex").is_some()) {
@@ -172,7 +168,8 @@ impl ModelReader {
             placements.iter().map(|component| self.placement(component, part, unit_mm)).collect();
         for ((component_part, component), _) in &components {
             if component_part == part && !model.objects.contains_key(component) {
-                let detail = format!("object {id} has the component {component}, which is not defined before it");
+                let detail =
+                    format!("object {id} has the component {component}, which is not defined before it");
                 self.findings.error("reference", "3MF core 4.2.1", &detail);
             }
         }
@@ -203,7 +200,8 @@ impl ModelReader {
         triangles.retain(exists);
         let outside = number - triangles.len();
         if outside > 0 {
-            let detail = format!("{outside} triangles of object {id} refer to none of its {vertices} vertices");
+            let detail =
+                format!("{outside} triangles of object {id} refer to none of its {vertices} vertices");
             findings.add("index", Level::Error, outside, "3MF core 4.1.4.1", &detail);
         }
         let repeated = triangles.iter().filter(|[a, b, c]| a == b || b == c || c == a).count();
@@ -308,13 +306,18 @@ impl ModelReader {
             if !names.insert(name) {
                 self.findings.error("metadata", "3MF core 3.4.1", &format!("{name} occurs twice"));
             }
-            let is_known = match name.split_once(':') {
-                Some((prefix, _)) => element.prefixes.contains_key(prefix),
-                None => is_metadata(name),
-            };
-            if !is_known {
-                let detail = format!("{name} is not in the specification and has no namespace");
-                self.findings.error("metadata", "3MF core 3.4.1", &detail);
+            match name.split_once(':') {
+                Some((prefix, _)) if element.prefixes.contains_key(prefix) => {}
+                Some((prefix, _)) => {
+                    let detail = format!("the namespace {prefix} of {name} is not declared");
+                    self.findings.error("metadata", "3MF core 3.4.1", &detail);
+                }
+                None if is_metadata(name) => {}
+                // Producers must not write it, and readers ignore it.
+                None => {
+                    let detail = format!("{name} is not in the specification and has no namespace");
+                    self.findings.warning("metadata", "3MF core 3.4.1", &detail);
+                }
             }
         }
     }
@@ -352,7 +355,8 @@ impl ModelReader {
         let meshes = || object.core("mesh").filter_map(|mesh| mesh.mesh.as_ref());
         let is_incomplete = pid.is_none() || pindex.is_none();
         if (pindex.is_some() && pid.is_none()) || (is_incomplete && meshes().any(|mesh| mesh.has_property)) {
-            let detail = format!("object {id} or its triangles have a property, but the object has no pid and pindex");
+            let detail =
+                format!("object {id} or its triangles have a property, but the object has no pid and pindex");
             self.findings.error("property", "3MF core 4", &detail);
         }
         let of_triangles = meshes().flat_map(|mesh| &mesh.groups).map(String::as_str);

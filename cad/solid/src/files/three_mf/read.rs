@@ -22,6 +22,8 @@ pub struct ThreeMf {
     pub built: Vec<PlacedMesh>,
     /// The bound that was met before all solids were placed.
     pub bound: Option<String>,
+    /// The bound that was met before meshes of all other sizes were returned.
+    pub size_bound: Option<String>,
     /// The configuration that the package was made from, if pinswitch wrote it.
     pub configuration: Option<String>,
     /// The friction law of its curve, if that is not the default law.
@@ -72,13 +74,16 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
         };
         let referenced = model.referenced_parts().into_iter().map(str::to_owned).collect::<Vec<_>>();
         models.insert(part, model);
-        pending.extend(referenced.into_iter().filter(|part| !models.contains_key(part)).map(|part| (part, None)));
+        pending.extend(
+            referenced.into_iter().filter(|part| !models.contains_key(part)).map(|part| (part, None)),
+        );
     }
     let ModelReader { mut findings, configuration, law } = reader;
     let build = Build::of_package(&models, &main_part, &mut findings);
     let main = models.remove(&main_part).into_iter();
     let scaled = build.scaled;
     let meshes = main.chain(models.into_values()).flat_map(Model::into_meshes).chain(scaled).collect();
-    let (built, bound, faults) = (build.solids, build.bound, findings.finish());
-    Ok(ThreeMf { meshes, faults, built, bound, configuration, law })
+    let (built, bound, size_bound) = (build.solids, build.bound, build.size_bound);
+    let faults = findings.finish();
+    Ok(ThreeMf { meshes, faults, built, bound, size_bound, configuration, law })
 }

@@ -36,11 +36,20 @@ pub(super) fn relationships(
         Some(Relationship {
             kind: element.attribute("Type")?.to_owned(),
             target: resolved(source, element.attribute("Target")?),
-            is_external: element.attribute("TargetMode") == Some("External"),
+            is_external: element.attribute("TargetMode") == Some("External")
+                || element.attribute("Target").is_some_and(is_absolute_uri),
         })
     };
     let elements = root.children.iter().filter(|element| element.name == "Relationship");
     Ok(Some(elements.filter_map(relationship).collect()))
+}
+
+/// Whether a target begins with the scheme of an absolute URI, or with the drive of a path.
+fn is_absolute_uri(target: &str) -> bool {
+    let is_scheme = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
+    target.split_once(':').is_some_and(|(scheme, _)| {
+        scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(is_scheme)
+    })
 }
 
 /// Content types of parts.
@@ -118,7 +127,11 @@ pub(super) fn check(
         }
         let is_core = [MODEL_TYPE, PRINT_TICKET_TYPE, THUMBNAIL_TYPE].contains(&one.kind.as_str());
         if one.is_external {
-            findings.error("relationships", "3MF core 2.1.1", "a relationship refers to an external resource");
+            findings.error(
+                "relationships",
+                "3MF core 2.1.1",
+                "a relationship refers to an external resource",
+            );
         } else if is_core && !archive.contains(&one.target) {
             let detail = format!("{} is missing, which a relationship refers to", one.target);
             findings.error("relationships", "3MF core 2.1.1", &detail);

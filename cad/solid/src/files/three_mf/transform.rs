@@ -36,6 +36,11 @@ impl Transform {
         })
     }
 
+    /// The bits of the linear part, which determine size and shape of a mesh.
+    pub(super) fn shape(&self) -> [u64; 9] {
+        std::array::from_fn(|i| self.0[i / 3][i % 3].to_bits())
+    }
+
     /// Determinant of the linear part: negative for a transform that mirrors, zero for one that
     /// flattens.
     pub(super) fn determinant(&self) -> f64 {

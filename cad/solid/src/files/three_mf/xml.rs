@@ -422,9 +422,27 @@ mod tests {
     #[test]
     fn malformed_documents_are_refused() {
         for text in [
-            "", "x", "<a", "<a>", "<a></b>", "<a/><b/>", "<a b/>", "<a b=c/>", "<a b='1' b='2'/>", "<a>&b;</a>",
-            "<p:a/>", "<a p:b='1'/>", "<!DOCTYPE a><a/>", "<a b='<'/>", "<a/>x", "</a>", "<1/>",
-            "<?xml version='1.0' encoding='UTF-16'?><a/>", "<a b='1'c='2'/>", "<a>&#0;</a>", "<!--<a/>",
+            "",
+            "x",
+            "<a",
+            "<a>",
+            "<a></b>",
+            "<a/><b/>",
+            "<a b/>",
+            "<a b=c/>",
+            "<a b='1' b='2'/>",
+            "<a>&b;</a>",
+            "<p:a/>",
+            "<a p:b='1'/>",
+            "<!DOCTYPE a><a/>",
+            "<a b='<'/>",
+            "<a/>x",
+            "</a>",
+            "<1/>",
+            "<?xml version='1.0' encoding='UTF-16'?><a/>",
+            "<a b='1'c='2'/>",
+            "<a>&#0;</a>",
+            "<!--<a/>",
             "<a xmlns:p='u' xmlns:q='u' p:b='1' q:b='2'/>",
         ] {
             assert!(matches!(read(text), Err(XmlError::Malformed(..))), "{text}: {:?}", read(text));

@@ -74,13 +74,10 @@ impl Reader {
         words.expect(b"normal", form)?;
         let mut normal = [0.0; 3];
         for coordinate in &mut normal {
-            // Programs write `nan`, `-nan(ind)` or `1.#QNAN` for facets without area.
+            // Programs write `nan`, `-nan(ind)`, `1.#QNAN` or a word for facets without area, and
+            // readers compute normals from the corners.
             let word = words.next().ok_or_else(|| words.missing(form))?;
-            *coordinate = match number(word) {
-                Some(number) => number,
-                None if is_not_a_number(word) => f32::NAN,
-                None => return Err(words.unexpected(form)),
-            };
+            *coordinate = number(word).unwrap_or(f32::NAN);
         }
         words.expect(b"outer", "outer loop")?;
         words.expect(b"loop", "outer loop")?;
@@ -103,13 +100,6 @@ impl Reader {
 
 fn number(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
-}
-
-/// Whether a word is one of the notations for a number that is not finite.
-fn is_not_a_number(word: &[u8]) -> bool {
-    let word = word.to_ascii_lowercase();
-    let word = word.strip_prefix(b"-").or_else(|| word.strip_prefix(b"+")).unwrap_or(&word);
-    word.starts_with(b"nan") || word.starts_with(b"inf") || word.starts_with(b"1.#")
 }
 
 fn is_space(byte: &u8) -> bool {
@@ -247,7 +237,7 @@ mod tests {
             (format!("SOLID A\n{}ENDSOLID A\n", ONE.to_uppercase()), 1, None),
             (format!("Solid a\r{}EndSolid a\r", ONE.replace('\n', "\r")), 1, None),
             (
-                format!("solid a\n{}endsolid\n", ONE.replace("normal 0 0 1", "normal nan -nan(ind) 1.#QNAN")),
+                format!("solid a\n{}endsolid\n", ONE.replace("normal 0 0 1", "normal nan -nan(ind) word")),
                 1,
                 None,
             ),

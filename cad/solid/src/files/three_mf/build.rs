@@ -112,6 +112,10 @@ impl<'a> Traversal<'a> {
             return;
         };
         if self.path.contains(&reference) {
+            // Within a part, the reference to an object that is not defined before it is reported.
+            if self.path.last().is_none_or(|(last, _)| last == part) {
+                return;
+            }
             self.findings.error("reference", "3MF core 4.2.1", &format!("object {id} contains itself"));
             return;
         }

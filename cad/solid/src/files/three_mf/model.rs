@@ -91,6 +91,8 @@ pub(super) struct ModelReader {
     pub(super) findings: Findings,
     pub(super) configuration: Option<String>,
     pub(super) law: Option<String>,
+    /// Objects of the last model with their thumbnails.
+    pub(super) thumbnails: Vec<(String, String)>,
 }
 
 impl ModelReader {
@@ -161,6 +163,9 @@ impl ModelReader {
         if components > 0 && (object.attribute("pid").is_some() || object.attribute("pindex").is_some()) {
             let detail = format!("object {id} has components and a property");
             self.findings.error("property", "3MF core 4", &detail);
+        }
+        if let Some(thumbnail) = object.attribute("thumbnail") {
+            self.thumbnails.push((id.clone(), normalized(thumbnail)));
         }
         let name = object.attribute("name").map_or_else(|| format!("object {id}"), str::to_owned);
         let placements: Vec<_> = object.core("components").flat_map(|all| all.core("component")).collect();
@@ -300,8 +305,18 @@ impl ModelReader {
     }
 
     fn check_metadata(&mut self, root: &Element) {
+        self.check_metadata_of(root);
+        let items = root.core("build").flat_map(|build| build.core("item"));
+        let objects = root.core("resources").flat_map(|resources| resources.core("object"));
+        for group in items.chain(objects).flat_map(|element| element.core("metadatagroup")) {
+            self.check_metadata_of(group);
+        }
+    }
+
+    /// Checks the metadata of the model, or of an object or an item.
+    fn check_metadata_of(&mut self, parent: &Element) {
         let mut names = HashSet::new();
-        for element in root.core("metadata") {
+        for element in parent.core("metadata") {
             let Some(name) = element.attribute("name") else { continue };
             if !names.insert(name) {
                 self.findings.error("metadata", "3MF core 3.4.1", &format!("{name} occurs twice"));
@@ -353,11 +368,15 @@ impl ModelReader {
         let id = object.attribute("id").unwrap_or_default();
         let (pid, pindex) = (object.attribute("pid"), object.attribute("pindex"));
         let meshes = || object.core("mesh").filter_map(|mesh| mesh.mesh.as_ref());
-        let is_incomplete = pid.is_none() || pindex.is_none();
-        if (pindex.is_some() && pid.is_none()) || (is_incomplete && meshes().any(|mesh| mesh.has_property)) {
-            let detail =
-                format!("object {id} or its triangles have a property, but the object has no pid and pindex");
+        if pindex.is_some() && pid.is_none() {
+            let detail = format!("object {id} has a pindex without pid");
             self.findings.error("property", "3MF core 4", &detail);
+        }
+        let is_incomplete = pid.is_none() || pindex.is_none();
+        if is_incomplete && meshes().any(|mesh| mesh.has_property) {
+            let detail =
+                format!("triangles of object {id} have a property, but the object has no pid and pindex");
+            self.findings.warning("property", "3MF core 4", &detail);
         }
         let of_triangles = meshes().flat_map(|mesh| &mesh.groups).map(String::as_str);
         for group in pid.into_iter().chain(of_triangles) {

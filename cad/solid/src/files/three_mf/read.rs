@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::archive::Archive;
 use super::build::{Build, PlacedMesh};
-use super::core_spec::{CONTENT_TYPES, MODEL_TYPE, RELATIONSHIPS, USUAL_MODEL};
+use super::core_spec::{CONTENT_TYPES, MODEL_TYPE, RELATIONSHIPS, THUMBNAIL_TYPE, USUAL_MODEL};
 use super::error::ThreeMfReadError;
 use super::model::{Model, ModelReader, PackagedMesh};
 use super::part_name::normalized;
-use super::relationships::{self, ContentTypes, relationships};
+use super::relationships::{self, ContentTypes, Relationship, relationships};
 use crate::validity::Fault;
 
 /// The content of a package.
@@ -59,13 +59,15 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
     if let Some(types) = &types {
         types.check_model(&archive.name(&main_part), &mut reader.findings);
     }
-    let of_model = relationships(&mut archive, &main_part)?.unwrap_or_default();
-    relationships::check(&of_model, &main_part, &archive, types.as_ref(), &mut reader.findings)?;
     let mut models = BTreeMap::new();
     let mut pending = BTreeMap::from([(main_part.clone(), Some(text))]);
     while let Some((part, text)) = pending.pop_first() {
         let model = match text.map_or_else(|| archive.text(&part), |text| Ok(Some(text)))? {
-            Some(text) => reader.model(&text, &part, &archive.name(&part))?,
+            Some(text) => {
+                let model = reader.model(&text, &part, &archive.name(&part))?;
+                check_relationships(&mut archive, &part, types.as_ref(), &mut reader)?;
+                model
+            }
             None => {
                 let detail = format!("{part} is missing");
                 reader.findings.error("reference", "3MF core 2.1.1", &detail);
@@ -78,7 +80,7 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
             referenced.into_iter().filter(|part| !models.contains_key(part)).map(|part| (part, None)),
         );
     }
-    let ModelReader { mut findings, configuration, law } = reader;
+    let ModelReader { mut findings, configuration, law, .. } = reader;
     let build = Build::of_package(&models, &main_part, &mut findings);
     let main = models.remove(&main_part).into_iter();
     let scaled = build.scaled;
@@ -87,3 +89,28 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
     let faults = findings.finish();
     Ok(ThreeMf { meshes, faults, built, bound, size_bound, configuration, law })
 }
+
+/// Checks the relationships of the model in `part`, which was read last.
+fn check_relationships(
+    archive: &mut Archive<'_>,
+    part: &str,
+    types: Option<&ContentTypes>,
+    reader: &mut ModelReader,
+) -> Result<(), ThreeMfReadError> {
+    let all = relationships(archive, part)?.unwrap_or_default();
+    relationships::check(&all, part, archive, types, &mut reader.findings)?;
+    let is_thumbnail = |target: &str| {
+        let is_target = |one: &&Relationship| normalized(&one.target) == *target;
+        all.iter().take(MAX_THUMBNAILS).find(is_target).is_some_and(|one| one.kind == THUMBNAIL_TYPE)
+    };
+    for (id, target) in std::mem::take(&mut reader.thumbnails).into_iter().take(MAX_THUMBNAILS) {
+        if !is_thumbnail(&target) {
+            let detail = format!("the thumbnail of object {id} has no relationship of that type");
+            reader.findings.error("thumbnail", "3MF core 4", &detail);
+        }
+    }
+    Ok(())
+}
+
+/// Most thumbnails of objects, and most relationships that are compared with them.
+const MAX_THUMBNAILS: usize = 500;

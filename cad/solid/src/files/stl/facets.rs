@@ -48,7 +48,7 @@ impl Normals {
         let (area, length) = (normal.norm(), stored.norm());
         let longest = u.norm().max(v.norm()).max((c - b).norm());
         // Many programs write zeros, for readers to compute.
-        if length == 0.0 || !(area > UNCERTAIN_HEIGHT_MM * longest) {
+        if length == 0.0 || area <= UNCERTAIN_HEIGHT_MM * longest {
             return;
         }
         let cosine = normal.dot(&stored) / (area * length);

@@ -328,6 +328,9 @@ impl ModelReader {
                     self.findings.error("metadata", "3MF core 3.4.1", &detail);
                 }
                 None if is_metadata(name) => {}
+                None if name.trim().is_empty() => {
+                    self.findings.error("metadata", "3MF core 3.4.1", "metadata has an empty name");
+                }
                 // Producers must not write it, and readers ignore it.
                 None => {
                     let detail = format!("{name} is not in the specification and has no namespace");

@@ -22,7 +22,7 @@ pub(super) fn normalized(name: &str) -> String {
             }
         }
     }
-    String::from_utf8(decoded).map_or_else(|_| name.to_owned(), |name| name).to_ascii_lowercase()
+    String::from_utf8(decoded).unwrap_or_else(|_| name.to_owned()).to_ascii_lowercase()
 }
 
 /// Returns the part that the target of a relationship refers to; `source` is the part that the

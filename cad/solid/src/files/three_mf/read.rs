@@ -101,16 +101,22 @@ fn check_relationships(
     relationships::check(&all, part, archive, types, &mut reader.findings)?;
     let is_thumbnail = |target: &str| {
         let is_target = |one: &&Relationship| normalized(&one.target) == *target;
-        all.iter().take(MAX_THUMBNAILS).find(is_target).is_some_and(|one| one.kind == THUMBNAIL_TYPE)
+        all.iter()
+            .take(MAX_THUMBNAILS)
+            .find(is_target)
+            .is_some_and(|one| THUMBNAIL_TYPES.contains(&one.kind.as_str()))
     };
     for (id, target) in std::mem::take(&mut reader.thumbnails).into_iter().take(MAX_THUMBNAILS) {
         if !is_thumbnail(&target) {
             let detail = format!("the thumbnail of object {id} has no relationship of that type");
-            reader.findings.error("thumbnail", "3MF core 4", &detail);
+            reader.findings.warning("thumbnail", "3MF core 4", &detail);
         }
     }
     Ok(())
 }
 
+/// Types of relationships to the thumbnail of an object: the second is that of older files.
+const THUMBNAIL_TYPES: [&str; 2] =
+    [THUMBNAIL_TYPE, "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"];
 /// Most thumbnails of objects, and most relationships that are compared with them.
 const MAX_THUMBNAILS: usize = 500;

@@ -28,6 +28,7 @@ mod import;
 mod input_files;
 mod inverse;
 mod laboratories;
+mod mesh_files;
 mod next_experiment;
 mod own_effects;
 mod pictures;

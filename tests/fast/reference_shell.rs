@@ -34,7 +34,7 @@ fn volume_is_exact_at_every_tolerance() {
         let (design, part) = shell(tolerance);
         assert!((part.solid.volume_mm3() / VOLUME_MM3 - 1.0).abs() < 1e-12);
         let mesh = part.print_mesh(&design).unwrap();
-        assert!(examine(&mesh, &part.expectation(&design)).is_valid());
+        assert!(examine(&mesh, &part.expectation(&design)).is_flawless());
         let error = (mesh.volume_mm3() / VOLUME_MM3 - 1.0).abs();
         println!("tolerance {tolerance} mm: {} triangles, volume off by {:.2e}", mesh.triangles.len(), error);
         assert!(error < 1e-5, "tolerance {tolerance}: off by {error}");

@@ -57,7 +57,7 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
         let written = read_stl(&mut Cursor::new(bytes)).map_err(|e| e.to_string())?;
         for (form, mesh) in [("mesh", &mesh), ("STL", &written.mesh)] {
             let examination = examine(mesh, &expected);
-            if !examination.is_valid() {
+            if !examination.is_flawless() {
                 return Err(format!("{} as {form}: {:?}", part.name, examination.faults));
             }
         }

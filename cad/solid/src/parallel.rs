@@ -12,6 +12,11 @@ use rayon::prelude::*;
 /// work.
 const CHUNK: usize = 4096;
 
+/// Returns the number of chunks of `len` items.
+pub(crate) fn chunks(len: usize) -> usize {
+    len.div_ceil(CHUNK).max(1)
+}
+
 /// Calls `work` on chunks of the range `0..len`; returns the results in the order of the chunks.
 pub(crate) fn in_chunks<R: Send>(len: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     if len <= CHUNK {

@@ -3,9 +3,10 @@
 use std::io::{BufRead, Read, Seek};
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_solid::files::{read_stl, read_three_mf};
-use pinswitch_solid::validity::{Examination, Expectation, Fault, examine, shared_place};
+use pinswitch_solid::files::{PlacedMesh, StlFile, read_stl, read_three_mf};
+use pinswitch_solid::validity::{Examination, Expectation, Fault, Incomplete, Level, examine, shared_place};
 
+use super::judgement::{Judgement, Status};
 use super::verdict::PartVerdict;
 
 /// Depth in mm below which two solids of a 3MF only touch: exporters round coordinates, and parts
@@ -19,8 +20,10 @@ pub(super) enum Format {
     ThreeMf,
 }
 
-/// Faults of a file as a whole, and the verdict on each of its parts.
-type Parts = (Vec<Fault>, Vec<PartVerdict>);
+/// Most pairs of solids on the plate that are compared.
+const MAX_PAIRS: usize = 200;
+/// Most facets that samples of all pairs together are compared with, some 60 ns each.
+const MAX_COMPARISONS: usize = 8_000_000;
 
 impl Format {
     /// Detects the format from the first bytes of a file. Any other content is left to the reader
@@ -72,34 +75,49 @@ pub(super) fn unreadable(error: std::io::Error) -> Diagnostic {
         .with_help("give a file that exists and can be read")
 }
 
-/// Examines an STL; returns the examination and remarks that are not faults.
+/// Examines an STL.
 ///
 /// # Errors
 /// A diagnostic if the file is not an STL.
 pub(super) fn stl(
     reader: &mut (impl BufRead + Seek),
     expected: &Expectation,
-) -> Result<(Examination, Vec<String>), Diagnostic> {
+) -> Result<Examination, Diagnostic> {
     let stl = read_stl(reader)?;
     let mut examination = examine(&stl.mesh, expected);
-    if stl.contrary_normals > 0 {
-        examination.faults.push(Fault {
-            check: "contrary normals",
-            count: stl.contrary_normals,
-            at_mm: None,
-            detail: format!("{} stored normals contradict the order of the corners", stl.contrary_normals),
-        });
-    }
-    let trailing = (stl.trailing_bytes > 0)
-        .then(|| format!("{} bytes follow the last triangle; readers ignore them", stl.trailing_bytes));
-    Ok((examination, trailing.into_iter().collect()))
+    examination.faults.extend(format_faults(&stl));
+    Ok(examination)
 }
 
-/// Examines each solid object of a 3MF, and whether the items on the plate overlap.
+/// Faults of an STL that do not concern its mesh.
+fn format_faults(stl: &StlFile) -> Vec<Fault> {
+    let of_normals = [
+        ("contrary normals", Level::Error, stl.contrary_normals, "contradict the order of the corners"),
+        ("oblique normals", Level::Note, stl.oblique_normals, "are not perpendicular to their facets"),
+        ("invalid normals", Level::Note, stl.invalid_normals, "are not finite"),
+    ];
+    let normals =
+        of_normals.into_iter().filter(|(_, _, count, _)| *count > 0).map(|(check, level, count, problem)| {
+            Fault::new(check, level, count, format!("{count} stored normals {problem}"))
+        });
+    let trailing = (stl.trailing_bytes > 0).then(|| {
+        let detail = format!("{} bytes follow the last triangle; readers ignore them", stl.trailing_bytes);
+        Fault::new("trailing bytes", Level::Note, 1, detail)
+    });
+    let deviations = stl.deviations.iter().map(|one| Fault::new("format", Level::Note, 1, (*one).to_owned()));
+    normals.chain(trailing).chain(deviations).collect()
+}
+
+/// Examines each solid object of a 3MF, and whether the items on the plate overlap. Returns the
+/// faults of the file as a whole, and the verdict on each part.
 ///
 /// # Errors
-/// A diagnostic if the file is not a 3MF.
-pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, Diagnostic> {
+/// A diagnostic if the file is not a 3MF, or cannot be judged.
+pub(super) fn three_mf(
+    mut reader: impl Read,
+    expected: &Expectation,
+    judgement: Judgement,
+) -> Result<(Examination, Vec<PartVerdict>), Diagnostic> {
     let mut bytes = Vec::new();
     reader.read_to_end(&mut bytes).map_err(unreadable)?;
     let package = read_three_mf(&bytes)?;
@@ -109,27 +127,51 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
         .meshes
         .iter()
         .filter(|object| object.is_solid)
-        .map(|object| PartVerdict::new(object.name.clone(), examine(&object.mesh, &each)))
+        .map(|object| PartVerdict::new(object.name.clone(), examine(&object.mesh, &each), judgement))
         .collect();
-    let mut faults = package.faults;
-    if parts.iter().all(|part| part.valid) {
-        for (i, solid) in package.built.iter().enumerate() {
-            // Solids of one item form one object, which may be composed of any.
-            for other in package.built[..i].iter().filter(|other| other.item != solid.item) {
-                if let Some(at) = shared_place(&solid.mesh, &other.mesh, CONTACT_DEPTH_MM) {
-                    let detail = format!("{} and {} overlap on the plate", other.name, solid.name);
-                    faults.push(Fault { check: "overlap", count: 1, at_mm: Some(at), detail });
-                }
-            }
+    let mut examination = Examination { faults: package.faults, ..Examination::default() };
+    let incomplete = |bound| Incomplete { check: "overlap", level: Level::Error, bound };
+    examination.incomplete.extend(package.bound.map(incomplete));
+    // Another size of a valid solid is a valid solid; its walls may be thinner.
+    let of_size = |bound| Incomplete { check: "thin wall", level: Level::Warning, bound };
+    examination.incomplete.extend(package.size_bound.map(of_size));
+    if parts.iter().all(|part| part.status == Status::Valid) {
+        match overlaps(&package.built) {
+            Ok(faults) => examination.faults.extend(faults),
+            Err(bound) => examination.incomplete.push(incomplete(bound)),
         }
     }
-    if parts.is_empty() && faults.is_empty() {
-        faults.push(Fault {
-            check: "empty",
-            count: 0,
-            at_mm: None,
-            detail: "no object is a solid with a mesh".to_owned(),
-        });
+    if parts.is_empty() && !examination.faults.iter().any(|fault| fault.level == Level::Error) {
+        let detail = "no object is a solid with a mesh".to_owned();
+        examination.faults.push(Fault::new("empty", Level::Error, 0, detail));
     }
-    Ok((faults, parts))
+    Ok((examination, parts))
 }
+
+/// Solids of different items that overlap on the plate; the bound if there are too many to compare.
+/// Solids of one item form one object, which may be composed of any.
+fn overlaps(built: &[PlacedMesh]) -> Result<Vec<Fault>, String> {
+    let boxes: Vec<_> = built.iter().map(|solid| solid.mesh.bounds()).collect();
+    let meet = |i: usize, j: usize| match (boxes[i], boxes[j]) {
+        (Some((low, high)), Some((other_low, other_high))) => {
+            (0..3).all(|axis| low[axis] <= other_high[axis] && other_low[axis] <= high[axis])
+        }
+        _ => false,
+    };
+    let pairs = (0..built.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let close = pairs.filter(|(i, j)| built[*i].item != built[*j].item && meet(*i, *j));
+    let close: Vec<_> = close.take(MAX_PAIRS + 1).collect();
+    if close.len() > MAX_PAIRS {
+        return Err(format!("more than {MAX_PAIRS} pairs of solids on the plate are close to each other"));
+    }
+    let each = MAX_COMPARISONS / close.len().max(1);
+    let overlap = |(i, j): (usize, usize)| {
+        let at = shared_place(&built[i].mesh, &built[j].mesh, CONTACT_DEPTH_MM, each)?;
+        let detail = format!("{} and {} overlap on the plate", built[j].name, built[i].name);
+        Some(Fault::new("overlap", Level::Error, 1, detail).with_place(at).with_paragraph("3MF core 3.4.3.1"))
+    };
+    Ok(close.into_iter().filter_map(overlap).take(MAX_OVERLAPS).collect())
+}
+
+/// Most overlaps that are listed.
+const MAX_OVERLAPS: usize = 5;

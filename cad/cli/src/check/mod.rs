@@ -1,6 +1,7 @@
 //! `pinswitch check FILE…`.
 
 mod format;
+mod judgement;
 mod verdict;
 
 use std::path::PathBuf;
@@ -10,7 +11,8 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use rayon::prelude::*;
 
 use super::{Failure, print_json, print_text};
-use pinswitch_solid::validity::Expectation;
+use judgement::{Judgement, Purpose, Status};
+use pinswitch_solid::validity::{Expectation, Level};
 use verdict::Verdict;
 
 /// Check whether STL and 3MF files from any program are valid printable solids.
@@ -19,12 +21,16 @@ use verdict::Verdict;
 /// that join separate surfaces, bodies that face inward or are inside another, facets that
 /// intersect, contrary normals, thin walls and wrong units. Of a 3MF it also finds violations of
 /// the core specification, object by object, and items that overlap on the plate. Every fault has a
-/// place and a size; nothing is repaired. Exit code 0: all files are valid; 1: a file is not valid;
-/// 2: a file cannot be examined.
+/// place and a size; nothing is repaired.
+///
+/// A finding is an error (not a solid, or it breaks the specification), a warning (it can be
+/// printed, with a risk), or a note. Exit code 0: all files are valid; 1: a file is not valid; 2: a
+/// file cannot be read or judged, whatever the others are.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch check out/three-double/*.stl out/three-double/assembly.3mf
-  pinswitch check plate.stl --bodies 3 --min-wall 0.8 --json")]
+  pinswitch check plate.stl --bodies 3 --min-wall 0.8 --json
+  pinswitch check --strict --for print downloads/*.stl")]
 pub(super) struct Arguments {
     /// STL files, binary or ASCII, and 3MF files.
     #[arg(required = true, value_name = "FILE")]
@@ -35,6 +41,12 @@ pub(super) struct Arguments {
     /// Report walls thinner than this, in mm; 0 accepts any.
     #[arg(long, value_name = "MM", default_value_t = 0.4)]
     min_wall: f64,
+    /// Count warnings as errors.
+    #[arg(long)]
+    strict: bool,
+    /// Judge the files only for this purpose; without it, for both.
+    #[arg(long = "for", value_name = "PURPOSE")]
+    purpose: Option<Purpose>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -50,13 +62,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let expected =
         Expectation { bodies: arguments.bodies, min_wall_mm: arguments.min_wall, ..Expectation::default() };
-    let outcomes: Vec<_> = arguments.files.par_iter().map(|file| Verdict::of_file(file, &expected)).collect();
+    let level = if arguments.strict { Level::Warning } else { Level::Error };
+    let judgement = Judgement { purpose: arguments.purpose, level };
+    let verdict = |file: &PathBuf| Verdict::of_file(file, &expected, judgement);
+    let outcomes: Vec<_> = arguments.files.par_iter().map(verdict).collect();
     let mut verdicts = Vec::new();
-    let mut unexamined = Vec::new();
+    let mut unjudged = Vec::new();
     for (file, outcome) in arguments.files.iter().zip(outcomes) {
+        let name = file.display().to_string();
         match outcome {
-            Ok(verdict) => verdicts.push(verdict),
-            Err(diagnostic) => unexamined.push(diagnostic.or_in_file(&file.display().to_string())),
+            Ok(verdict) => {
+                if verdict.status == Status::Unjudged {
+                    unjudged.push(bounded(&verdict).or_in_file(&name));
+                }
+                verdicts.push(verdict);
+            }
+            Err(diagnostic) => unjudged.push(diagnostic.or_in_file(&name)),
         }
     }
     if arguments.json {
@@ -67,15 +88,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print_text(&verdicts.iter().map(Verdict::describe).collect::<String>())?;
     }
-    let invalid = verdicts.iter().filter(|v| !v.valid).count();
-    if let Some(failure) = Failure::bad_inputs(unexamined) {
+    if let Some(failure) = Failure::bad_inputs(unjudged) {
         return Err(failure);
     }
-    match invalid {
+    match verdicts.iter().filter(|v| v.status == Status::Invalid).count() {
         0 => Ok(()),
         invalid => Err(Failure::failed(Diagnostic::new(format!(
             "{invalid} of {} files are not valid",
             verdicts.len()
         )))),
     }
+}
+
+/// The diagnostic of a file whose checks exceed a bound.
+fn bounded(verdict: &Verdict) -> Diagnostic {
+    Diagnostic::new(format!("cannot be judged: {}", verdict.bounds().join("; ")))
+        .with_help("export it with a coarser mesh, or in several files")
 }

@@ -5,42 +5,51 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use pinswitch_diagnostic::{Diagnostic, excerpt, neutral_line};
-use pinswitch_solid::validity::{Examination, Expectation, Fault, MeshFacts};
+use pinswitch_solid::validity::{Examination, Expectation, Fault, Level, MeshFacts};
 use serde::Serialize;
 
 use super::format::{self, Format, unreadable};
+use super::judgement::{Judgement, Status};
 
 /// Longest text from a file that is printed, in characters.
 const MAX_CHARACTERS: usize = 300;
+/// Most parts of a file that are printed.
+const MAX_PARTS: usize = 100;
 
 /// The outcome of the check of one file; its facts are the sums over its parts.
 #[derive(Debug, Serialize)]
 pub(super) struct Verdict {
     file: String,
     format: &'static str,
-    pub(super) valid: bool,
+    valid: bool,
+    /// Whether all checks that count are complete, or a fault is known.
+    judged: bool,
+    #[serde(skip)]
+    pub(super) status: Status,
     #[serde(flatten)]
     examination: Examination,
     /// Objects of a 3MF.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartVerdict>,
-    /// Observations that are not faults.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    remarks: Vec<String>,
 }
 
 /// The outcome of the check of one part of a file.
 #[derive(Debug, Serialize)]
 pub(super) struct PartVerdict {
-    pub(super) name: String,
-    pub(super) valid: bool,
+    name: String,
+    valid: bool,
+    #[serde(skip)]
+    pub(super) status: Status,
     #[serde(flatten)]
-    pub(super) examination: Examination,
+    examination: Examination,
 }
 
 impl PartVerdict {
-    pub(super) fn new(name: String, examination: Examination) -> Self {
-        Self { name, valid: examination.is_valid(), examination }
+    /// The verdict on an object of a 3MF.
+    pub(super) fn new(name: String, mut examination: Examination, judgement: Judgement) -> Self {
+        judgement.apply(&mut examination.faults, true);
+        let status = judgement.status(&examination);
+        Self { name, valid: status == Status::Valid, status, examination }
     }
 }
 
@@ -49,15 +58,22 @@ impl Verdict {
     ///
     /// # Errors
     /// A diagnostic if the file cannot be examined.
-    pub(super) fn of_file(file: &Path, expected: &Expectation) -> Result<Self, Diagnostic> {
-        if file.is_dir() {
+    pub(super) fn of_file(
+        file: &Path,
+        expected: &Expectation,
+        judgement: Judgement,
+    ) -> Result<Self, Diagnostic> {
+        // Opening a pipe or a device could wait for ever.
+        let metadata = std::fs::metadata(file).map_err(unreadable)?;
+        if metadata.is_dir() {
             return Err(Diagnostic::new("the path is a folder").with_help("give the files in it"));
         }
-        let opened = File::open(file).map_err(unreadable)?;
-        let bytes = opened.metadata().map_err(unreadable)?.len();
-        let mut reader = BufReader::new(opened);
+        if !metadata.is_file() {
+            return Err(Diagnostic::new("the path is not a regular file").with_help("give an STL or a 3MF"));
+        }
+        let mut reader = BufReader::new(File::open(file).map_err(unreadable)?);
         let format = Format::detect(reader.fill_buf().map_err(unreadable)?)?;
-        let most = format.max_bytes();
+        let (bytes, most) = (metadata.len(), format.max_bytes());
         if bytes > most {
             return Err(Diagnostic::new(format!("the file has {bytes} bytes, at most {most} are examined"))
                 .with_help("export it with a coarser mesh"));
@@ -65,44 +81,58 @@ impl Verdict {
         let name = file.display().to_string();
         match format {
             Format::Stl => {
-                let (examination, remarks) = format::stl(&mut reader, expected)?;
-                Ok(Self {
-                    file: name,
-                    format: format.name(),
-                    valid: examination.is_valid(),
-                    examination,
-                    parts: Vec::new(),
-                    remarks,
-                })
+                let mut examination = format::stl(&mut reader, expected)?;
+                judgement.apply(&mut examination.faults, false);
+                let status = judgement.status(&examination);
+                Ok(Self::new(name, format, status, examination, Vec::new()))
             }
             Format::ThreeMf => {
-                let (faults, parts) = format::three_mf(reader, expected)?;
-                Ok(Self::of_parts(name, format, faults, parts, expected))
+                let (examination, parts) = format::three_mf(reader, expected, judgement)?;
+                Ok(Self::of_parts(name, examination, parts, expected, judgement))
             }
         }
     }
 
-    /// The verdict on a file with parts; `faults` are those of the file as a whole.
-    fn of_parts(
+    fn new(
         file: String,
         format: Format,
-        mut faults: Vec<Fault>,
+        status: Status,
+        examination: Examination,
+        parts: Vec<PartVerdict>,
+    ) -> Self {
+        let (valid, judged) = (status == Status::Valid, status != Status::Unjudged);
+        Self { file, format: format.name(), valid, judged, status, examination, parts }
+    }
+
+    /// The verdict on a 3MF; `examination` contains the faults of the file as a whole.
+    fn of_parts(
+        file: String,
+        mut examination: Examination,
         parts: Vec<PartVerdict>,
         expected: &Expectation,
+        judgement: Judgement,
     ) -> Self {
         let facts = parts.iter().map(|p| p.examination.facts.clone()).reduce(|sum, facts| sum.joined(&facts));
         let facts: MeshFacts = facts.unwrap_or_default();
         if let Some(bodies) = expected.bodies.filter(|bodies| *bodies != facts.bodies) {
-            faults.push(Fault {
-                check: "bodies",
-                count: facts.bodies,
-                at_mm: None,
-                detail: format!("the file has {} bodies, expected {bodies}", facts.bodies),
-            });
+            let detail = format!("the file has {} bodies, expected {bodies}", facts.bodies);
+            examination.faults.push(Fault::new("bodies", Level::Error, facts.bodies, detail));
         }
-        let valid = faults.is_empty() && parts.iter().all(|part| part.valid);
-        let examination = Examination { facts, faults };
-        Self { file, format: format.name(), valid, examination, parts, remarks: Vec::new() }
+        examination.facts = facts;
+        judgement.apply(&mut examination.faults, true);
+        let of_parts = parts.iter().map(|part| part.status).max().unwrap_or(Status::Valid);
+        let status = judgement.status(&examination).max(of_parts);
+        Self::new(file, Format::ThreeMf, status, examination, parts)
+    }
+
+    /// The bounds that prevented a judgement.
+    pub(super) fn bounds(&self) -> Vec<String> {
+        let examinations = self.parts.iter().map(|part| &part.examination).chain([&self.examination]);
+        let checks = examinations.flat_map(|examination| &examination.incomplete);
+        let mut bounds: Vec<_> = checks.map(|one| format!("{}: {}", one.check, one.bound)).collect();
+        bounds.sort();
+        bounds.dedup();
+        bounds
     }
 
     /// Formats the verdict for a person: a line for the file, for each part and for each fault.
@@ -110,17 +140,31 @@ impl Verdict {
     /// Names and faults contain text of the file, which may act on a terminal: control characters
     /// become visible.
     pub(super) fn describe(&self) -> String {
-        let mut text = format!("{}: {}\n", shown(&self.file), summary(self.valid, &self.examination));
-        for part in &self.parts {
-            text += &format!("  {}: {}\n", shown(&part.name), summary(part.valid, &part.examination));
-            let faults = part.examination.faults.iter();
-            faults.for_each(|fault| text += &format!("    {}\n", shown(&fault.to_string())));
+        let mut text = format!("{}: {}\n", shown(&self.file), summary(self.status, &self.examination));
+        // Parts with findings come first if not all are printed.
+        let mut parts: Vec<_> = self.parts.iter().collect();
+        if parts.len() > MAX_PARTS {
+            parts.sort_by_key(|part| std::cmp::Reverse(part.status));
         }
-        let faults = self.examination.faults.iter();
-        faults.for_each(|fault| text += &format!("  {}\n", shown(&fault.to_string())));
-        self.remarks.iter().for_each(|remark| text += &format!("  note: {remark}\n"));
-        text
+        for part in parts.iter().take(MAX_PARTS) {
+            text += &format!("  {}: {}\n", shown(&part.name), summary(part.status, &part.examination));
+            text += &findings(&part.examination, "    ");
+        }
+        if let Some(more) = parts.len().checked_sub(MAX_PARTS).filter(|more| *more > 0) {
+            text += &format!("  {more} more parts\n");
+        }
+        text + &findings(&self.examination, "  ")
     }
+}
+
+/// A line for each fault, the most serious first, and for each check that was not completed.
+fn findings(examination: &Examination, indent: &str) -> String {
+    let mut faults: Vec<&Fault> = examination.faults.iter().collect();
+    faults.sort_by_key(|fault| std::cmp::Reverse(fault.level));
+    let faults = faults.into_iter().map(|fault| format!("{}: {fault}", fault.level.name()));
+    let incomplete =
+        examination.incomplete.iter().map(|one| format!("not completed: {}: {}", one.check, one.bound));
+    faults.chain(incomplete).map(|line| format!("{indent}{}\n", shown(&line))).collect()
 }
 
 /// The text on one line, of bounded length and without control characters.
@@ -128,12 +172,12 @@ fn shown(text: &str) -> String {
     neutral_line(&excerpt(text, MAX_CHARACTERS)).into_owned()
 }
 
-fn summary(valid: bool, examination: &Examination) -> String {
+fn summary(status: Status, examination: &Examination) -> String {
     let facts = &examination.facts;
     let size: Vec<_> = (0..3).map(|i| format!("{:.2}", facts.high_mm[i] - facts.low_mm[i])).collect();
     format!(
         "{}; {} triangles, {:.3} mm3, {} mm",
-        if valid { "valid" } else { "NOT VALID" },
+        status.words(),
         facts.triangles,
         facts.volume_mm3,
         size.join(" x ")
@@ -147,11 +191,13 @@ mod tests {
     #[test]
     fn control_characters_become_visible() {
         let name = "\u{1b}]0;title\u{7}\nfake: valid".to_owned();
-        let fault = Fault { check: "vocabulary", count: 1, at_mm: None, detail: "\u{9b}2J".repeat(1000) };
-        let part = PartVerdict::new(name, Examination { faults: vec![fault], ..Examination::default() });
+        let fault = Fault::new("vocabulary", Level::Error, 1, "\u{9b}2J".repeat(1000));
+        let judgement = Judgement { purpose: None, level: Level::Error };
+        let examination = Examination { faults: vec![fault], ..Examination::default() };
+        let part = PartVerdict::new(name, examination, judgement);
         let expected = Expectation::default();
         let verdict =
-            Verdict::of_parts("a\r.3mf".to_owned(), Format::ThreeMf, Vec::new(), vec![part], &expected);
+            Verdict::of_parts("a\r.3mf".to_owned(), Examination::default(), vec![part], &expected, judgement);
         let text = verdict.describe();
         assert_eq!(text.lines().count(), 3, "{text}");
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text}");

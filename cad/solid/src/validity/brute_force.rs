@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::bvh::{Bounds, Bvh, boxes_overlap, corner_box};
 use super::examine::{Expectation, examine};
 use super::plane::Plane;
+use super::slivers::Slivers;
 use super::triangle_intersection::{Corners, are_disjoint, intersect};
 use super::{connectivity, self_intersection, wall_thickness};
 use crate::mesh::{Mesh, Point3};
@@ -38,6 +39,28 @@ fn tangle(most: usize) -> impl Strategy<Value = Mesh> {
     let anywhere = prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12);
     (prop_oneof![lattice, anywhere], triangles)
         .prop_map(|(points, triangles)| Mesh::new(points.into_iter().map(Point3::from).collect(), triangles))
+}
+
+/// Facets of all sizes and angles around two vertices, most of them narrow.
+fn fan() -> impl Strategy<Value = Mesh> {
+    let direction = || {
+        prop_oneof![
+            prop::array::uniform3(-1.0..1.0_f64),
+            prop::array::uniform3(-2..3_i32).prop_map(|p| p.map(f64::from)),
+        ]
+    };
+    let facet = (0..8_u32, direction(), prop::array::uniform3(-0.05..0.05_f64));
+    prop::collection::vec(facet, 70..110).prop_map(|facets| {
+        let mut positions = vec![Point3::origin(), Point3::new(0.5, 0.0, 0.0)];
+        let mut triangles = Vec::new();
+        for (i, (kind, a, offset)) in facets.into_iter().enumerate() {
+            let (first, scale) = (index(positions.len()), if kind == 0 { 20.0 } else { 1.0 });
+            positions.push(Point3::from(a));
+            positions.push(Point3::from(a) + nalgebra::Vector3::from(offset) * scale);
+            triangles.push([u32::from(kind == 7 && i > 65), first, first + 1]);
+        }
+        Mesh::new(positions, triangles)
+    })
 }
 
 fn corners(mesh: &Mesh, f: usize) -> Corners {
@@ -136,10 +159,27 @@ proptest! {
             .into_iter()
             .filter(|(i, j)| !same(*i, *j) && intersect(&corners(&mesh, *i), &corners(&mesh, *j)))
             .collect();
-        let fault = self_intersection::fault(&mesh, &Bvh::new(&mesh));
+        let slivers = Slivers::of(&mesh, 1e-5);
+        let crossing: Vec<_> = crossing.into_iter().filter(|(i, j)| slivers.accept(&corners(&mesh, *i), &corners(&mesh, *j))).collect();
+        let fault = self_intersection::search(&mesh, &Bvh::new(&mesh), 1e-5).fault;
         prop_assert_eq!(fault.as_ref().map_or(0, |f| f.count), crossing.len());
         let first = crossing.first().map(|(i, _)| corners(&mesh, *i)[0].1.coords.into());
         prop_assert_eq!(fault.and_then(|f| f.at_mm), first);
+    }
+
+    /// Facets around a vertex with very many of them are compared by angle.
+    #[test]
+    fn all_intersections_of_a_fan_are_found(mesh in fan()) {
+        let all = 0..mesh.triangles.len();
+        let pairs = all.clone().flat_map(|i| all.clone().skip(i + 1).map(move |j| (i, j)));
+        let same = |i: usize, j: usize| mesh.triangles[i].iter().all(|v| mesh.triangles[j].contains(v));
+        let crossing = pairs.filter(|(i, j)| !same(*i, *j) && intersect(&corners(&mesh, *i), &corners(&mesh, *j)));
+        let slivers = Slivers::of(&mesh, 1e-5);
+        let crossing = crossing.filter(|(i, j)| slivers.accept(&corners(&mesh, *i), &corners(&mesh, *j)));
+        let bvh = Bvh::new(&mesh);
+        prop_assert!(!bvh.hub_slots().is_empty());
+        let fault = self_intersection::search(&mesh, &bvh, 1e-5).fault;
+        prop_assert_eq!(fault.map_or(0, |f| f.count), crossing.count());
     }
 
     #[test]
@@ -203,5 +243,5 @@ fn degenerate_facets_have_no_wall() {
     let (far, point) = (f64::from(f32::MAX) * 4.0, Point3::new(1.0, 2.0, 3.0));
     let positions = vec![point, point, point, Point3::new(-far, -far, -far), Point3::new(far, far, far)];
     let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 3, 4], [3, 4, 2]]);
-    assert_eq!(wall_thickness::fault(&mesh, &Bvh::new(&mesh), 0.4), None);
+    assert_eq!(wall_thickness::search(&mesh, &Bvh::new(&mesh), 0.4).fault, None);
 }

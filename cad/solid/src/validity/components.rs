@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use super::fault::{Fault, place};
+use super::fault::{Fault, Level};
 use crate::mesh::{Mesh, Point3, axis_volumes_about, mean};
 use crate::parallel;
 
@@ -13,7 +13,18 @@ pub(super) struct Bodies {
     pub(super) voids: usize,
     /// Components with the wrong orientation.
     pub(super) fault: Option<Fault>,
+    /// The bound that was exceeded before the nesting was known.
+    pub(super) bound: Option<String>,
 }
+
+/// Most components that are compared with each other.
+const MAX_COMPONENTS: usize = 10_000;
+/// The same, for each facet of the mesh.
+const FACETS_PER_FACET: usize = 8;
+/// Number of boxes around a component from which nesting is not resolved.
+const MAX_AROUND: usize = 256;
+/// Most facets of enclosing components that all components are compared with.
+const MAX_ENCLOSING_FACETS: usize = 4_000_000;
 
 /// Classifies the connected components of a closed mesh of volume `volume_mm3`.
 ///
@@ -28,14 +39,32 @@ pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
             several.iter().map(|triangles| Component::measured(mesh, triangles, middle)).collect()
         }
     };
-    let depths = parallel::in_chunks(components.len(), |range| {
-        let depth = |i: usize| {
-            let encloses = |j: &usize| *j != i && components[*j].encloses(&components[i]);
-            (0..components.len()).filter(encloses).count()
+    let mut bodies = Bodies { bodies: 0, voids: 0, fault: None, bound: None };
+    if components.len() > MAX_COMPONENTS {
+        bodies.bound = Some(format!("more than {MAX_COMPONENTS} separate surfaces"));
+        return bodies;
+    }
+    let around = parallel::in_chunks(components.len(), |range| {
+        let around = |i: usize| {
+            let near = |j: &usize| *j != i && components[*j].surrounds(&components[i]);
+            (0..components.len()).filter(near).take(MAX_AROUND).collect::<Vec<_>>()
         };
+        range.map(around).collect::<Vec<_>>()
+    })
+    .concat();
+    let facets: usize = around.iter().flatten().map(|j| components[*j].triangles.len()).sum();
+    let is_nested = around.iter().any(|around| around.len() == MAX_AROUND);
+    if is_nested || facets > MAX_ENCLOSING_FACETS + FACETS_PER_FACET * mesh.triangles.len() {
+        let bound = format!(
+            "more than {MAX_AROUND} surfaces or {MAX_ENCLOSING_FACETS} facets around another surface"
+        );
+        bodies.bound = Some(bound);
+        return bodies;
+    }
+    let depths = parallel::in_chunks(components.len(), |range| {
+        let depth = |i: usize| around[i].iter().filter(|j| components[**j].encloses(&components[i])).count();
         range.map(depth).collect::<Vec<_>>()
     });
-    let mut bodies = Bodies { bodies: 0, voids: 0, fault: None };
     let mut wrong = Vec::new();
     for (component, depth) in components.iter().zip(depths.concat()) {
         let is_void = depth % 2 == 1;
@@ -48,11 +77,8 @@ pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
             wrong.push((component, is_void));
         }
     }
-    bodies.fault = wrong.first().map(|(component, is_void)| Fault {
-        check: "inside out",
-        count: wrong.len(),
-        at_mm: component.first_corner().and_then(place),
-        detail: if *is_void {
+    bodies.fault = wrong.first().map(|(component, is_void)| {
+        let detail = if *is_void {
             format!("{} bodies are inside another body", wrong.len())
         } else {
             format!(
@@ -60,7 +86,9 @@ pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
                 wrong.len(),
                 component.volume_mm3
             )
-        },
+        };
+        let fault = Fault::new("inside out", Level::Error, wrong.len(), detail);
+        component.first_corner().map_or(fault.clone(), |corner| fault.at(corner))
     });
     bodies
 }
@@ -68,12 +96,8 @@ pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
 /// A number of bodies other than the expected one.
 pub(super) fn wrong_count(bodies: usize, expected: Option<usize>) -> Option<Fault> {
     let expected = expected?;
-    (bodies != expected).then(|| Fault {
-        check: "bodies",
-        count: bodies,
-        at_mm: None,
-        detail: format!("the mesh has {bodies} bodies, expected {expected}"),
-    })
+    let detail = format!("the mesh has {bodies} bodies, expected {expected}");
+    (bodies != expected).then(|| Fault::new("bodies", Level::Error, bodies, detail))
 }
 
 /// Groups of triangles that are connected through shared vertices, in the order of their first
@@ -137,15 +161,18 @@ impl<'a> Component<'a> {
         self.facets().next().map(|corners| corners[0])
     }
 
-    /// Whether `inner` is entirely inside; components that cross are left to the intersection
-    /// check.
-    fn encloses(&self, inner: &Component) -> bool {
+    /// Whether the bounding box of `inner` is inside that of this component.
+    fn surrounds(&self, inner: &Component) -> bool {
         let (Some((low, high)), Some((inner_low, inner_high))) = (self.bounds, inner.bounds) else {
             return false;
         };
-        low <= inner_low
-            && inner_high <= high
-            && inner.first_corner().is_some_and(|corner| winding_number(self.facets(), corner).abs() > 0.5)
+        low <= inner_low && inner_high <= high
+    }
+
+    /// Whether `inner`, whose bounding box is inside, is entirely inside; components that cross are
+    /// left to the intersection check.
+    fn encloses(&self, inner: &Component) -> bool {
+        inner.first_corner().is_some_and(|corner| winding_number(self.facets(), corner).abs() > 0.5)
     }
 }
 

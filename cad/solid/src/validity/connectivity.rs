@@ -27,6 +27,17 @@ pub(super) struct Connectivity {
     pub(super) vertices: Option<Fault>,
 }
 
+impl Connectivity {
+    /// Number of edges with only one facet.
+    pub(super) fn open_edges(&self) -> usize {
+        self.edges.iter().filter(|fault| fault.check == "open edge").map(|fault| fault.count).sum()
+    }
+
+    pub(super) fn has_open_edges(&self) -> bool {
+        self.open_edges() > 0
+    }
+}
+
 /// Whether every edge has two facets with opposite half-edges: the mesh is closed and oriented.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
     check(mesh).edges.is_empty()

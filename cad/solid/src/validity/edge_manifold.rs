@@ -1,6 +1,6 @@
 //! Manifold edges: every edge has exactly two facets, with opposite half-edges.
 
-use super::fault::{Fault, place};
+use super::fault::{Fault, Level};
 use super::occurrences::Occurrences;
 use super::one_ring::OneRing;
 use crate::mesh::Mesh;
@@ -47,12 +47,8 @@ impl EdgeFaults {
             let edge = edges.first?;
             let [a, b] = [edge.0, edge.1].map(|i| mesh.positions[i as usize]);
             let count = edges.count;
-            Some(Fault {
-                check,
-                count,
-                at_mm: place(nalgebra::center(&a, &b)),
-                detail: format!("{count} edges {problem}; the first is {:.4} mm long", (b - a).norm()),
-            })
+            let detail = format!("{count} edges {problem}; the first is {:.4} mm long", (b - a).norm());
+            Some(Fault::new(check, Level::Error, count, detail).at(nalgebra::center(&a, &b)))
         };
         [
             fault(self.open, "open edge", "have only one facet, so that the surface has a hole"),

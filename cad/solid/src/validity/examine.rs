@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::bvh::Bvh;
-use super::fault::Fault;
-use super::{components, connectivity, facets, self_intersection, wall_thickness};
+use super::connectivity::Connectivity;
+use super::fault::{Fault, Level};
+use super::{components, connectivity, cracks, facets, self_intersection, wall_thickness};
 use crate::mesh::{Mesh, mean};
 use crate::parallel;
 
@@ -83,19 +84,48 @@ impl MeshFacts {
     }
 }
 
+/// A check that was not completed, because the mesh needs more work than a bound allows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Incomplete {
+    /// Name of the check.
+    pub check: &'static str,
+    /// Level of the fault that it could have found.
+    pub level: Level,
+    /// The bound that was exceeded.
+    pub bound: String,
+}
+
 /// The outcome of an examination.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Examination {
     /// Measures of the mesh.
     pub facts: MeshFacts,
-    /// Reasons why the mesh is invalid; empty for a valid mesh.
+    /// Faults of any level, in the order of the checks.
     pub faults: Vec<Fault>,
+    /// Checks that were not completed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub incomplete: Vec<Incomplete>,
 }
 
 impl Examination {
-    /// Whether the mesh has no fault.
+    /// Whether the mesh is a valid solid: all checks for errors are complete, and found none.
     pub fn is_valid(&self) -> bool {
-        self.faults.is_empty()
+        self.is_without(Level::Error)
+    }
+
+    /// Whether the mesh is valid and has no warning, such as a facet without area.
+    pub fn is_flawless(&self) -> bool {
+        self.is_without(Level::Warning)
+    }
+
+    /// Whether there is nothing of this level or a higher one.
+    fn is_without(&self, level: Level) -> bool {
+        self.faults.iter().all(|fault| fault.level < level)
+            && self.incomplete.iter().all(|check| check.level < level)
+    }
+
+    fn add_bound(&mut self, check: &'static str, level: Level, bound: Option<String>) {
+        self.incomplete.extend(bound.map(|bound| Incomplete { check, level, bound }));
     }
 }
 
@@ -122,30 +152,84 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
         examination.faults.push(fault);
         return examination;
     }
-    let (on_surface, in_space) = parallel::both(
-        mesh.triangles.len(),
-        || examine_surface(mesh, expected, &mut examination.facts),
-        || examine_space(mesh, expected),
-    );
-    examination.faults.extend(on_surface.into_iter().chain(in_space));
+    let collapsed = without_collapsed(mesh);
+    let mesh = collapsed.as_ref().unwrap_or(mesh);
+    let connectivity = connectivity::check(mesh);
+    let joined = if connectivity.has_open_edges() { cracks::joined(mesh) } else { None };
+    if let Some(cracks::Joined { mesh: closed, width_mm }) = joined {
+        // A crack is one finding: everything else is examined as if it were closed.
+        let count = connectivity.open_edges();
+        let connectivity = connectivity::check(&closed);
+        examine_connected(&closed, expected, connectivity, &mut examination);
+        let detail = format!(
+            "{count} edges have only one facet; the surface closes when corners within {width_mm:.1e} mm are joined"
+        );
+        examination.faults.insert(0, Fault::new("crack", Level::Error, count, detail));
+    } else {
+        examine_connected(mesh, expected, connectivity, &mut examination);
+    }
+    if let Some(before) = collapsed.map(|after| examination.facts.triangles - after.triangles.len()) {
+        let detail = format!("{before} facets have two corners at the same place");
+        examination.faults.insert(0, Fault::new("degenerate facet", Level::Warning, before, detail));
+    }
     examination
 }
 
-/// Checks of single facets, and of facets that share vertices.
-fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut MeshFacts) -> Vec<Fault> {
-    let heights = facets::heights(mesh, expected.min_height_mm);
-    let axes_mm3 = mesh.axis_volumes_mm3();
-    facts.volume_mm3 = mean(axes_mm3);
-    facts.surface_mm2 = mesh.surface_mm2();
-    facts.min_height_mm = heights.least_mm;
+/// The mesh without facets that have a vertex twice: they bound nothing. `None` if it has none, or
+/// only such facets.
+fn without_collapsed(mesh: &Mesh) -> Option<Mesh> {
+    let is_whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    let whole = mesh.triangles.iter().filter(|t| is_whole(t)).count();
+    (whole > 0 && whole < mesh.triangles.len()).then(|| {
+        let triangles = mesh.triangles.iter().copied().filter(is_whole).collect();
+        Mesh::new(mesh.positions.clone(), triangles)
+    })
+}
+
+/// Examines a mesh of known connectivity.
+fn examine_connected(
+    mesh: &Mesh,
+    expected: &Expectation,
+    connectivity: Connectivity,
+    examination: &mut Examination,
+) {
+    let facts = &mut examination.facts;
     if let Some((low, high)) = mesh.bounds() {
         facts.low_mm = low.coords.into();
         facts.high_mm = high.coords.into();
     }
-    let connectivity = connectivity::check(mesh);
+    // The unit is questioned before any search for walls: if it is larger, all of them are thin.
+    let size = facets::implausible_size(facts.low_mm, facts.high_mm, expected.longest_side_mm);
+    let longest_mm = (0..3).map(|i| facts.high_mm[i] - facts.low_mm[i]).fold(0.0, f64::max);
+    let is_searched = expected.min_wall_mm > 0.0 && longest_mm >= expected.longest_side_mm.0;
+    let fine = is_searched.then(|| facets::implausible_resolution(mesh, longest_mm)).flatten();
+    let walls = is_searched && fine.is_none();
+    examination.faults.extend(size.or(fine));
+    let mut in_space = Examination::default();
+    parallel::both(
+        mesh.triangles.len(),
+        || examine_surface(mesh, expected, connectivity, examination),
+        || examine_space(mesh, expected, walls, &mut in_space),
+    );
+    examination.faults.append(&mut in_space.faults);
+    examination.incomplete.append(&mut in_space.incomplete);
+}
+
+/// Checks of single facets, and of facets that share vertices.
+fn examine_surface(
+    mesh: &Mesh,
+    expected: &Expectation,
+    connectivity: Connectivity,
+    examination: &mut Examination,
+) {
+    let heights = facets::heights(mesh, expected.min_height_mm);
+    let axes_mm3 = mesh.axis_volumes_mm3();
+    let facts = &mut examination.facts;
+    facts.volume_mm3 = mean(axes_mm3);
+    facts.surface_mm2 = mesh.surface_mm2();
+    facts.min_height_mm = heights.least_mm;
     let closed = connectivity.edges.is_empty();
-    let mut faults = Vec::new();
-    faults.extend(facets::implausible_size(facts.low_mm, facts.high_mm, expected.longest_side_mm));
+    let faults = &mut examination.faults;
     faults.extend(facets::degenerate(mesh, &heights, expected.min_height_mm));
     faults.extend(connectivity.repeated.into_iter().chain(connectivity.edges).chain(connectivity.vertices));
     if closed {
@@ -154,48 +238,50 @@ fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut MeshFacts) -
         facts.voids = bodies.voids;
         faults.extend(bodies.fault);
         faults.extend(volume_faults(axes_mm3, expected));
-        faults.extend(components::wrong_count(facts.bodies, expected.bodies));
+        if bodies.bound.is_none() {
+            faults.extend(components::wrong_count(examination.facts.bodies, expected.bodies));
+        }
+        examination.add_bound("inside out", Level::Error, bodies.bound);
     }
-    faults
 }
 
 /// Checks of facets that need not share a vertex.
-fn examine_space(mesh: &Mesh, expected: &Expectation) -> Vec<Fault> {
-    let walls = expected.min_wall_mm > 0.0;
-    if !(expected.intersections || walls) {
-        return Vec::new();
+fn examine_space(mesh: &Mesh, expected: &Expectation, walls: bool, examination: &mut Examination) {
+    // Without any area there is nothing to intersect.
+    let has_area = mesh.facets().any(|corners| facets::height_mm(corners) >= expected.min_height_mm);
+    if !(expected.intersections || walls) || !has_area {
+        return;
     }
     let bvh = Bvh::new(mesh);
-    let crossing = expected.intersections.then(|| self_intersection::fault(mesh, &bvh)).flatten();
-    let thin = walls.then(|| wall_thickness::fault(mesh, &bvh, expected.min_wall_mm)).flatten();
-    crossing.into_iter().chain(thin).collect()
+    if expected.intersections {
+        let search = self_intersection::search(mesh, &bvh, expected.min_height_mm);
+        let bound = search.bound.filter(|_| search.fault.is_none());
+        examination.faults.extend(search.fault);
+        examination.add_bound("self-intersection", Level::Error, bound);
+    }
+    if walls {
+        let search = wall_thickness::search(mesh, &bvh, expected.min_wall_mm);
+        let bound = search.bound.filter(|_| search.fault.is_none());
+        examination.faults.extend(search.fault);
+        examination.add_bound("thin wall", Level::Warning, bound);
+    }
 }
 
 fn volume_faults(axes: [f64; 3], expected: &Expectation) -> Vec<Fault> {
     let (least, most) = axes.iter().fold((f64::MAX, f64::MIN), |(l, m), v| (l.min(*v), m.max(*v)));
     let mut faults = Vec::new();
     if most - least > AXIS_AGREEMENT * most.abs().max(1e-9) {
-        faults.push(Fault {
-            check: "axis volumes",
-            count: 1,
-            at_mm: None,
-            detail: format!(
-                "the volume is {:.6} / {:.6} / {:.6} mm3 along x / y / z",
-                axes[0], axes[1], axes[2]
-            ),
-        });
+        let detail =
+            format!("the volume is {:.6} / {:.6} / {:.6} mm3 along x / y / z", axes[0], axes[1], axes[2]);
+        faults.push(Fault::new("axis volumes", Level::Error, 1, detail));
     }
     if let Some((volume, bound)) = expected.volume_mm3 {
         let off = mean(axes) - volume;
         if off.abs() > bound {
-            faults.push(Fault {
-                check: "volume",
-                count: 1,
-                at_mm: None,
-                detail: format!(
-                    "the volume deviates by {off:+.6} mm3 from the exact {volume:.6} mm3, at most {bound:.6} mm3 allowed"
-                ),
-            });
+            let detail = format!(
+                "the volume deviates by {off:+.6} mm3 from the exact {volume:.6} mm3, at most {bound:.6} mm3 allowed"
+            );
+            faults.push(Fault::new("volume", Level::Error, 1, detail));
         }
     }
     faults

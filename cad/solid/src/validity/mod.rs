@@ -3,27 +3,31 @@
 //!
 //! The generator, the tests and `pinswitch check` all use [`examine`]. Nothing is repaired.
 
+mod budget;
 mod bvh;
 mod components;
 mod connectivity;
+mod cracks;
 mod distance;
 mod edge_manifold;
 mod examine;
 mod facets;
 mod fault;
+mod hub;
 mod occurrences;
 mod one_ring;
 mod overlap;
 mod plane;
 mod self_intersection;
+mod slivers;
 mod triangle_intersection;
 mod vertex_manifold;
 mod wall_thickness;
 
 pub(crate) use connectivity::is_closed;
 pub(crate) use distance::largest_distance;
-pub use examine::{Examination, Expectation, MeshFacts, examine};
-pub use fault::Fault;
+pub use examine::{Examination, Expectation, Incomplete, MeshFacts, examine};
+pub use fault::{Fault, Level};
 pub use overlap::shared_place;
 
 #[cfg(test)]

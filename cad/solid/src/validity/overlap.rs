@@ -7,17 +7,15 @@ use crate::mesh::{Mesh, Point3, Vector3};
 const MAX_SAMPLES: usize = 12;
 /// Samples along the diagonal of the smaller solid.
 const SAMPLES_PER_DIAGONAL: f64 = 24.0;
-/// Most facets that all samples together are compared with: large meshes get fewer samples, so that
-/// the check takes seconds.
-const MAX_COMPARISONS: usize = 300_000_000;
 
 /// Returns a place where two closed meshes overlap by more than `depth_mm`, measured from the
 /// surface of one of them; `None` if no sample shows one. Solids that touch, or curved ones whose
 /// facets intersect less deeply, do not overlap.
 ///
 /// The surfaces are sampled: an overlap between the samples, such as of a single corner, is not
-/// detected.
-pub fn shared_place(one: &Mesh, other: &Mesh, depth_mm: f64) -> Option<[f64; 3]> {
+/// detected. All samples together are compared with at most `comparisons` facets, so that large
+/// meshes get fewer samples.
+pub fn shared_place(one: &Mesh, other: &Mesh, depth_mm: f64, comparisons: usize) -> Option<[f64; 3]> {
     let (Some(a), Some(b)) = (one.bounds(), other.bounds()) else { return None };
     let (low, high) = (a.0.sup(&b.0), a.1.inf(&b.1));
     if (high - low).iter().any(|side| *side <= depth_mm) {
@@ -27,7 +25,8 @@ pub fn shared_place(one: &Mesh, other: &Mesh, depth_mm: f64) -> Option<[f64; 3]>
     let is_near = |p: &Point3| (0..3).all(|i| p[i] >= low[i] && p[i] <= high[i]);
     let within = |of: &Mesh, among: &Mesh| {
         let near: Vec<Point3> = samples(of, step, depth_mm).filter(is_near).collect();
-        let every = (near.len().saturating_mul(among.triangles.len()) / MAX_COMPARISONS).max(1);
+        let all = near.len().saturating_mul(among.triangles.len());
+        let every = all.div_ceil(comparisons.max(1)).max(1);
         let mut sampled = near.into_iter().step_by(every);
         let inside = sampled.find(|p| winding_number(among.facets(), *p).abs() > 0.5);
         inside.map(|p| [p.x, p.y, p.z])
@@ -79,8 +78,8 @@ mod tests {
             ([50.0; 3], [51.0; 3], false),
         ] {
             let other = cuboid(low, high);
-            assert_eq!(shared_place(&block, &other, 0.05).is_some(), shared, "{low:?}");
-            assert_eq!(shared_place(&other, &block, 0.05).is_some(), shared, "{low:?}");
+            assert_eq!(shared_place(&block, &other, 0.05, 1_000_000).is_some(), shared, "{low:?}");
+            assert_eq!(shared_place(&other, &block, 0.05, 1_000_000).is_some(), shared, "{low:?}");
         }
     }
 }

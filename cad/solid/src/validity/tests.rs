@@ -1,6 +1,7 @@
 //! Each defect is detected, named and located; valid bodies pass.
 
 use super::examine::{Expectation, examine};
+use super::fault::Level;
 use crate::mesh::{Mesh, Point3, Vector3};
 
 /// An axis-parallel box.
@@ -115,4 +116,115 @@ fn faults_have_place_and_extent() {
     let examination = examine(&hole, &Expectation::default());
     let text = examination.faults[0].to_string();
     assert!(text.contains("3 edges have only one facet") && text.contains("mm)"), "{text}");
+}
+
+/// A cone of `sides` facets around its tip, and as many around the centre of its base.
+fn cone(sides: u32) -> Mesh {
+    let angle = |i: u32| f64::from(i) / f64::from(sides) * std::f64::consts::TAU;
+    let rim = (0..sides).map(|i| Point3::new(20.0 * libm::cos(angle(i)), 20.0 * libm::sin(angle(i)), 0.0));
+    let ends = [Point3::new(0.0, 0.0, 20.0), Point3::origin()];
+    let triangles = (0..sides).flat_map(|i| {
+        let (a, b) = (2 + i, 2 + (i + 1) % sides);
+        [[0, a, b], [1, b, a]]
+    });
+    Mesh::new(ends.into_iter().chain(rim).collect(), triangles.collect())
+}
+
+/// The boxes of all facets around the tip meet.
+#[test]
+fn facets_around_a_point_are_judged() {
+    let mut cone = cone(10_000);
+    let examination = examine(&cone, &Expectation::default());
+    assert_eq!((examination.faults, examination.incomplete), (vec![], vec![]));
+    // A corner of the rim is outside, across the cone: facets at the tip pass through others there.
+    cone.positions[5000] = Point3::new(25.0, 0.01, 10.0);
+    assert!(faults(&cone).contains(&"self-intersection"));
+}
+
+/// A search that a mesh makes quadratic ends, and the mesh is not called valid.
+#[test]
+fn excessive_searches_are_incomplete() {
+    let needle = |i: usize| {
+        let shift = i as f64 * 0.2;
+        let far = Point3::new(100.0 + shift, 100.0 - shift, 100.0);
+        let near = Point3::new(shift, -shift, 0.0);
+        let up = Vector3::new(0.0, 0.0, 0.05);
+        let side = Vector3::new(0.05, -0.05, 0.0);
+        let positions = vec![near, near + side, far, far + up];
+        Mesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    };
+    let mut all = Mesh::default();
+    for i in 0..3000 {
+        all = joined(all, needle(i));
+    }
+    let examination = examine(&all, &Expectation::default());
+    let checks: Vec<_> = examination.incomplete.iter().map(|one| (one.check, one.level)).collect();
+    assert_eq!(checks, [("self-intersection", Level::Error)], "{:?}", examination.faults);
+    assert!(!examination.is_valid());
+}
+
+/// A facet without area closes a T-junction: it touches its neighbours, which do not intersect.
+#[test]
+fn a_sliver_is_one_fault() {
+    let mut split = cube();
+    // The edge from corner 0 to corner 1 gets a vertex in one of its two facets only.
+    split.positions.push(Point3::new(5.0, 0.0, 0.0));
+    let with_edge = split.triangles.iter().position(|t| t.contains(&0) && t.contains(&1)).unwrap();
+    let t = split.triangles[with_edge];
+    let (a, b) = if (0..3).any(|k| t[k] == 0 && t[(k + 1) % 3] == 1) { (0, 1) } else { (1, 0) };
+    let replaced = |from: u32| t.map(|v| if v == from { 8 } else { v });
+    split.triangles[with_edge] = replaced(b);
+    split.triangles.extend([replaced(a), [a, b, 8]]);
+    let examination = examine(&split, &Expectation::default());
+    assert_eq!(examination.faults.iter().map(|f| f.check).collect::<Vec<_>>(), ["degenerate facet"]);
+    assert!(examination.is_valid() && !examination.is_flawless());
+    // A facet that passes through another next to a sliver is found.
+    let apex = t.into_iter().find(|v| ![0, 1].contains(v)).unwrap();
+    split.positions[apex as usize] = Point3::new(5.0, 5.0, 15.0);
+    assert!(faults(&split).contains(&"self-intersection"));
+}
+
+#[test]
+fn collapsed_facets_are_left_out() {
+    let mut cube = cube();
+    cube.triangles.push([0, 0, 1]);
+    let examination = examine(&cube, &Expectation::default());
+    assert_eq!(examination.faults.iter().map(|f| f.check).collect::<Vec<_>>(), ["degenerate facet"]);
+    assert!(examination.is_valid());
+}
+
+#[test]
+fn cracks_differ_from_holes() {
+    let cracked = |width: f64| {
+        let mut cube = cube();
+        let corner = cube.positions[7] + Vector3::new(width, 0.0, 0.0);
+        cube.positions.push(corner);
+        let facet = cube.triangles.iter().position(|t| t.contains(&7)).unwrap();
+        cube.triangles[facet] = cube.triangles[facet].map(|v| if v == 7 { 8 } else { v });
+        examine(&cube, &Expectation::default())
+    };
+    for (width, text) in [(1e-6, "within 1.0e-6 mm"), (3e-4, "within 3.0e-4 mm")] {
+        let examination = cracked(width);
+        let [crack] = &examination.faults[..] else { panic!("{:?}", examination.faults) };
+        assert_eq!((crack.check, crack.level, crack.count), ("crack", Level::Error, 4));
+        assert!(crack.detail.contains(text), "{crack}");
+        assert_eq!(examination.facts.bodies, 1);
+    }
+    assert_eq!(cracked(0.1).faults[0].check, "open edge");
+}
+
+#[test]
+fn the_unit_is_questioned_first() {
+    let small = |factor: f64| {
+        let mut cone = cone(3000);
+        cone.positions.iter_mut().for_each(|p| *p *= factor);
+        examine(&cone, &Expectation { min_wall_mm: 0.4, ..Expectation::default() })
+    };
+    // In metres, and a part in inches with facets finer than any printer.
+    for factor in [0.001, 0.04] {
+        let examination = small(factor);
+        assert_eq!(examination.faults[0].check, "size", "{examination:?}");
+        assert!(examination.faults[0].detail.contains("metres"), "{examination:?}");
+        assert!(!examination.faults.iter().any(|fault| fault.check == "thin wall"));
+    }
 }

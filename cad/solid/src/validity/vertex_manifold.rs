@@ -1,7 +1,7 @@
 //! Manifold vertices: the facets around each vertex form a single fan, so that its link is
 //! connected.
 
-use super::fault::{Fault, place};
+use super::fault::{Fault, Level};
 use super::occurrences::Occurrences;
 use super::one_ring::OneRing;
 use crate::mesh::Mesh;
@@ -52,11 +52,8 @@ impl VertexFaults {
 
     pub(super) fn fault(self, mesh: &Mesh) -> Option<Fault> {
         let Occurrences { count, first } = self.split;
-        first.map(|v| Fault {
-            check: "non-manifold vertex",
-            count,
-            at_mm: place(mesh.positions[v as usize]),
-            detail: format!("{count} vertices join parts of the surface without a common edge"),
-        })
+        let detail = format!("{count} vertices join parts of the surface without a common edge");
+        let fault = Fault::new("non-manifold vertex", Level::Error, count, detail);
+        first.map(|v| fault.at(mesh.positions[v as usize]))
     }
 }

@@ -1,7 +1,8 @@
 //! Walls below the least thickness that a printer can produce.
 
+use super::budget::{Budget, bound};
 use super::bvh::{Bounds, Bvh, boxes_overlap, corner_box};
-use super::fault::{Fault, place};
+use super::fault::{Fault, Level};
 use crate::mesh::{Mesh, Point3, Vector3};
 use crate::parallel;
 
@@ -13,37 +14,54 @@ struct ThinWalls {
     count: usize,
     /// The least thickness with the index of its facet; of equal ones, the least index.
     worst: Option<(f64, usize)>,
+    is_spent: bool,
+}
+
+/// The outcome of the search.
+pub(super) struct Search {
+    pub(super) fault: Option<Fault>,
+    /// The bound that was exceeded before all walls were measured.
+    pub(super) bound: Option<String>,
 }
 
 /// Searches inward from the centroid of every facet for a facing facet closer than `min_wall_mm`.
-pub(super) fn fault(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64) -> Option<Fault> {
+pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64) -> Search {
+    let chunks = parallel::chunks(bvh.leaves());
     let parts = parallel::in_chunks(bvh.leaves(), |leaves| {
-        let mut part = ThinWalls { count: 0, worst: None };
+        let mut part = ThinWalls { count: 0, worst: None, is_spent: false };
+        let facets = bvh.slots(leaves.start).start..bvh.slots(leaves.end - 1).end;
+        let mut budget = Budget::of_part(chunks, facets.len());
         let mut near = Vec::new();
         for leaf in leaves {
+            if budget.is_spent() {
+                break;
+            }
             let rays = || bvh.slots(leaf).filter_map(|slot| Ray::inward(mesh, bvh, slot, min_wall_mm));
             let Some(reach) = rays().map(|ray| ray.bounds).reduce(Bounds::joined) else { continue };
             bvh.leaves_overlapping(&reach, 0, &mut near);
+            budget.spend(near.len());
             for ray in rays() {
-                let nearest = ray.nearest_mm(mesh, bvh, &near);
+                let nearest = ray.nearest_mm(mesh, bvh, &near, &mut budget);
                 if nearest < min_wall_mm * (1.0 - 1e-6) {
                     part.count += 1;
                     part.worst = thinner(part.worst, Some((nearest, ray.facet)));
                 }
             }
         }
+        part.is_spent = budget.is_spent();
         part
     });
     let count: usize = parts.iter().map(|part| part.count).sum();
-    let (thickness, facet) = parts.iter().map(|part| part.worst).fold(None, thinner)?;
-    Some(Fault {
-        check: "thin wall",
-        count,
-        at_mm: place(centroid(mesh, facet)),
-        detail: format!(
+    let worst = parts.iter().map(|part| part.worst).fold(None, thinner);
+    let fault = worst.map(|(thickness, facet)| {
+        let detail = format!(
             "walls below {count} facets are thinner than {min_wall_mm} mm, the thinnest {thickness:.3} mm"
-        ),
-    })
+        );
+        Fault::new("thin wall", Level::Warning, count, detail).at(centroid(mesh, facet))
+    });
+    let is_spent = parts.iter().any(|part| part.is_spent);
+    let facets = mesh.triangles.len();
+    Search { fault, bound: is_spent.then(|| bound(facets, "facets are within reach of the walls")) }
 }
 
 fn thinner(a: Option<(f64, usize)>, b: Option<(f64, usize)>) -> Option<(f64, usize)> {
@@ -63,6 +81,7 @@ struct Ray {
     facet: usize,
     from: Point3,
     along: Vector3,
+    length_mm: f64,
     /// The exact bounding box.
     reach: (Point3, Point3),
     bounds: Bounds,
@@ -75,15 +94,17 @@ impl Ray {
         let (from, along) = (centroid(mesh, facet), -normal);
         let end = from + along * length_mm;
         let reach = (from.inf(&end), from.sup(&end));
-        Some(Self { facet, from, along, reach, bounds: Bounds::around(reach.0, reach.1) })
+        Some(Self { facet, from, along, length_mm, reach, bounds: Bounds::around(reach.0, reach.1) })
     }
 
     /// Distance to the nearest facing facet in the leaves `near`; infinite if there is none.
-    fn nearest_mm(&self, mesh: &Mesh, bvh: &Bvh, near: &[usize]) -> f64 {
+    fn nearest_mm(&self, mesh: &Mesh, bvh: &Bvh, near: &[usize], budget: &mut Budget) -> f64 {
         let mut nearest = f64::INFINITY;
-        bvh.slots_overlapping(&self.bounds, near, |slot| {
+        let end = self.from + self.along * self.length_mm;
+        bvh.slots_along((self.from, end), &self.bounds, near, |slot| {
             // The starting facet faces back along the ray (-1); the other side of a wall faces
             // ahead.
+            budget.spend(1);
             let normal = bvh.plane(slot).normal;
             if self.along.dot(&normal) <= 0.0 {
                 return;

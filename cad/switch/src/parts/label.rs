@@ -411,7 +411,7 @@ mod tests {
             solid.cap(Facing::Up, top, &engraved);
             let printable = Expectation { bodies: Some(1), min_wall_mm: 0.4, ..Expectation::default() };
             let report = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
-            assert!(report.is_valid(), "{letter}: {:?}", report.faults);
+            assert!(report.is_flawless(), "{letter}: {:?}", report.faults);
         }
     }
 }

@@ -23,11 +23,11 @@ fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
     let expected = part.expectation(design);
     let mesh = part.print_mesh(design).unwrap();
     let report = examine(&mesh, &expected);
-    assert!(report.is_valid(), "{variant:?} {}: {:#?}", part.name, report.faults);
+    assert!(report.is_flawless(), "{variant:?} {}: {:#?}", part.name, report.faults);
     assert!(report.facts.low_mm[2].abs() < 1e-12);
     let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap().mesh;
     let report = examine(&written, &expected);
-    assert!(report.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, report.faults);
+    assert!(report.is_flawless(), "{variant:?} {} as STL: {:#?}", part.name, report.faults);
     assert_eq!(written.triangles.len(), mesh.triangles.len());
 }
 

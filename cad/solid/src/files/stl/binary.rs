@@ -12,14 +12,14 @@ pub(super) const RECORD: usize = 50;
 /// Facets that are read at a time, 3 MB: enough work for several threads.
 pub(super) const RECORDS_PER_READ: usize = 1 << 16;
 
-/// Reads a binary STL of `length` bytes.
+/// Reads `count` facets of a binary STL of `length` bytes.
 ///
 /// Corners are merged in two steps: first within some thousand facets, on several threads with
 /// tables that fit into the processor's caches, then the remaining sixth of them in one table.
-pub(super) fn read_binary(source: &mut impl Read, length: u64) -> std::io::Result<Facets> {
+pub(super) fn read_binary(source: &mut impl Read, count: u64, length: u64) -> std::io::Result<Facets> {
     let mut header = [0; HEADER];
     source.read_exact(&mut header)?;
-    let mut left = announced(&header).unwrap_or_default() as usize;
+    let mut left = usize::try_from(count).unwrap_or(usize::MAX);
     // Never more capacity than the file can fill, whatever its header announces.
     let most = left.min(usize::try_from(length / RECORD as u64).unwrap_or(usize::MAX));
     let mut facets = Facets::default();

@@ -43,9 +43,13 @@ pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
         return Err(StlError::OtherFormat(format));
     }
     head.check_length()?;
-    let facets = if is_ascii(&head.bytes) { read_ascii(source)? } else { read_binary(source, head.length)? };
-    let trailing_bytes = if is_ascii(&head.bytes) { 0 } else { head.trailing_bytes() };
-    facets.finish().map(|file| StlFile { trailing_bytes, ..file }).ok_or(StlError::NoTriangle)
+    let (facets, deviations) = if head.is_ascii() {
+        read_ascii(source)?
+    } else {
+        (read_binary(source, head.facets(), head.length)?, head.deviations())
+    };
+    let trailing_bytes = if head.is_ascii() { 0 } else { head.trailing_bytes() };
+    facets.finish().map(|file| StlFile { trailing_bytes, deviations, ..file }).ok_or(StlError::NoTriangle)
 }
 
 /// The first bytes of a file, and its length.
@@ -65,27 +69,55 @@ impl Head {
         Ok(Self { bytes, length })
     }
 
+    /// Whether the file is an ASCII STL. A binary header may begin with `solid`, too; then the file
+    /// is exactly as long as the header announces.
+    fn is_ascii(&self) -> bool {
+        let is_exact = self.announced().is_some_and(|(_, expected)| expected == self.length);
+        is_ascii(&self.bytes) && !is_exact
+    }
+
     /// The facet count of a binary STL, and the size in bytes of a file with that many.
     fn announced(&self) -> Option<(u32, u64)> {
         let announced = announced(&self.bytes)?;
         Some((announced, HEADER as u64 + RECORD as u64 * u64::from(announced)))
     }
 
+    /// Number of facets in the file if its count is that of a program which writes facets before it
+    /// knows their number, and leaves 0 or the greatest number there.
+    fn uncounted(&self) -> Option<u64> {
+        let (announced, _) = self.announced()?;
+        let body = self.length.checked_sub(HEADER as u64).filter(|body| *body > 0)?;
+        let is_whole = body % RECORD as u64 == 0;
+        (matches!(announced, 0 | u32::MAX) && is_whole).then_some(body / RECORD as u64)
+    }
+
+    /// Number of facets of a binary file.
+    fn facets(&self) -> u64 {
+        let announced = || self.announced().map_or(0, |(announced, _)| u64::from(announced));
+        self.uncounted().unwrap_or_else(announced)
+    }
+
+    fn deviations(&self) -> Vec<&'static str> {
+        let deviation = "the header does not count the facets; the length of the file gives their number";
+        self.uncounted().map(|_| deviation).into_iter().collect()
+    }
+
     /// Whether the file has room for all facets that a binary header announces. Some programs
     /// append bytes, which readers ignore.
     fn fits(&self) -> bool {
-        self.announced().is_some_and(|(_, expected)| expected <= self.length)
+        self.uncounted().is_some() || self.announced().is_some_and(|(_, expected)| expected <= self.length)
     }
 
     fn trailing_bytes(&self) -> u64 {
-        self.announced().map_or(0, |(_, expected)| self.length.saturating_sub(expected))
+        let expected = HEADER as u64 + RECORD as u64 * self.facets();
+        self.length.saturating_sub(expected)
     }
 
     /// Refuses a binary file that is shorter than its header announces: it would pass for a smaller
     /// part.
     fn check_length(&self) -> Result<(), StlError> {
         match self.announced() {
-            _ if is_ascii(&self.bytes) || self.fits() => Ok(()),
+            _ if self.is_ascii() || self.fits() => Ok(()),
             Some((announced, expected)) => Err(StlError::Length { announced, expected, actual: self.length }),
             None => Err(StlError::TooShort(self.length)),
         }
@@ -127,6 +159,45 @@ mod tests {
         assert_eq!(trailing(&bytes), 0);
         bytes.extend([7; 13]);
         assert_eq!(trailing(&bytes), 13);
+    }
+
+    /// Programs that write facets as they come leave 0 or the greatest number as their count.
+    #[test]
+    fn uncounted_facets_are_read() {
+        let mut bytes = stl_bytes(&tetrahedron()).unwrap();
+        for count in [0, u32::MAX] {
+            bytes[HEADER - 4..HEADER].copy_from_slice(&count.to_le_bytes());
+            let stl = read_stl(&mut Cursor::new(bytes.clone())).unwrap();
+            assert_eq!((stl.mesh.triangles.len(), stl.trailing_bytes, stl.deviations.len()), (4, 0, 1));
+            assert!(read_stl(&mut Cursor::new(&bytes[..bytes.len() - 1])).is_err());
+        }
+    }
+
+    /// A header may begin with `solid`, even without a zero byte in the count of facets.
+    #[test]
+    fn binary_files_may_begin_with_solid() {
+        let mut bytes = stl_bytes(&tetrahedron()).unwrap();
+        bytes[..HEADER - 4].fill(b' ');
+        bytes[..5].copy_from_slice(b"solid");
+        assert_eq!(read_stl(&mut Cursor::new(bytes)).unwrap().mesh.triangles.len(), 4);
+    }
+
+    /// Normals at a right angle to the facet are only oblique, whatever the sign of their rounding.
+    #[test]
+    fn normals_are_contrary_from_100_degrees() {
+        let stl = |normal: &str| {
+            let text = format!(
+                "solid\nfacet normal {normal}\nouter loop\nvertex 0 0 0\nvertex 5 0 0\nvertex 0 5 0\nendloop\nendfacet\n"
+            );
+            let stl = read_stl(&mut Cursor::new(text)).unwrap();
+            (stl.contrary_normals, stl.oblique_normals, stl.invalid_normals)
+        };
+        assert_eq!(stl("0 0 1"), (0, 0, 0));
+        assert_eq!(stl("0 0 0"), (0, 0, 0));
+        assert_eq!(stl("1 0 -1e-12"), (0, 1, 0));
+        assert_eq!(stl("1 0 -0.17"), (0, 1, 0));
+        assert_eq!(stl("1 0 -0.19"), (1, 0, 0));
+        assert_eq!(stl("nan nan nan"), (0, 0, 1));
     }
 
     #[test]

@@ -1,47 +1,107 @@
-//! The ZIP archive of a package, and the XML documents in it.
+//! The ZIP archive of a package: its parts by name, with a bound on the bytes that are unpacked.
 
+use std::collections::HashMap;
 use std::io::{Cursor, Read};
 
 use pinswitch_diagnostic::excerpt;
-use roxmltree::{Document, ParsingOptions};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::core_spec::{MODEL_TYPE, RELATIONSHIPS};
-use super::error::{MAX_PART, ThreeMfReadError};
+use super::error::ThreeMfReadError;
+use super::part_name::normalized;
 
-/// Most nodes of a document: some five million triangles with their vertices.
-const MAX_NODES: u32 = 8_000_000;
-/// Longest message of the XML parser that an error repeats, in characters.
+/// Longest message of a library that an error repeats, in characters.
 const MAX_CHARACTERS: usize = 200;
+/// Bytes that any archive may unpack to.
+const FREE_BYTES: u64 = 16 << 20;
+/// Bytes that an archive may unpack to for each of its own: the models of programs unpack to 4 to 12
+/// times their size, and endless zeros to a thousand times.
+const BYTES_PER_BYTE: u64 = 32;
+/// Most bytes that an archive may unpack to.
+const MAX_BYTES: u64 = 1 << 30;
+/// Most entries of an archive.
+const MAX_ENTRIES: usize = 10_000;
 
 /// The parts of a package, by name.
 pub(super) struct Archive<'a> {
     zip: ZipArchive<Cursor<&'a [u8]>>,
+    /// Index of each part, by its normalized name.
+    parts: HashMap<String, usize>,
+    /// Names that are equivalent to an earlier one.
+    repeated: Vec<String>,
+    /// Bytes that may still be unpacked.
+    left: u64,
+    /// Bytes that may be unpacked in all.
+    most: u64,
 }
 
 impl<'a> Archive<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, ThreeMfReadError> {
         // The library's own messages name its internals.
-        let zip = ZipArchive::new(Cursor::new(bytes))
-            .map_err(|_| ThreeMfReadError::Archive("it is truncated or damaged".to_owned()))?;
-        Ok(Self { zip })
+        let damaged = || ThreeMfReadError::Archive("it is truncated or damaged".to_owned());
+        let zip = ZipArchive::new(Cursor::new(bytes)).map_err(|_| damaged())?;
+        if zip.len() > MAX_ENTRIES {
+            return Err(ThreeMfReadError::Bound(format!(
+                "the ZIP archive has more than {MAX_ENTRIES} entries"
+            )));
+        }
+        let (mut parts, mut repeated) = (HashMap::new(), Vec::new());
+        for i in 0..zip.len() {
+            let name = zip.name_for_index(i).transpose().map_err(|_| damaged())?.unwrap_or_default();
+            if !name.ends_with('/') && parts.insert(normalized(&name), i).is_some() {
+                repeated.push(name.into_owned());
+            }
+        }
+        let most = MAX_BYTES.min(FREE_BYTES + BYTES_PER_BYTE * bytes.len() as u64);
+        Ok(Self { zip, parts, repeated, left: most, most })
+    }
+
+    /// Names of parts that are equivalent to an earlier one.
+    pub(super) fn repeated(&self) -> &[String] {
+        &self.repeated
+    }
+
+    /// Whether the package has a part of an equivalent name.
+    pub(super) fn contains(&self, part: &str) -> bool {
+        self.parts.contains_key(&normalized(part))
+    }
+
+    /// The name of a part as the archive has it.
+    pub(super) fn name(&self, part: &str) -> String {
+        let index = self.parts.get(&normalized(part));
+        let name = index.and_then(|i| self.zip.name_for_index(*i)).and_then(Result::ok);
+        name.map_or_else(|| part.to_owned(), |name| name.into_owned())
     }
 
     /// Returns a part as text; `None` if the package has no part of that name.
     pub(super) fn text(&mut self, part: &str) -> Result<Option<String>, ThreeMfReadError> {
         let damaged =
             || ThreeMfReadError::Archive(format!("{} in it is damaged", excerpt(part, MAX_CHARACTERS)));
-        let file = match self.zip.by_name(part) {
+        let Some(index) = self.parts.get(&normalized(part)) else { return Ok(None) };
+        let file = match self.zip.by_index(*index) {
             Ok(file) => file,
-            Err(ZipError::FileNotFound) => return Ok(None),
+            Err(ZipError::UnsupportedArchive(ZipError::PASSWORD_REQUIRED)) => {
+                return Err(ThreeMfReadError::Unsupported(format!("{part} is encrypted")));
+            }
+            Err(ZipError::UnsupportedArchive(_)) => {
+                let problem = format!("the compression method of {part} is not supported");
+                return Err(ThreeMfReadError::Unsupported(problem));
+            }
             Err(_) => return Err(damaged()),
         };
-        let mut bytes = Vec::new();
-        file.take(MAX_PART + 1).read_to_end(&mut bytes).map_err(|_| damaged())?;
-        if bytes.len() as u64 > MAX_PART {
-            return Err(ThreeMfReadError::TooLong { part: excerpt(part, MAX_CHARACTERS) });
+        let too_long = || {
+            let most = self.most;
+            ThreeMfReadError::Bound(format!(
+                "the ZIP archive unpacks to more than {most} bytes, {BYTES_PER_BYTE} for each of its own"
+            ))
+        };
+        if file.size() > self.left {
+            return Err(too_long());
         }
+        let mut bytes = Vec::new();
+        file.take(self.left + 1).read_to_end(&mut bytes).map_err(|_| damaged())?;
+        let Some(left) = self.left.checked_sub(bytes.len() as u64) else { return Err(too_long()) };
+        self.left = left;
         String::from_utf8(bytes).map(Some).map_err(|_| malformed(part, "not UTF-8"))
     }
 }
@@ -52,19 +112,4 @@ pub(super) fn malformed(part: &str, problem: &str) -> ThreeMfReadError {
         part: excerpt(part, MAX_CHARACTERS),
         problem: excerpt(problem, MAX_CHARACTERS),
     }
-}
-
-/// Parses the XML of a part.
-pub(super) fn parsed<'a>(text: &'a str, part: &str) -> Result<Document<'a>, ThreeMfReadError> {
-    let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
-    // Some programs write a byte order mark.
-    Document::parse_with_options(text.trim_start_matches('\u{feff}'), options)
-        .map_err(|e| malformed(part, &e.to_string()))
-}
-
-/// Returns the part that the relationships of a package name as its model.
-pub(super) fn related_model(relationships: &str) -> Result<Option<String>, ThreeMfReadError> {
-    let document = parsed(relationships, RELATIONSHIPS)?;
-    let model = document.descendants().find(|n| n.attribute("Type") == Some(MODEL_TYPE));
-    Ok(model.and_then(|n| n.attribute("Target")).map(|path| path.trim_start_matches('/').to_owned()))
 }

@@ -1,8 +1,6 @@
 //! Names of the core specification: namespaces, parts, elements with their attributes, metadata,
 //! units.
 
-use crate::validity::Fault;
-
 /// Namespace of the core specification.
 pub(super) const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 /// Namespace of pinswitch's own metadata.
@@ -17,17 +15,27 @@ pub(super) const RELATIONSHIPS: &str = "_rels/.rels";
 pub(super) const CONTENT_TYPES: &str = "[Content_Types].xml";
 /// Name of the model part in most packages.
 pub(super) const USUAL_MODEL: &str = "3D/3dmodel.model";
-/// Longest detail of a fault, in characters: it may quote any text of the file.
-const MAX_CHARACTERS: usize = 300;
+/// Type of the relationship to a thumbnail.
+pub(super) const THUMBNAIL_TYPE: &str =
+    "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
+/// Type of the relationship to a print ticket.
+pub(super) const PRINT_TICKET_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
+/// Beginning of the namespaces and relationship types of encrypted content.
+pub(super) const SECURE_CONTENT: &str = "http://schemas.microsoft.com/3dmanufacturing/securecontent/";
+/// Types of objects.
+pub(super) const OBJECT_TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
+/// Attributes of `<item>` that slicers write without a namespace.
+pub(super) const SLICER_ATTRIBUTES: [&str; 1] = ["printable of <item>"];
 
 /// Elements of the core namespace with their attributes.
-const ELEMENTS: [(&str, &[&str]); 17] = [
+const ELEMENTS: [(&str, &[&str]); 16] = [
     ("model", &["unit", "requiredextensions", "recommendedextensions"]),
     ("metadata", &["name", "preserve", "type"]),
     ("metadatagroup", &[]),
     ("resources", &[]),
-    ("basematerials", &["id"]),
-    ("base", &["name", "displaycolor"]),
+    // The materials extension adds `displaypropertiesid` to both.
+    ("basematerials", &["id", "displaypropertiesid"]),
+    ("base", &["name", "displaycolor", "displaypropertiesid"]),
     ("object", &["id", "type", "thumbnail", "partnumber", "name", "pid", "pindex"]),
     ("mesh", &[]),
     ("vertices", &[]),
@@ -38,8 +46,6 @@ const ELEMENTS: [(&str, &[&str]); 17] = [
     ("component", &["objectid", "transform"]),
     ("build", &[]),
     ("item", &["objectid", "transform", "partnumber"]),
-    // Part of the first edition of the specification; readers skip it.
-    ("multiproperties", &[]),
 ];
 /// Names of metadata without a namespace.
 const METADATA: [&str; 9] = [
@@ -65,9 +71,9 @@ const UNITS: [(&str, f64); 6] = [
 /// Namespaces of extensions that leave meshes unchanged or that the reader supports: materials,
 /// production, triangle sets.
 const EXTENSIONS: [&str; 3] = [
-    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    super::materials::NAMESPACE,
     PRODUCTION,
-    "http://schemas.3mf.io/3dmanufacturing/triangle/2023/07",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
 ];
 
 /// Returns the attributes of an element; `None` for an unknown element.
@@ -90,12 +96,14 @@ pub(super) fn is_supported(namespace: &str) -> bool {
     EXTENSIONS.contains(&namespace)
 }
 
-/// A fault of a package that occurs `count` times.
-pub(super) fn faults(check: &'static str, count: usize, detail: &str) -> Fault {
-    Fault { check, count, at_mm: None, detail: pinswitch_diagnostic::excerpt(detail, MAX_CHARACTERS) }
-}
-
-/// A single fault of a package.
-pub(super) fn fault(check: &'static str, detail: &str) -> Fault {
-    faults(check, 1, detail)
+/// Returns the required attributes of an element. Those of vertices and triangles are checked where
+/// their values are read.
+pub(super) fn required_attributes(element: &str) -> &'static [&'static str] {
+    match element {
+        "metadata" => &["name"],
+        "basematerials" | "object" => &["id"],
+        "base" => &["name", "displaycolor"],
+        "component" | "item" => &["objectid"],
+        _ => &[],
+    }
 }

@@ -2,9 +2,6 @@
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 
-/// Size in bytes of the largest part that is unpacked: a small archive can contain endless zeros.
-pub(super) const MAX_PART: u64 = 1 << 30;
-
 /// A file that cannot be read as a 3MF.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -15,12 +12,12 @@ pub enum ThreeMfReadError {
     /// The archive contains no model.
     #[error("the ZIP archive contains no 3D model")]
     NoModel,
-    /// A part is too large.
-    #[error("{part}: more than {MAX_PART} bytes when unpacked")]
-    TooLong {
-        /// Name of the part.
-        part: String,
-    },
+    /// The file needs more work than a bound allows.
+    #[error("cannot be judged: {0}")]
+    Bound(String),
+    /// The file uses a feature without which its content has another meaning.
+    #[error("cannot be judged: {0}")]
+    Unsupported(String),
     /// A part is not the XML that it should be.
     #[error("{part}: {problem}")]
     Malformed {
@@ -36,7 +33,8 @@ impl ThreeMfReadError {
     fn help(&self) -> &'static str {
         match self {
             Self::NoModel => "give a 3MF file",
-            Self::TooLong { .. } => "export it with a coarser mesh",
+            Self::Bound(_) => "export it with a coarser mesh, or in several files",
+            Self::Unsupported(_) => "check it in a program that supports this",
             Self::Archive(_) | Self::Malformed { .. } => "export the file again",
         }
     }
@@ -49,9 +47,6 @@ impl From<ThreeMfReadError> for Diagnostic {
             Self::new(problem).with_location(location)
         };
         let diagnostic = match &error {
-            ThreeMfReadError::TooLong { part } => {
-                in_part(format!("more than {MAX_PART} bytes when unpacked"), part)
-            }
             ThreeMfReadError::Malformed { part, problem } => in_part(problem.clone(), part),
             other => Self::new(other.to_string()),
         };

@@ -3,11 +3,17 @@
 mod archive;
 mod build;
 mod core_spec;
+mod document;
 mod error;
+mod findings;
+mod materials;
 mod model;
+mod part_name;
 mod read;
+mod relationships;
 mod transform;
 mod write;
+mod xml;
 
 pub use build::PlacedMesh;
 pub use error::ThreeMfReadError;

@@ -1,17 +1,19 @@
 //! Model parts: objects with their meshes and components, and the items of the build.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{HashMap, HashSet};
 
-use roxmltree::Node;
-
-use super::archive::{malformed, parsed};
+use super::archive::malformed;
 use super::core_spec::{
-    CORE, OWN, PRODUCTION, attributes, fault, faults, is_metadata, is_supported, unit_mm,
+    OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, is_metadata, is_supported, unit_mm,
 };
+use super::document::{Document, Element, Namespace, RawMesh, read_document};
 use super::error::ThreeMfReadError;
+use super::findings::Findings;
+use super::materials;
+use super::part_name::normalized;
 use super::transform::Transform;
-use crate::mesh::{Mesh, Point3};
-use crate::validity::Fault;
+use crate::mesh::Mesh;
+use crate::validity::Level;
 
 /// A mesh of a package, in its own coordinates.
 #[derive(Clone, Debug)]
@@ -32,9 +34,26 @@ pub(super) type ObjectRef = (String, String);
 #[derive(Debug)]
 pub(super) struct ModelObject {
     pub(super) name: String,
-    pub(super) is_solid: bool,
+    /// Its type, such as `model`.
+    pub(super) kind: String,
     pub(super) mesh: Option<Mesh>,
     pub(super) components: Vec<(ObjectRef, Transform)>,
+}
+
+impl ModelObject {
+    /// Whether its mesh is a solid.
+    pub(super) fn is_solid(&self) -> bool {
+        matches!(self.kind.as_str(), "model" | "solidsupport")
+    }
+}
+
+/// An item of the build.
+#[derive(Debug)]
+pub(super) struct Item {
+    pub(super) object: ObjectRef,
+    pub(super) transform: Transform,
+    /// Whether slicers print it.
+    pub(super) is_printable: bool,
 }
 
 /// A model part.
@@ -44,7 +63,7 @@ pub(super) struct Model {
     order: Vec<String>,
     pub(super) objects: HashMap<String, ModelObject>,
     /// Objects to be built.
-    pub(super) items: Vec<(ObjectRef, Transform)>,
+    pub(super) items: Vec<Item>,
 }
 
 impl Model {
@@ -52,195 +71,340 @@ impl Model {
     pub(super) fn into_meshes(mut self) -> Vec<PackagedMesh> {
         let take = |id: &String| {
             let object = self.objects.remove(id)?;
-            Some(PackagedMesh { name: object.name, is_solid: object.is_solid, mesh: object.mesh? })
+            let is_solid = object.is_solid();
+            Some(PackagedMesh { name: object.name, is_solid, mesh: object.mesh? })
         };
         self.order.iter().filter_map(take).collect()
     }
 
     /// Parts that components and items of this model refer to.
-    pub(super) fn referenced_parts(&self) -> Vec<String> {
+    pub(super) fn referenced_parts(&self) -> HashSet<&str> {
         let components = self.objects.values().flat_map(|object| &object.components);
-        components.chain(&self.items).map(|((part, _), _)| part.clone()).collect()
+        let items = self.items.iter().map(|item| &item.object);
+        components.map(|(object, _)| object).chain(items).map(|(part, _)| part.as_str()).collect()
     }
 }
 
-/// Reads the models of one package and collects their faults and the metadata of pinswitch.
+/// Reads the models of one package and collects their findings and the metadata of pinswitch.
 #[derive(Debug, Default)]
 pub(super) struct ModelReader {
-    pub(super) faults: Vec<Fault>,
+    pub(super) findings: Findings,
     pub(super) configuration: Option<String>,
     pub(super) law: Option<String>,
+    /// Objects of the last model with their thumbnails.
+    pub(super) thumbnails: Vec<(String, String)>,
 }
 
 impl ModelReader {
-    /// Reads the model in `part`.
+    /// Reads the model in `part`, whose name in the archive is `shown`.
     ///
     /// # Errors
-    /// [`ThreeMfReadError`] if the text is not a model of the core specification.
-    pub(super) fn model(&mut self, text: &str, part: &str) -> Result<Model, ThreeMfReadError> {
-        let document = parsed(text, part)?;
-        let root = document.root_element();
-        if root.tag_name().name() != "model" || root.tag_name().namespace() != Some(CORE) {
-            return Err(malformed(part, "the root element is not a model of the 3MF core specification"));
+    /// [`ThreeMfReadError`] if the text is not a model of the core specification, or cannot be judged.
+    pub(super) fn model(&mut self, text: &str, part: &str, shown: &str) -> Result<Model, ThreeMfReadError> {
+        let mut document = read_document(text, shown)?;
+        if !document.root.is_core("model") {
+            return Err(malformed(shown, "the root element is not a model of the 3MF core specification"));
         }
-        self.faults.extend(unknown_names(root));
-        self.faults.extend(missing_extensions(root));
-        self.faults.extend(metadata_faults(root));
+        self.check_extensions(&document.root)?;
+        self.check_names(&document);
+        self.check_order(&document.root);
+        self.check_metadata(&document.root);
+        let root = &mut document.root;
         self.configuration = self.configuration.take().or_else(|| own_metadata(root, "configuration"));
         self.law = self.law.take().or_else(|| own_metadata(root, "law"));
         let unit = root.attribute("unit").unwrap_or("millimeter");
         let unit_mm = unit_mm(unit).unwrap_or_else(|| {
-            self.faults.push(fault("unit", &format!("the specification has no unit {unit}")));
+            let detail = format!("the specification has no unit {unit}");
+            self.findings.error("unit", "3MF core 3.4", &detail);
             1.0
         });
         let mut model = Model::default();
-        for object in core(root, "resources").flat_map(|resources| core(resources, "object")) {
-            self.add_object(&mut model, object, part, unit_mm);
+        for child in &mut root.children {
+            if child.is_core("resources") {
+                self.resources(&mut model, child, part, unit_mm);
+            }
         }
-        for item in core(root, "build").flat_map(|build| core(build, "item")) {
-            model.items.push(self.placement(item, part, unit_mm));
+        for item in root.core("build").flat_map(|build| build.core("item")) {
+            let (object, transform) = self.placement(item, part, unit_mm);
+            let is_printable = !matches!(item.attribute("printable"), Some("0" | "false"));
+            model.items.push(Item { object, transform, is_printable });
         }
         Ok(model)
     }
 
-    fn add_object(&mut self, model: &mut Model, object: Node<'_, '_>, part: &str, unit_mm: f64) {
-        let id = object.attribute("id").unwrap_or_default().to_owned();
-        let kind = object.attribute("type").unwrap_or("model");
-        let read = ModelObject {
-            name: object.attribute("name").map_or_else(|| format!("object {id}"), str::to_owned),
-            is_solid: matches!(kind, "model" | "solidsupport"),
-            mesh: core(object, "mesh").next().map(|mesh| self.mesh(mesh, &id, unit_mm)),
-            components: core(object, "components")
-                .flat_map(|all| core(all, "component"))
-                .map(|component| self.placement(component, part, unit_mm))
-                .collect(),
-        };
-        if model.objects.insert(id.clone(), read).is_some() {
-            self.faults.push(fault("reference", &format!("two objects have the id {id}")));
-        } else {
-            model.order.push(id);
+    fn resources(&mut self, model: &mut Model, resources: &mut Element, part: &str, unit_mm: f64) {
+        self.check_ids(resources);
+        materials::check_references(resources, &mut self.findings);
+        let groups: HashMap<String, usize> = resources
+            .children
+            .iter()
+            .filter(|child| !child.is_core("object"))
+            .filter_map(|child| Some((child.attribute("id")?.trim().to_owned(), child.core("base").count())))
+            .collect();
+        self.check_materials(resources);
+        for object in resources.children.iter_mut().filter(|child| child.is_core("object")) {
+            self.check_properties(object, &groups);
+            self.object(model, object, part, unit_mm);
         }
     }
 
-    fn mesh(&mut self, mesh: Node<'_, '_>, id: &str, unit_mm: f64) -> Mesh {
-        let mut invalid: Vec<String> = Vec::new();
-        let mut number = |node: Node<'_, '_>, name: &str| -> f64 {
-            let text = node.attribute(name);
-            let value = text.and_then(|v| v.trim().parse().ok());
-            if value.is_none() {
-                let absent = || format!("without {name}");
-                invalid.push(text.map_or_else(absent, |v| format!("with {name}=\"{v}\"")));
+    fn object(&mut self, model: &mut Model, object: &mut Element, part: &str, unit_mm: f64) {
+        let id = object.attribute("id").unwrap_or_default().trim().to_owned();
+        let kind = object.attribute("type").unwrap_or("model").to_owned();
+        if !OBJECT_TYPES.contains(&kind.as_str()) {
+            self.findings.error("object", "3MF core 4", &format!("object {id} has the unknown type {kind}"));
+        }
+        let (meshes, components) = (object.core("mesh").count(), object.core("components").count());
+        if meshes + components != 1 {
+            let detail =
+                format!("object {id} has {meshes} meshes and {components} lists of components, not one");
+            self.findings.error("object", "3MF core B.1.1", &detail);
+        }
+        if components > 0 && (object.attribute("pid").is_some() || object.attribute("pindex").is_some()) {
+            let detail = format!("object {id} has components and a property");
+            self.findings.error("property", "3MF core 4", &detail);
+        }
+        if let Some(thumbnail) = object.attribute("thumbnail") {
+            self.thumbnails.push((id.clone(), normalized(thumbnail)));
+        }
+        let name = object.attribute("name").map_or_else(|| format!("object {id}"), str::to_owned);
+        let placements: Vec<_> = object.core("components").flat_map(|all| all.core("component")).collect();
+        let components: Vec<_> =
+            placements.iter().map(|component| self.placement(component, part, unit_mm)).collect();
+        for ((component_part, component), _) in &components {
+            if component_part == part && !model.objects.contains_key(component) {
+                let detail =
+                    format!("object {id} has the component {component}, which is not defined before it");
+                self.findings.error("reference", "3MF core 4.2.1", &detail);
             }
-            value.unwrap_or(f64::NAN)
-        };
-        let positions: Vec<Point3> = core(mesh, "vertices")
-            .flat_map(|all| core(all, "vertex"))
-            .map(|v| Point3::new(number(v, "x"), number(v, "y"), number(v, "z")) * unit_mm)
-            .collect();
-        if let Some(first) = invalid.first() {
+        }
+        let raw = object.children.iter_mut().find_map(|child| child.mesh.take());
+        let mesh = raw.map(|raw| self.mesh(raw, &id, &kind, unit_mm));
+        let read = ModelObject { name, kind, mesh, components };
+        if !model.objects.contains_key(&id) {
+            model.order.push(id.clone());
+            model.objects.insert(id, read);
+        }
+    }
+
+    fn mesh(&mut self, raw: RawMesh, id: &str, kind: &str, unit_mm: f64) -> Mesh {
+        let findings = &mut self.findings;
+        if let Some((count, first)) = &raw.invalid {
             let problem = if first.contains(',') {
                 "numbers have a decimal point, not a comma"
             } else {
                 "a coordinate is a number"
             };
             let detail = format!("object {id} has a vertex {first}; {problem}");
-            self.faults.push(faults("number", invalid.len(), &detail));
+            findings.add("number", Level::Error, *count, "3MF core 4.1.3.1", &detail);
         }
-        let mut outside = 0;
-        let mut triangles = Vec::new();
-        for triangle in core(mesh, "triangles").flat_map(|all| core(all, "triangle")) {
-            let corner = |name| -> Option<u32> {
-                let index: u32 = triangle.attribute(name)?.trim().parse().ok()?;
-                positions.get(index as usize).map(|_| index)
-            };
-            match (corner("v1"), corner("v2"), corner("v3")) {
-                (Some(a), Some(b), Some(c)) => triangles.push([a, b, c]),
-                _ => outside += 1,
-            }
-        }
+        let vertices = raw.positions.len();
+        let exists = |triangle: &[u32; 3]| triangle.iter().all(|v| (*v as usize) < vertices);
+        let number = raw.triangles.len() + raw.without_indices;
+        let mut triangles = raw.triangles;
+        triangles.retain(exists);
+        let outside = number - triangles.len();
         if outside > 0 {
             let detail =
-                format!("{outside} triangles of object {id} name none of its {} vertices", positions.len());
-            self.faults.push(faults("index", outside, &detail));
+                format!("{outside} triangles of object {id} refer to none of its {vertices} vertices");
+            findings.add("index", Level::Error, outside, "3MF core 4.1.4.1", &detail);
         }
+        let repeated = triangles.iter().filter(|[a, b, c]| a == b || b == c || c == a).count();
+        if repeated > 0 {
+            let detail = format!("{repeated} triangles of object {id} refer to a vertex twice");
+            findings.add("index", Level::Error, repeated, "3MF core 4.1.4.1", &detail);
+        }
+        if number == 0 || (kind == "model" && number < 4) {
+            let detail = format!("object {id} has {number} triangles, a solid has at least 4");
+            findings.error("triangles", "3MF core 4.1.4", &detail);
+        }
+        let positions = raw.positions.into_iter().map(|p| p * unit_mm).collect();
         Mesh::new(positions, triangles)
     }
 
     /// The object and the transform of an item or a component.
-    fn placement(&mut self, node: Node<'_, '_>, part: &str, unit_mm: f64) -> (ObjectRef, Transform) {
-        let path = node.attribute((PRODUCTION, "path")).map(|path| path.trim_start_matches('/'));
-        let id = node.attribute("objectid").unwrap_or_default();
-        let object = (path.unwrap_or(part).to_owned(), id.to_owned());
-        let Some(text) = node.attribute("transform") else { return (object, Transform::IDENTITY) };
+    fn placement(&mut self, element: &Element, part: &str, unit_mm: f64) -> (ObjectRef, Transform) {
+        let path = element.attribute_in(&Namespace::Other(PRODUCTION.to_owned()), "path").map(normalized);
+        let id = element.attribute("objectid").unwrap_or_default().trim();
+        let object = (path.unwrap_or_else(|| part.to_owned()), id.to_owned());
+        let Some(text) = element.attribute("transform") else { return (object, Transform::IDENTITY) };
         let transform = Transform::parse(text, unit_mm).unwrap_or_else(|| {
-            self.faults.push(fault("transform", "a transform does not have twelve finite numbers"));
+            let detail = "a transform does not have twelve finite numbers";
+            self.findings.error("transform", "3MF core 3.3", detail);
             Transform::IDENTITY
         });
+        if transform.determinant() == 0.0 {
+            self.findings.warning("transform", "3MF core 3.3", "a transform flattens its object");
+        }
         (object, transform)
     }
-}
 
-/// Children in the core namespace.
-fn core<'a, 'input: 'a>(
-    node: Node<'a, 'input>,
-    name: &'static str,
-) -> impl Iterator<Item = Node<'a, 'input>> {
-    node.children().filter(move |n| n.tag_name().name() == name && n.tag_name().namespace() == Some(CORE))
-}
+    /// Refuses required extensions that change the meaning of the model.
+    fn check_extensions(&mut self, root: &Element) -> Result<(), ThreeMfReadError> {
+        let prefixes = |name| root.attribute(name).unwrap_or_default().split_whitespace();
+        for prefix in prefixes("requiredextensions") {
+            match root.prefixes.get(prefix) {
+                Some(namespace) if is_supported(namespace) => {}
+                Some(namespace) => {
+                    let problem = format!("the required extension {namespace} is not supported");
+                    return Err(ThreeMfReadError::Unsupported(problem));
+                }
+                None => {
+                    let detail = format!("the required extension {prefix} is not declared");
+                    self.findings.error("extension", "3MF core 3.4", &detail);
+                }
+            }
+        }
+        for prefix in prefixes("recommendedextensions") {
+            let namespace = root.prefixes.get(prefix).map_or(prefix, String::as_str);
+            if !is_supported(namespace) {
+                let detail = format!("the recommended extension {namespace} is not supported");
+                self.findings.warning("extension", "3MF core 3.4", &detail);
+            }
+        }
+        Ok(())
+    }
 
-/// The value of metadata in the namespace of pinswitch.
-fn own_metadata(root: Node<'_, '_>, key: &str) -> Option<String> {
-    let has_key = |n: &Node<'_, '_>| {
-        let (prefix, name) = n.attribute("name").and_then(|name| name.split_once(':')).unwrap_or_default();
-        name == key && root.lookup_namespace_uri(Some(prefix)) == Some(OWN)
-    };
-    core(root, "metadata").find(has_key).and_then(|n| n.text()).map(str::to_owned)
-}
+    /// Reports elements and attributes outside of the specification, and missing ones.
+    fn check_names(&mut self, document: &Document) {
+        for (name, count) in &document.unknown {
+            let is_usual = SLICER_ATTRIBUTES.contains(&name.as_str());
+            let level = if is_usual { Level::Note } else { Level::Error };
+            let detail = format!("{name} is not in the core specification");
+            self.findings.add("vocabulary", level, *count, "3MF core 2.3.2", &detail);
+        }
+        for (name, count) in &document.forbidden {
+            let detail = format!("{name} is not allowed");
+            self.findings.add("vocabulary", Level::Error, *count, "3MF core 2.3.4", &detail);
+        }
+        for (name, count) in &document.missing {
+            self.findings.add("attribute", Level::Error, *count, "3MF core B.1.1", name);
+        }
+        for (problem, count) in &document.materials {
+            self.findings.add("materials", Level::Error, *count, "3MF materials B", problem);
+        }
+    }
 
-/// Elements and attributes outside of the specification, each once with its number of occurrences.
-fn unknown_names(root: Node<'_, '_>) -> Vec<Fault> {
-    let mut unknown: BTreeMap<String, usize> = BTreeMap::new();
-    for node in root.descendants().filter(|n| n.tag_name().namespace() == Some(CORE)) {
-        let element = node.tag_name().name();
-        let Some(known) = attributes(element) else {
-            *unknown.entry(format!("<{element}>")).or_default() += 1;
-            continue;
-        };
-        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-            if !known.contains(&attribute.name()) {
-                *unknown.entry(format!("{} of <{element}>", attribute.name())).or_default() += 1;
+    /// Reports children of the model that are missing, repeated or in another order.
+    fn check_order(&mut self, root: &Element) {
+        const ORDER: [&str; 3] = ["metadata", "resources", "build"];
+        for name in ["resources", "build"] {
+            let count = root.children.iter().filter(|child| child.is_core(name)).count();
+            if count != 1 {
+                let detail = format!("the model has {count} elements <{name}>, not one");
+                self.findings.error("model", "3MF core 3.4", &detail);
+            }
+        }
+        let core = root.children.iter().filter(|child| child.namespace == Namespace::Core);
+        let order: Vec<_> =
+            core.filter_map(|child| ORDER.iter().position(|name| *name == child.name)).collect();
+        if !order.is_sorted() {
+            let detail = "metadata, resources and build are not in this order";
+            self.findings.error("model", "3MF core B.1.1", detail);
+        }
+    }
+
+    fn check_metadata(&mut self, root: &Element) {
+        self.check_metadata_of(root);
+        let items = root.core("build").flat_map(|build| build.core("item"));
+        let objects = root.core("resources").flat_map(|resources| resources.core("object"));
+        for group in items.chain(objects).flat_map(|element| element.core("metadatagroup")) {
+            self.check_metadata_of(group);
+        }
+    }
+
+    /// Checks the metadata of the model, or of an object or an item.
+    fn check_metadata_of(&mut self, parent: &Element) {
+        let mut names = HashSet::new();
+        for element in parent.core("metadata") {
+            let Some(name) = element.attribute("name") else { continue };
+            if !names.insert(name) {
+                self.findings.error("metadata", "3MF core 3.4.1", &format!("{name} occurs twice"));
+            }
+            match name.split_once(':') {
+                Some((prefix, _)) if element.prefixes.contains_key(prefix) => {}
+                Some((prefix, _)) => {
+                    let detail = format!("the namespace {prefix} of {name} is not declared");
+                    self.findings.error("metadata", "3MF core 3.4.1", &detail);
+                }
+                None if is_metadata(name) => {}
+                None if name.trim().is_empty() => {
+                    self.findings.error("metadata", "3MF core 3.4.1", "metadata has an empty name");
+                }
+                // Producers must not write it, and readers ignore it.
+                None => {
+                    let detail = format!("{name} is not in the specification and has no namespace");
+                    self.findings.warning("metadata", "3MF core 3.4.1", &detail);
+                }
             }
         }
     }
-    let fault = |(name, count): (String, usize)| {
-        faults("vocabulary", count, &format!("{name} is not in the core specification"))
-    };
-    unknown.into_iter().map(fault).collect()
-}
 
-fn missing_extensions(root: Node<'_, '_>) -> Vec<Fault> {
-    let required = root.attribute("requiredextensions").unwrap_or_default();
-    let missing =
-        required.split_whitespace().filter_map(|prefix| match root.lookup_namespace_uri(Some(prefix)) {
-            Some(namespace) if is_supported(namespace) => None,
-            Some(namespace) => Some(format!("the required extension {namespace} is not supported")),
-            None => Some(format!("the required extension {prefix} is not declared")),
-        });
-    missing.map(|detail| fault("extension", &detail)).collect()
-}
-
-fn metadata_faults(root: Node<'_, '_>) -> Vec<Fault> {
-    let names: Vec<&str> = core(root, "metadata").filter_map(|n| n.attribute("name")).collect();
-    let flaw = |(i, name): (usize, &&str)| {
-        let declared = |prefix: &str| root.lookup_namespace_uri(Some(prefix)).is_some();
-        let is_known = name.split_once(':').map_or(is_metadata(name), |(prefix, _)| declared(prefix));
-        if names[..i].contains(name) {
-            Some(fault("metadata", &format!("{name} occurs twice")))
-        } else if is_known {
-            None
-        } else {
-            Some(fault("metadata", &format!("{name} is not in the specification and has no namespace")))
+    fn check_ids(&mut self, resources: &Element) {
+        let mut ids = HashSet::new();
+        for resource in &resources.children {
+            let Some(id) = resource.attribute("id").map(str::trim) else { continue };
+            if !ids.insert(id) {
+                let detail = format!("two resources have the id {id}");
+                self.findings.error("reference", "3MF core 3.4.2", &detail);
+            }
+            if !id.parse::<u32>().is_ok_and(|number| number > 0 && number < 1 << 31) {
+                let detail = format!("the id {id:?} is not a number from 1 to 2147483647");
+                self.findings.error("reference", "3MF core B.1.1", &detail);
+            }
         }
+    }
+
+    /// Reports base materials without a valid colour.
+    fn check_materials(&mut self, resources: &Element) {
+        let bases = resources.core("basematerials").flat_map(|group| group.core("base"));
+        for color in bases.filter_map(|base| base.attribute("displaycolor")) {
+            if !materials::is_color(color) {
+                let detail = format!("the colour {color} is not #RRGGBB or #RRGGBBAA");
+                self.findings.error("material", "3MF core 5.1.1", &detail);
+            }
+        }
+    }
+
+    /// Reports properties of an object that refer to no group.
+    fn check_properties(&mut self, object: &Element, groups: &HashMap<String, usize>) {
+        let id = object.attribute("id").unwrap_or_default();
+        let (pid, pindex) = (object.attribute("pid"), object.attribute("pindex"));
+        let meshes = || object.core("mesh").filter_map(|mesh| mesh.mesh.as_ref());
+        if pindex.is_some() && pid.is_none() {
+            let detail = format!("object {id} has a pindex without pid");
+            self.findings.error("property", "3MF core 4", &detail);
+        }
+        let is_incomplete = pid.is_none() || pindex.is_none();
+        if is_incomplete && meshes().any(|mesh| mesh.has_property) {
+            let detail =
+                format!("triangles of object {id} have a property, but the object has no pid and pindex");
+            self.findings.warning("property", "3MF core 4", &detail);
+        }
+        let of_triangles = meshes().flat_map(|mesh| &mesh.groups).map(String::as_str);
+        for group in pid.into_iter().chain(of_triangles) {
+            if !groups.contains_key(group.trim()) {
+                let detail = format!("object {id} has a property of the group {group}, which does not exist");
+                self.findings.error("property", "3MF core 4", &detail);
+            }
+        }
+        let bases = pid.and_then(|pid| groups.get(pid.trim())).filter(|bases| **bases > 0);
+        let index = pindex.and_then(|index| index.trim().parse::<usize>().ok());
+        if let (Some(bases), Some(index)) = (bases, index)
+            && index >= *bases
+        {
+            let detail = format!("object {id} has the material {index} of a group of {bases}");
+            self.findings.error("property", "3MF core 4", &detail);
+        }
+    }
+}
+
+/// The value of metadata in the namespace of pinswitch.
+fn own_metadata(root: &Element, key: &str) -> Option<String> {
+    let has_key = |element: &&Element| {
+        let (prefix, name) =
+            element.attribute("name").and_then(|name| name.split_once(':')).unwrap_or_default();
+        name == key && element.prefixes.get(prefix).is_some_and(|namespace| namespace == OWN)
     };
-    names.iter().enumerate().filter_map(flaw).collect()
+    root.core("metadata").find(has_key).map(|element| element.text.clone())
 }

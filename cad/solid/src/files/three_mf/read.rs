@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::archive::{Archive, related_model};
+use super::archive::Archive;
 use super::build::{Build, PlacedMesh};
-use super::core_spec::{CONTENT_TYPES, RELATIONSHIPS, USUAL_MODEL, fault};
+use super::core_spec::{CONTENT_TYPES, MODEL_TYPE, RELATIONSHIPS, THUMBNAIL_TYPE, USUAL_MODEL};
 use super::error::ThreeMfReadError;
 use super::model::{Model, ModelReader, PackagedMesh};
+use super::part_name::normalized;
+use super::relationships::{self, ContentTypes, Relationship, relationships};
 use crate::validity::Fault;
 
 /// The content of a package.
@@ -14,10 +16,14 @@ use crate::validity::Fault;
 pub struct ThreeMf {
     /// Its meshes, in the order of the file.
     pub meshes: Vec<PackagedMesh>,
-    /// Violations of the specification.
+    /// Deviations from the specification, each kind a few times.
     pub faults: Vec<Fault>,
     /// Solids in their places on the plate.
     pub built: Vec<PlacedMesh>,
+    /// The bound that was met before all solids were placed.
+    pub bound: Option<String>,
+    /// The bound that was met before meshes of all other sizes were returned.
+    pub size_bound: Option<String>,
     /// The configuration that the package was made from, if pinswitch wrote it.
     pub configuration: Option<String>,
     /// The friction law of its curve, if that is not the default law.
@@ -31,38 +37,86 @@ pub struct ThreeMf {
 pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
     let mut archive = Archive::open(bytes)?;
     let mut reader = ModelReader::default();
-    if archive.text(CONTENT_TYPES)?.is_none() {
-        reader.faults.push(fault("content types", &format!("{CONTENT_TYPES} is missing")));
+    for name in archive.repeated() {
+        let detail = format!("two parts have equivalent names: {name}");
+        reader.findings.error("part name", "OPC M1.12", &detail);
     }
-    let model_part = match archive.text(RELATIONSHIPS)? {
-        Some(text) => related_model(&text)?,
-        None => None,
-    };
-    if model_part.is_none() {
-        reader.faults.push(fault("relationships", &format!("{RELATIONSHIPS} names no 3D model")));
+    let types = ContentTypes::read(&mut archive)?;
+    if types.is_none() {
+        reader.findings.error("content types", "OPC M2.4", &format!("{CONTENT_TYPES} is missing"));
     }
-    let main_part = model_part.unwrap_or_else(|| USUAL_MODEL.to_owned());
+    let related = relationships(&mut archive, "")?.unwrap_or_default();
+    relationships::check(&related, "", &archive, types.as_ref(), &mut reader.findings)?;
+    let models = related.into_iter().filter(|one| one.kind == MODEL_TYPE);
+    let targets: Vec<String> = models.map(|one| normalized(&one.target)).collect();
+    if targets.is_empty() {
+        let detail = format!("{RELATIONSHIPS} names no 3D model");
+        reader.findings.error("relationships", "3MF core 2.1.1", &detail);
+    }
+    let present = targets.into_iter().find(|target| archive.contains(target));
+    let main_part = present.unwrap_or_else(|| normalized(USUAL_MODEL));
     let text = archive.text(&main_part)?.ok_or(ThreeMfReadError::NoModel)?;
-    let mut models = BTreeMap::from([(main_part.clone(), reader.model(&text, &main_part)?)]);
-    while let Some(missing) = missing_part(&models) {
-        let model = match archive.text(&missing)? {
-            Some(text) => reader.model(&text, &missing)?,
+    if let Some(types) = &types {
+        types.check_model(&archive.name(&main_part), &mut reader.findings);
+    }
+    let mut models = BTreeMap::new();
+    let mut pending = BTreeMap::from([(main_part.clone(), Some(text))]);
+    while let Some((part, text)) = pending.pop_first() {
+        let model = match text.map_or_else(|| archive.text(&part), |text| Ok(Some(text)))? {
+            Some(text) => {
+                let model = reader.model(&text, &part, &archive.name(&part))?;
+                check_relationships(&mut archive, &part, types.as_ref(), &mut reader)?;
+                model
+            }
             None => {
-                reader.faults.push(fault("reference", &format!("{missing} is missing")));
+                let detail = format!("{part} is missing");
+                reader.findings.error("reference", "3MF core 2.1.1", &detail);
                 Model::default()
             }
         };
-        models.insert(missing, model);
+        let referenced = model.referenced_parts().into_iter().map(str::to_owned).collect::<Vec<_>>();
+        models.insert(part, model);
+        pending.extend(
+            referenced.into_iter().filter(|part| !models.contains_key(part)).map(|part| (part, None)),
+        );
     }
-    let ModelReader { mut faults, configuration, law } = reader;
-    let Build { solids, scaled } = Build::of_package(&models, &main_part, &mut faults);
+    let ModelReader { mut findings, configuration, law, .. } = reader;
+    let build = Build::of_package(&models, &main_part, &mut findings);
     let main = models.remove(&main_part).into_iter();
+    let scaled = build.scaled;
     let meshes = main.chain(models.into_values()).flat_map(Model::into_meshes).chain(scaled).collect();
-    Ok(ThreeMf { meshes, faults, built: solids, configuration, law })
+    let (built, bound, size_bound) = (build.solids, build.bound, build.size_bound);
+    let faults = findings.finish();
+    Ok(ThreeMf { meshes, faults, built, bound, size_bound, configuration, law })
 }
 
-/// Returns a part that is referred to and not yet read.
-fn missing_part(models: &BTreeMap<String, Model>) -> Option<String> {
-    let referenced = models.values().flat_map(Model::referenced_parts);
-    referenced.into_iter().find(|part| !models.contains_key(part))
+/// Checks the relationships of the model in `part`, which was read last.
+fn check_relationships(
+    archive: &mut Archive<'_>,
+    part: &str,
+    types: Option<&ContentTypes>,
+    reader: &mut ModelReader,
+) -> Result<(), ThreeMfReadError> {
+    let all = relationships(archive, part)?.unwrap_or_default();
+    relationships::check(&all, part, archive, types, &mut reader.findings)?;
+    let is_thumbnail = |target: &str| {
+        let is_target = |one: &&Relationship| normalized(&one.target) == *target;
+        all.iter()
+            .take(MAX_THUMBNAILS)
+            .find(is_target)
+            .is_some_and(|one| THUMBNAIL_TYPES.contains(&one.kind.as_str()))
+    };
+    for (id, target) in std::mem::take(&mut reader.thumbnails).into_iter().take(MAX_THUMBNAILS) {
+        if !is_thumbnail(&target) {
+            let detail = format!("the thumbnail of object {id} has no relationship of that type");
+            reader.findings.warning("thumbnail", "3MF core 4", &detail);
+        }
+    }
+    Ok(())
 }
+
+/// Types of relationships to the thumbnail of an object: the second is that of older files.
+const THUMBNAIL_TYPES: [&str; 2] =
+    [THUMBNAIL_TYPE, "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"];
+/// Most thumbnails of objects, and most relationships that are compared with them.
+const MAX_THUMBNAILS: usize = 500;

@@ -5,13 +5,17 @@ use std::io::{Cursor, Write as _};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::core_spec::{CONTENT_TYPES, CORE, MODEL_TYPE, PRODUCTION, RELATIONSHIPS, USUAL_MODEL};
+use super::core_spec::{
+    CONTENT_TYPES, CORE, MODEL_TYPE, PRODUCTION, RELATIONSHIPS, THUMBNAIL_TYPE, USUAL_MODEL,
+};
+use super::error::ThreeMfReadError;
 use super::read::{ThreeMf, read_three_mf};
 use super::write::{BaseMaterial, Object, Package, three_mf};
 use crate::files::plate::Placement;
 use crate::mesh::{Mesh, Point3, Vector3};
+use crate::validity::Level;
 
-const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>"#;
+const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="MODEL" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
 
 fn relationships() -> String {
     format!(
@@ -45,6 +49,8 @@ fn read(model: &str) -> ThreeMf {
 fn checks(found: &ThreeMf) -> Vec<&str> {
     found.faults.iter().map(|f| f.check).collect()
 }
+
+const BASE: &str = r##"<basematerials id="5"><base name="ABS" displaycolor="#0000FF"/></basematerials>"##;
 
 fn object(id: u32) -> String {
     format!(r#"<object id="{id}">{TETRAHEDRON}</object>"#)
@@ -88,13 +94,23 @@ fn each_fault_is_named() {
         (model_of("", r#"<metadata name="Foo">x</metadata>"#, &object(1), item), "metadata"),
         (model_of("", &r#"<metadata name="Title">x</metadata>"#.repeat(2), &object(1), item), "metadata"),
         (model_of(r#"requiredextensions="zz""#, "", &object(1), item), "extension"),
-        (model_of(r#"xmlns:b="urn:b" requiredextensions="b""#, "", &object(1), item), "extension"),
+        (model_of(r#"xmlns:b="urn:b" recommendedextensions="b""#, "", &object(1), item), "extension"),
         (model_of("", "", &object(1), ""), "build"),
         (model_of("", "", &object(1), r#"<item objectid="7"/>"#), "reference"),
         (model_of("", "", &[object(1), object(1)].concat(), item), "reference"),
+        (model_of("", "", &format!(r#"{0}{0}{1}"#, BASE, object(1)), item), "reference"),
+        (model_of("", "", &object(1).replace("<object", r#"<object type="shape""#), item), "object"),
+        (model_of("", "", &object(1).replace("<object", r#"<object type="other""#), item), "build"),
+        (model_of("", "", &object(1).replace("<object", r#"<object pindex="0""#), item), "property"),
+        (model_of(r#"xml:space="default""#, "", &object(1), item), "vocabulary"),
+        (model_of("", "<metadata>x</metadata>", &object(1), item), "attribute"),
+        (model_of("", r#"<metadata name="q:a">x</metadata>"#, &object(1), item), "metadata"),
+        (model_of("", "", &(BASE.replace("#0000FF", "blue") + &object(1)), item), "material"),
+        (good.replace("<build>", "<build/><build>"), "model"),
+        (good.replace(r#"v3="1""#, r#"v3="2""#), "index"),
         (
-            model_of("", "", &object(1), r#"<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 50 0 0"/>"#),
-            "mirrored",
+            model_of("", "", &object(1), r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 0 0 0 0"/>"#),
+            "transform",
         ),
         (
             model_of("", "", &object(1), r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 1 -50 0 0"/>"#),
@@ -158,7 +174,122 @@ fn nested_components_are_bounded() {
         format!(r#"<object id="{id}"><components>{component}</components></object>"#)
     };
     let resources = (2..14).fold(object(1), |all, id| all + &twice(id));
-    assert_eq!(checks(&read(&model_of("", "", &resources, r#"<item objectid="13"/>"#))), ["reference"]);
+    let bomb = read(&model_of("", "", &resources, r#"<item objectid="13"/>"#));
+    assert_eq!((checks(&bomb), bomb.built.len(), bomb.bound.is_some()), (vec![], 500, true));
+    // A chain of a hundred is no bomb.
+    let once = |id: u32| {
+        format!(r#"<object id="{id}"><components><component objectid="{}"/></components></object>"#, id - 1)
+    };
+    let resources = (2..102).fold(object(1), |all, id| all + &once(id));
+    let chain = read(&model_of("", "", &resources, r#"<item objectid="101"/>"#));
+    assert_eq!((checks(&chain), chain.built.len(), &chain.bound), (vec![], 1, &None));
+}
+
+/// A transform that mirrors does not turn a solid inside out.
+#[test]
+fn mirrored_items_keep_their_volume() {
+    let item = r#"<item objectid="1" transform="-1 0 0 0 1 0 0 0 1 50 0 0"/>"#;
+    let found = read(&model_of("", "", &object(1), item));
+    assert_eq!(checks(&found), [""; 0]);
+    assert!((found.built[0].mesh.volume_mm3() - 121.5).abs() < 1e-9);
+}
+
+#[test]
+fn usual_deviations_are_no_errors() {
+    let item = r#"<item objectid="1" printable="1" transform="1 0 0 0 1 0 0 0 1 0 0 -3"/>"#;
+    let metadata = r#"<metadata name="Foo">x</metadata>"#;
+    let found = read(&model_of("", metadata, &object(1), item));
+    assert_eq!(checks(&found), ["vocabulary", "metadata", "outside"]);
+    assert!(found.faults.iter().all(|fault| fault.level < Level::Error), "{:?}", found.faults);
+    assert_eq!(found.faults[1].paragraph, Some("3MF core 3.4.1"));
+}
+
+/// Each kind is reported a few times, and the rest is counted.
+#[test]
+fn findings_of_a_kind_are_counted() {
+    let items: String = (2..20_002).map(|id| format!(r#"<item objectid="{id}"/>"#)).collect();
+    let found = read(&model_of("", "", &object(1), &items));
+    assert_eq!(checks(&found), ["reference"; 4]);
+    assert_eq!(found.faults[3].count, 19_997);
+}
+
+#[test]
+fn part_names_are_compared_as_required() {
+    let model = model_of("", "", &object(1), r#"<item objectid="1"/>"#);
+    let types = TYPES;
+    for (target, name) in [
+        ("/3d/3DMODEL.model", "3D/3dmodel.model"),
+        ("/3D/%E6%A8%A1.model", "3D/\u{6a21}.model"),
+        ("3D/../3D/3dmodel.model", "3D/3dmodel.model"),
+    ] {
+        let rels = relationships().replace("/3D/3dmodel.model", target);
+        let parts = [(CONTENT_TYPES, types), ("_RELS/.rels", rels.as_str()), (name, model.as_str())];
+        let found = read_three_mf(&packed(&parts)).unwrap();
+        assert_eq!((checks(&found), found.meshes.len()), (vec![], 1), "{target}");
+    }
+    let rels = relationships();
+    let twice =
+        [(CONTENT_TYPES, types), (RELATIONSHIPS, &rels), (USUAL_MODEL, &model), ("3D/3DModel.model", &model)];
+    assert_eq!(checks(&read_three_mf(&packed(&twice)).unwrap()), ["part name"]);
+}
+
+#[test]
+fn faults_of_relationships_are_named() {
+    let model = model_of("", "", &object(1), r#"<item objectid="1"/>"#);
+    let with = |more: &str| {
+        let rels = relationships().replace("</Relationships>", &format!("{more}</Relationships>"));
+        let parts = [(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, &model)];
+        read_three_mf(&packed(&parts)).unwrap()
+    };
+    let relation = |kind: &str, target: &str| format!(r#"<Relationship Type="{kind}" Target="{target}"/>"#);
+    assert_eq!(checks(&with(&relation(THUMBNAIL_TYPE, "/Metadata/missing.png"))), ["relationships"]);
+    assert_eq!(checks(&with(&relation("urn:a", "http://a.example/b"))), ["relationships"]);
+    assert_eq!(checks(&with(&relation("urn:a", "c:/b"))), ["relationships"]);
+    let two = with(&relation(MODEL_TYPE, "/3D/other.model"));
+    assert_eq!(checks(&two), ["relationships"; 2], "two models, of which one is missing");
+    let encrypted = relationships()
+        .replace(MODEL_TYPE, "http://schemas.microsoft.com/3dmanufacturing/securecontent/2019/04/keystore");
+    let parts = [(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &encrypted), (USUAL_MODEL, &model)];
+    assert!(matches!(read_three_mf(&packed(&parts)), Err(ThreeMfReadError::Unsupported(_))));
+}
+
+#[test]
+fn resources_of_the_materials_extension_are_checked() {
+    let item = r#"<item objectid="1"/>"#;
+    let with = |resources: &str| {
+        let namespace = format!(r#"xmlns:m="{}""#, super::materials::NAMESPACE);
+        read(&model_of(&namespace, "", &(resources.to_owned() + &object(1)), item))
+    };
+    let colors = r##"<m:colorgroup id="7"><m:color color="#FF0000"/></m:colorgroup>"##;
+    assert_eq!(checks(&with(colors)), [""; 0]);
+    for resources in [
+        colors.replace(r##" color="#FF0000""##, ""),
+        colors.replace("#FF0000", "red"),
+        format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="7 7"/>"#),
+        format!(r#"{BASE}<m:multiproperties id="8" pids="5 5"/>"#),
+        r#"<m:texture2d id="9" path="/a.gif" contenttype="image/gif"/>"#.to_owned(),
+        format!(r#"{colors}<m:texture2dgroup id="8" texid="7"/>"#),
+        format!(r#"{colors}<m:compositematerials id="8" matid="7" matindices="0"/>"#),
+    ] {
+        assert_eq!(checks(&with(&resources)), ["materials"], "{resources}");
+    }
+    assert_eq!(checks(&with(&colors.replace("7", "1"))), ["reference"], "the id of the object");
+}
+
+/// Endless zeros and crowds of entries are refused before they are read.
+#[test]
+fn excessive_archives_meet_a_bound() {
+    let model = model_of("", "", &object(1), r#"<item objectid="1"/>"#);
+    let long = model.replace("<build>", &(" ".repeat(100 << 20) + "<build>"));
+    let rels = relationships();
+    let bound =
+        |parts: &[(&str, &str)]| matches!(read_three_mf(&packed(parts)), Err(ThreeMfReadError::Bound(_)));
+    assert!(bound(&[(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, &long)]));
+    let names: Vec<String> = (0..10_001).map(|i| i.to_string()).collect();
+    assert!(bound(&names.iter().map(|name| (name.as_str(), "")).collect::<Vec<_>>()));
+    let items = r#"<item objectid="1"/>"#.repeat(100_001);
+    let many = model_of("", "", &object(1), &items);
+    assert!(bound(&[(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, &many)]));
 }
 
 #[test]

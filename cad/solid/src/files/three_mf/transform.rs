@@ -36,7 +36,13 @@ impl Transform {
         })
     }
 
-    /// Determinant of the linear part; not positive for a transform that mirrors or flattens.
+    /// The bits of the linear part, which determine size and shape of a mesh.
+    pub(super) fn shape(&self) -> [u64; 9] {
+        std::array::from_fn(|i| self.0[i / 3][i % 3].to_bits())
+    }
+
+    /// Determinant of the linear part: negative for a transform that mirrors, zero for one that
+    /// flattens.
     pub(super) fn determinant(&self) -> f64 {
         let m = &self.0;
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
@@ -50,9 +56,14 @@ impl Transform {
         Point3::new(at(0), at(1), at(2))
     }
 
-    /// Applies the transform to a mesh.
+    /// Applies the transform to a mesh. Mirrored facets are reversed, so that they keep facing
+    /// outward: a transform does not change the sign of the volume (core specification, 3.3).
     pub(super) fn mesh(&self, mesh: &Mesh) -> Mesh {
-        Mesh::new(mesh.positions.iter().map(|p| self.point(*p)).collect(), mesh.triangles.clone())
+        let mut triangles = mesh.triangles.clone();
+        if self.determinant() < 0.0 {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        Mesh::new(mesh.positions.iter().map(|p| self.point(*p)).collect(), triangles)
     }
 
     /// Returns the transform that applies `self` first and `outer` second.

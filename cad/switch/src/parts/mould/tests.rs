@@ -235,7 +235,7 @@ fn thick_end_walls_have_no_sharp_corners() {
             let part = part.unwrap();
             let mesh = part.solid.mesh(design.tolerance()).unwrap();
             let report = examine(&mesh, &Expectation { min_wall_mm: 0.4, ..Expectation::default() });
-            assert!(report.is_valid(), "{set:?}, {}: {:?}", part.name, report.faults);
+            assert!(report.is_flawless(), "{set:?}, {}: {:?}", part.name, report.faults);
         }
     }
 }

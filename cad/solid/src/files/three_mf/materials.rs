@@ -1,0 +1,88 @@
+//! Resources of the materials extension: required attributes and references.
+
+use std::collections::HashMap;
+
+use super::document::{Element, Namespace};
+use super::findings::Findings;
+
+/// Namespace of the materials extension.
+pub(super) const NAMESPACE: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
+
+/// Elements of the extension with their required attributes (chapters 2 to 6).
+const REQUIRED: [(&str, &[&str]); 9] = [
+    ("colorgroup", &["id"]),
+    ("color", &["color"]),
+    ("texture2dgroup", &["id", "texid"]),
+    ("tex2coord", &["u", "v"]),
+    ("compositematerials", &["id", "matid", "matindices"]),
+    ("composite", &["values"]),
+    ("multiproperties", &["id", "pids"]),
+    ("multi", &["pindices"]),
+    ("texture2d", &["id", "path", "contenttype"]),
+];
+
+/// Returns what is wrong with the attributes of an element of the extension.
+pub(super) fn problem<'a>(element: &str, value: impl Fn(&str) -> Option<&'a str>) -> Option<String> {
+    let (_, required) = REQUIRED.iter().find(|(name, _)| *name == element)?;
+    if let Some(name) = required.iter().find(|name| value(name).is_none()) {
+        return Some(format!("<{element}> without {name}"));
+    }
+    let color = value("color").filter(|_| element == "color");
+    if color.is_some_and(|color| !is_color(color)) {
+        return Some("a color is not #RRGGBB or #RRGGBBAA".to_owned());
+    }
+    let content_type = value("contenttype").filter(|_| element == "texture2d");
+    content_type
+        .filter(|name| !["image/jpeg", "image/png"].contains(name))
+        .map(|_| "the content type of a texture is not image/jpeg or image/png".to_owned())
+}
+
+/// Whether a text is a color of 6 or 8 hexadecimal digits.
+pub(super) fn is_color(text: &str) -> bool {
+    let digits = text.trim().strip_prefix('#').unwrap_or_default();
+    matches!(digits.len(), 6 | 8) && digits.bytes().all(|byte| byte.is_ascii_hexdigit())
+}
+
+/// Checks references between the resources of a model.
+pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
+    let kind = |element: &Element| match &element.namespace {
+        Namespace::Core => element.name.clone(),
+        Namespace::Other(uri) if uri == NAMESPACE => element.name.clone(),
+        _ => String::new(),
+    };
+    let kinds: HashMap<&str, String> =
+        resources.children.iter().filter_map(|e| Some((e.attribute("id")?.trim(), kind(e)))).collect();
+    let is_extension = |e: &&Element| matches!(&e.namespace, Namespace::Other(uri) if uri == NAMESPACE);
+    for element in resources.children.iter().filter(is_extension) {
+        let kind_of = |name: &str| element.attribute(name).map(|id| kinds.get(id.trim()).map(String::as_str));
+        match element.name.as_str() {
+            "texture2dgroup" if kind_of("texid").is_some_and(|kind| kind != Some("texture2d")) => {
+                findings.error("materials", "3MF materials 3", "texid refers to no <texture2d>");
+            }
+            "compositematerials" if kind_of("matid").is_some_and(|kind| kind != Some("basematerials")) => {
+                findings.error("materials", "3MF materials 4", "matid refers to no <basematerials>");
+            }
+            "multiproperties" => check_multiproperties(element, &kinds, findings),
+            _ => {}
+        }
+    }
+}
+
+fn check_multiproperties(element: &Element, kinds: &HashMap<&str, String>, findings: &mut Findings) {
+    let ids = element.attribute("pids").unwrap_or_default().split_whitespace();
+    let listed: Vec<&str> = ids.map(|id| kinds.get(id).map_or("", String::as_str)).collect();
+    let count = |names: &[&str]| listed.iter().filter(|kind| names.contains(kind)).count();
+    for (is_wrong, problem) in [
+        (
+            count(&["basematerials", "compositematerials"]) > 1,
+            "more than one group of base or composite materials",
+        ),
+        (count(&["colorgroup"]) > 1, "more than one <colorgroup>"),
+        (count(&["multiproperties"]) > 0, "another <multiproperties>"),
+        (count(&[""]) > 0, "a resource that does not exist"),
+    ] {
+        if is_wrong {
+            findings.error("materials", "3MF materials 5", &format!("<multiproperties> refers to {problem}"));
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Names of parts, compared as the Open Packaging Conventions require.
+
+/// Returns the form of a part name in which equivalent names are equal: without the leading slash,
+/// in lower case (ASCII only), with percent-encoded characters decoded unless they are a slash.
+///
+/// A ZIP item of a name outside ASCII and its percent-encoded part name are therefore equal.
+pub(super) fn normalized(name: &str) -> String {
+    let bytes = name.trim_start_matches('/').as_bytes();
+    let mut decoded = Vec::with_capacity(bytes.len());
+    let mut i = 0;
+    while i < bytes.len() {
+        let digits = bytes.get(i + 1..i + 3).and_then(|digits| std::str::from_utf8(digits).ok());
+        let byte = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match byte {
+            Some(byte) if bytes[i] == b'%' && !matches!(byte, b'/' | b'\\' | b'%' | 0) => {
+                decoded.push(byte);
+                i += 3;
+            }
+            _ => {
+                decoded.push(bytes[i]);
+                i += 1;
+            }
+        }
+    }
+    String::from_utf8(decoded).unwrap_or_else(|_| name.to_owned()).to_ascii_lowercase()
+}
+
+/// Returns the part that the target of a relationship refers to; `source` is the part that the
+/// relationship starts from, empty for the package.
+pub(super) fn resolved(source: &str, target: &str) -> String {
+    let target = target.split(['#', '?']).next().unwrap_or_default();
+    let folder = source.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let path = if target.starts_with('/') { target.to_owned() } else { format!("{folder}/{target}") };
+    let mut segments = Vec::new();
+    for segment in path.split('/') {
+        match segment {
+            "" | "." => {}
+            ".." => drop(segments.pop()),
+            other => segments.push(other),
+        }
+    }
+    segments.join("/")
+}
+
+/// Returns the part with the relationships of `source`.
+pub(super) fn relationships_of(source: &str) -> String {
+    let (folder, name) = source.rsplit_once('/').unwrap_or(("", source));
+    format!("{folder}/_rels/{name}.rels").trim_start_matches('/').to_owned()
+}
+
+/// Returns the extension of a part name, in lower case.
+pub(super) fn extension(name: &str) -> String {
+    let file = name.rsplit('/').next().unwrap_or_default();
+    file.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_ascii_lowercase())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equivalent_names_are_equal() {
+        for (a, b) in [
+            ("/3D/3dmodel.model", "3d/3DModel.MODEL"),
+            ("/3D/%E6%A8%A1.model", "3D/\u{6a21}.model"),
+            ("/3D/%c3%a9.model", "3D/\u{e9}.model"),
+            ("/3D/%41.model", "3D/a.model"),
+        ] {
+            assert_eq!(normalized(a), normalized(b));
+        }
+        assert_ne!(normalized("/a%2Fb"), normalized("/a/b"));
+        assert_eq!(normalized("/a%"), "a%");
+        assert_eq!(normalized("/a%FF"), "/a%ff");
+    }
+
+    #[test]
+    fn targets_are_relative_to_their_source() {
+        assert_eq!(resolved("", "3D/a.model"), "3D/a.model");
+        assert_eq!(resolved("3D/a.model", "/Metadata/t.png"), "Metadata/t.png");
+        assert_eq!(resolved("3D/a.model", "b.png"), "3D/b.png");
+        assert_eq!(resolved("3D/a.model", "../M/./b.png#x"), "M/b.png");
+        assert_eq!(relationships_of(""), "_rels/.rels");
+        assert_eq!(relationships_of("3D/a.model"), "3D/_rels/a.model.rels");
+        assert_eq!(extension("3D/a.B/C.MODEL"), "model");
+    }
+}

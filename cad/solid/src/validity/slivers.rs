@@ -1,0 +1,53 @@
+//! Facets without area, which close T-junctions and seams.
+//!
+//! Such a facet touches its neighbours along a line, and brings the corners of its neighbours into
+//! contact with their edges. It is one finding (`degenerate facet`), not also an intersection of
+//! each of these pairs.
+
+use super::facets::height_mm;
+use super::triangle_intersection::{Corners, intersect};
+use crate::mesh::{Mesh, Point3};
+
+/// Share of its size by which a facet next to a sliver is scaled down before it is compared: contact
+/// on the sliver disappears, a facet that passes through another remains.
+const SHRINKAGE: f64 = 2e-3;
+
+/// The vertices of facets without area.
+pub(super) struct Slivers {
+    min_height_mm: f64,
+    /// Whether each vertex belongs to such a facet; empty if there is none.
+    vertices: Vec<bool>,
+}
+
+impl Slivers {
+    pub(super) fn of(mesh: &Mesh, min_height_mm: f64) -> Self {
+        let mut vertices = Vec::new();
+        for t in mesh.triangles.iter().filter(|t| height_mm(mesh.corners(**t)) < min_height_mm) {
+            vertices.resize(mesh.positions.len(), false);
+            t.iter().for_each(|v| vertices[*v as usize] = true);
+        }
+        Self { min_height_mm, vertices }
+    }
+
+    /// Whether an intersection of two facets is one in its own right.
+    pub(super) fn accept(&self, s: &Corners, t: &Corners) -> bool {
+        if self.vertices.is_empty() {
+            return true;
+        }
+        let is_flat = |corners: &Corners| height_mm(corners.map(|(_, p)| p)) < self.min_height_mm;
+        let is_next = |corners: &Corners| corners.iter().any(|(v, _)| self.vertices[*v as usize]);
+        if is_flat(s) || is_flat(t) {
+            return false;
+        }
+        // Without common corners: a shrunk facet has other ones.
+        !(is_next(s) && is_next(t)) || intersect(&shrunk(s, 0), &shrunk(t, 3))
+    }
+}
+
+/// The triangle, a little smaller and with other indices.
+fn shrunk(corners: &Corners, first: u32) -> Corners {
+    let [a, b, c] = corners.map(|(_, p)| p.coords);
+    let centroid = (a + b + c) / 3.0;
+    let smaller = |p| Point3::from(centroid + (p - centroid) * (1.0 - SHRINKAGE));
+    [(first, smaller(a)), (first + 1, smaller(b)), (first + 2, smaller(c))]
+}

@@ -31,7 +31,8 @@ const CONFIDENCE: f64 = 0.95;
 fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let fit = &PUBLISHED_FIT;
     let switch = PhysicsSwitch::new(contact, fit.constants());
-    let (friction_n, sensitivities) = switch.friction_and_sensitivities(loads_n)?;
+    let (states, sensitivities) = switch.states_and_sensitivities(loads_n, |_| true)?;
+    let friction_n = states.iter().map(|s| s.friction_n).collect();
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile = StudentsT::new(0.0, 1.0, fit.degrees_of_freedom)
         .map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));

@@ -1,0 +1,587 @@
+//! Equilibrium of a tendon for both directions of motion together, followed over ascending loads.
+//!
+//! [`slide`](super::march::slide) converges the shape for each tension. Here every sweep makes one
+//! Newton step of the shape and one integration of the tension, from a state extrapolated from the
+//! loads before. Both directions are computed side by side, which hides the latency of divisions.
+//! A load that does not converge this way is left to [`slide`](super::march::slide), which searches
+//! along each step.
+//!
+//! At a solution the linearised equations give the derivatives of both friction exponents (implicit
+//! function theorem): the factors of the stiffness matrix are computed once, and every pass of the
+//! fixed point over shape and tension is a back-substitution.
+
+use super::constants::Constants;
+use super::equilibrium::{BALANCE, Supports};
+use super::march::TOLERANCE;
+use super::pair::Pair;
+use crate::bed::Bed;
+
+/// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
+const MAX_SWEEPS: usize = 24;
+/// Largest sum of the magnitudes of the weights of an extrapolation.
+const MAX_WEIGHT: f64 = 16.0;
+/// Number of states from which the next one is extrapolated.
+const HISTORY: usize = 3;
+/// Largest exponent of the Taylor series in [`exp_of_small`].
+const SMALL: f64 = 0.125;
+/// Largest change of a derivative of the log tension in the last pass, relative to the largest
+/// derivative.
+const DERIVATIVE_TOLERANCE: f64 = 1e-9;
+/// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
+const MAX_PASSES: usize = 60;
+/// Number of material constants.
+pub(super) const CONSTANTS: usize = 3;
+
+/// Coefficients of the equations at each node, which do not depend on the load.
+#[derive(Clone, Debug)]
+struct Node {
+    /// Inverse length of the element to the next node, 1/mm; zero at the last node.
+    per_element_mm: f64,
+    /// Diagonal and both off-diagonals of bending, for a stiffness of 1 N mm².
+    bending: [f64; 3],
+    /// Linear term of bending, for a stiffness of 1 N mm².
+    bending_load: f64,
+    /// Diagonal of the string, per tension.
+    string: f64,
+    /// Linear term of the string, per tension.
+    string_load: f64,
+    /// Stiffness of the silicone, N/mm.
+    silicone_n_mm: f64,
+}
+
+/// State of the tendon at one load, in both directions.
+#[derive(Clone, Debug, Default)]
+struct State {
+    load_n: f64,
+    /// Gap at each node, mm.
+    gap_mm: Vec<Pair>,
+    /// Tension over load at each node.
+    ratio: Vec<Pair>,
+}
+
+/// Friction exponents of both directions, `|ln(T/F)|`, by material.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Exponents {
+    pub(super) pins: Pair,
+    pub(super) silicone: Pair,
+}
+
+/// Arrays of a curve's computation, one entry per node unless stated otherwise. They are allocated
+/// once for all loads.
+#[derive(Clone, Debug)]
+pub(super) struct Workspace {
+    nodes: Vec<Node>,
+    pins: Vec<usize>,
+    /// States at the loads before, the last one first.
+    history: [State; HISTORY],
+    known: usize,
+    gap_mm: Vec<Pair>,
+    next_gap_mm: Vec<Pair>,
+    tension_n: Vec<Pair>,
+    /// Stiffness of the springs, N/mm.
+    spring: Vec<Pair>,
+    /// Linear term of the pins, N.
+    pin_load: Vec<Pair>,
+    /// Turn of the silicone over the closure.
+    silicone_turn: Vec<Pair>,
+    /// Force of each pin, N.
+    pin_n: Vec<Pair>,
+    /// Stiffness of each pin, N/mm.
+    pin_n_mm: Vec<Pair>,
+    /// Rise of the friction exponent.
+    rise: Vec<Pair>,
+    /// Inverse pivots and both columns of the factors.
+    factors: Vec<[Pair; 3]>,
+    right: Vec<Pair>,
+    derivatives: Derivatives,
+}
+
+/// Arrays of derivatives with respect to the logarithms of the constants.
+#[derive(Clone, Debug, Default)]
+struct Derivatives {
+    right: Vec<[Pair; CONSTANTS]>,
+    turn: Vec<[Pair; CONSTANTS]>,
+    pin_turn: Vec<[Pair; CONSTANTS]>,
+    log_tension: Vec<[Pair; CONSTANTS]>,
+}
+
+/// Values of the state that are needed at the end of a sweep.
+struct Sweep {
+    exponents: Exponents,
+    /// Largest unbalanced force of the shape over its tolerance.
+    unbalanced: f64,
+    /// Largest relative change of the tension.
+    change: f64,
+}
+
+impl Workspace {
+    /// Creates the arrays for a tendon on `supports`.
+    pub(super) fn new(supports: &Supports<'_>) -> Self {
+        let (grid, rc) = (supports.grid, supports.bed.axis_radius_mm());
+        let n = grid.len();
+        let tilt = libm::tan(grid.reach_rad);
+        let (form, load) = grid.unit_bending();
+        let nodes = (0..n)
+            .map(|i| {
+                let end = if i == 0 || i + 1 == n { tilt } else { 0.0 };
+                Node {
+                    per_element_mm: grid.per_element_mm.get(i).copied().unwrap_or(0.0),
+                    bending: [form.diagonal[i], form.first[i], form.second[i]],
+                    bending_load: load[i],
+                    string: end / rc - grid.share_mm[i] / (rc * rc),
+                    string_load: end - grid.share_mm[i] / rc,
+                    silicone_n_mm: supports.bed.stiffness_n_mm2() * grid.silicone_mm[i],
+                }
+            })
+            .collect();
+        let (zeros, pins) = (vec![Pair::ZERO; n], vec![Pair::ZERO; grid.pins.len()]);
+        let state = State { load_n: 0.0, gap_mm: zeros.clone(), ratio: zeros.clone() };
+        Self {
+            nodes,
+            pins: grid.pins.clone(),
+            history: std::array::from_fn(|_| state.clone()),
+            known: 0,
+            gap_mm: zeros.clone(),
+            next_gap_mm: zeros.clone(),
+            tension_n: zeros.clone(),
+            spring: zeros.clone(),
+            pin_load: zeros.clone(),
+            silicone_turn: zeros.clone(),
+            pin_n: pins.clone(),
+            pin_n_mm: pins,
+            rise: zeros.clone(),
+            factors: vec![[Pair::ZERO; 3]; n],
+            right: zeros,
+            derivatives: Derivatives::default(),
+        }
+    }
+
+    /// Computes the friction exponents at a load, which becomes part of the history. `None` without
+    /// convergence.
+    pub(super) fn follow(
+        &mut self,
+        supports: &Supports<'_>,
+        constants: &Constants,
+        wrap_rad: f64,
+        load_n: f64,
+    ) -> Option<Exponents> {
+        self.extrapolate(supports.bed, load_n);
+        let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
+        for _ in 0..MAX_SWEEPS {
+            let bending = self.bending_n_mm2(supports.bed);
+            let rc = supports.bed.axis_radius_mm();
+            let largest = self.tension_n.iter().fold(Pair::ZERO, |most, t| most.max(*t));
+            let tolerance_n = (largest + bending * (1.0 / (rc * rc))) * BALANCE;
+            self.supports_at_gap(supports);
+            if !self.solve(bending) {
+                return None;
+            }
+            let unbalanced = self.take_step(supports, tolerance_n);
+            let turned = self.turned();
+            if !turned.all(|t| t > 0.0) {
+                return None;
+            }
+            let closure = Pair::both(wrap_rad) / turned;
+            let sweep = Sweep { unbalanced, ..self.integrate(constants.mu_silicone, kappa, closure, load_n) };
+            if sweep.unbalanced <= 1.0 && sweep.change <= TOLERANCE {
+                self.remember(load_n);
+                return Some(sweep.exponents);
+            }
+            if !(sweep.change < 1e3) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Adds a state to the history that was computed otherwise: gaps and tensions of the eccentric
+    /// and the concentric direction.
+    pub(super) fn accept(&mut self, load_n: f64, gap_mm: [&[f64]; 2], tension_n: [&[f64]; 2]) {
+        for i in 0..self.nodes.len() {
+            self.gap_mm[i] = Pair([gap_mm[0][i], gap_mm[1][i]]);
+            self.tension_n[i] = Pair([tension_n[0][i], tension_n[1][i]]);
+        }
+        self.remember(load_n);
+    }
+
+    /// Sets gap and tension to those expected at `load_n`, by a polynomial through the last states.
+    fn extrapolate(&mut self, bed: &Bed, load_n: f64) {
+        let known = self.known;
+        let Some(weights) = (1..=known).rev().find_map(|order| weights(&self.history[..order], load_n)) else {
+            // Without a state: the tendon on silicone without pins.
+            let pressed = -load_n / (bed.stiffness_n_mm2() * bed.axis_radius_mm());
+            self.gap_mm.fill(Pair::both(pressed));
+            self.tension_n.fill(Pair::both(load_n));
+            return;
+        };
+        let [a, b, c] = &self.history;
+        for i in 0..self.nodes.len() {
+            let sum = |x: Pair, y: Pair, z: Pair| x * weights[0] + y * weights[1] + z * weights[2];
+            self.gap_mm[i] = sum(a.gap_mm[i], b.gap_mm[i], c.gap_mm[i]);
+            self.tension_n[i] = sum(a.ratio[i], b.ratio[i], c.ratio[i]) * load_n;
+        }
+        if self.tension_n.iter().any(|t| !t.all(|t| t > 0.0)) {
+            let last = &self.history[0];
+            self.gap_mm.copy_from_slice(&last.gap_mm);
+            self.tension_n.iter_mut().zip(&last.ratio).for_each(|(t, ratio)| *t = *ratio * load_n);
+        }
+    }
+
+    fn remember(&mut self, load_n: f64) {
+        self.history.rotate_right(1);
+        let state = &mut self.history[0];
+        state.load_n = load_n;
+        state.gap_mm.copy_from_slice(&self.gap_mm);
+        state.ratio.iter_mut().zip(&self.tension_n).for_each(|(ratio, t)| *ratio = *t * (1.0 / load_n));
+        self.known = (self.known + 1).min(HISTORY);
+    }
+
+    fn bending_n_mm2(&self, bed: &Bed) -> Pair {
+        let least = self.tension_n.iter().fold(Pair::both(f64::INFINITY), |least, t| least.min(*t));
+        least.map(|t| bed.tendon_bending_n_mm2(t))
+    }
+
+    /// Computes the springs at the gap, linearised.
+    fn supports_at_gap(&mut self, supports: &Supports<'_>) {
+        for ((spring, node), gap) in self.spring.iter_mut().zip(&self.nodes).zip(&self.gap_mm) {
+            *spring = gap.map(|u| if u < 0.0 { node.silicone_n_mm } else { 0.0 });
+        }
+        self.pin_load.fill(Pair::ZERO);
+        for (k, &node) in self.pins.iter().enumerate() {
+            let gap = self.gap_mm[node];
+            let at = gap.0.map(|u| supports.pin(u));
+            let (force, stiffness) = (Pair(at.map(|s| s.force_n)), Pair(at.map(|s| s.stiffness_n_mm)));
+            self.spring[node] = self.spring[node] + stiffness;
+            self.pin_load[node] = self.pin_load[node] + force + stiffness * gap;
+            (self.pin_n[k], self.pin_n_mm[k]) = (force, stiffness);
+        }
+    }
+
+    /// Factorises the stiffness matrix at the springs, and solves for the next gap. Returns `false`
+    /// if the matrix is not positive definite.
+    fn solve(&mut self, bending: Pair) -> bool {
+        let n = self.nodes.len();
+        let mut element = Pair::ZERO;
+        let (mut diagonal_1, mut diagonal_2, mut first_1) = (Pair::ZERO, Pair::ZERO, Pair::ZERO);
+        let (mut right_1, mut right_2) = (Pair::ZERO, Pair::ZERO);
+        let mut least = Pair::both(f64::INFINITY);
+        let (nodes, tension) = (&self.nodes[..n], &self.tension_n[..n]);
+        let (spring, pin_load) = (&self.spring[..n], &self.pin_load[..n]);
+        let (factors, right) = (&mut self.factors[..n], &mut self.right[..n]);
+        for i in 0..n {
+            let (node, t) = (&nodes[i], tension[i]);
+            let before = element;
+            element = (t + tension[(i + 1).min(n - 1)]) * (0.5 * node.per_element_mm);
+            let diagonal = bending * node.bending[0] + before + element + t * node.string + spring[i] - diagonal_1;
+            let first = bending * node.bending[1] - element - first_1;
+            let second = bending * node.bending[2];
+            let b = bending * node.bending_load + t * node.string_load + pin_load[i] - right_1;
+            least = least.min(diagonal);
+            let inverse = Pair::both(1.0) / diagonal;
+            let (one, two) = (first * inverse, second * inverse);
+            diagonal_1 = one * first + diagonal_2;
+            diagonal_2 = two * second;
+            first_1 = one * second;
+            right_1 = one * b + right_2;
+            right_2 = two * b;
+            factors[i] = [inverse, one, two];
+            right[i] = b * inverse;
+        }
+        let (mut x_1, mut x_2) = (Pair::ZERO, Pair::ZERO);
+        for ((gap, [_, one, two]), b) in self.next_gap_mm.iter_mut().zip(&self.factors).zip(&self.right).rev() {
+            let x = *b - *two * x_2 - *one * x_1;
+            *gap = x;
+            (x_2, x_1) = (x_1, x);
+        }
+        least.all(|d| d > 0.0)
+    }
+
+    /// Moves to the next gap, and computes the forces there. Returns the largest force that the
+    /// linearised springs miss, relative to the tolerance.
+    fn take_step(&mut self, supports: &Supports<'_>, tolerance_n: Pair) -> f64 {
+        let mut missed = Pair::ZERO;
+        for i in 0..self.nodes.len() {
+            let (gap, next, stiffness) = (self.gap_mm[i], self.next_gap_mm[i], self.nodes[i].silicone_n_mm);
+            let force = next.map(|u| stiffness * (-u).max(0.0));
+            let linear = gap.zip(next, |u, v| if u < 0.0 { -stiffness * v } else { 0.0 });
+            missed = missed.max((force - linear).map(f64::abs));
+            self.silicone_turn[i] = force / self.tension_n[i];
+        }
+        for (k, &node) in self.pins.iter().enumerate() {
+            let step = self.next_gap_mm[node] - self.gap_mm[node];
+            let linear = self.pin_n[k] - self.pin_n_mm[k] * step;
+            let at = self.next_gap_mm[node].0.map(|u| supports.pin(u));
+            (self.pin_n[k], self.pin_n_mm[k]) =
+                (Pair(at.map(|s| s.force_n)), Pair(at.map(|s| s.stiffness_n_mm)));
+            missed = missed.max((self.pin_n[k] - linear).map(f64::abs));
+        }
+        std::mem::swap(&mut self.gap_mm, &mut self.next_gap_mm);
+        let share = missed / tolerance_n;
+        share.0[0].max(share.0[1])
+    }
+
+    /// Returns the sum of all turns before closure.
+    fn turned(&self) -> Pair {
+        let pins = self.pins.iter().zip(&self.pin_n);
+        let pins = pins.fold(Pair::ZERO, |sum, (node, force)| sum + *force / self.tension_n[*node]);
+        self.silicone_turn.iter().fold(pins, |sum, turn| sum + *turn)
+    }
+
+    /// Integrates the tension along the wrap from the forces, and replaces it.
+    fn integrate(&mut self, mu: f64, kappa: f64, closure: Pair, load_n: f64) -> Sweep {
+        let mut exponents = Exponents::default();
+        for (rise, turn) in self.rise.iter_mut().zip(&self.silicone_turn) {
+            *rise = *turn * closure * mu;
+            exponents.silicone = exponents.silicone + *rise;
+        }
+        for (node, force) in self.pins.iter().zip(&self.pin_n) {
+            let tension = self.tension_n[*node];
+            let theta = closure * *force / tension;
+            let ploughing = (tension * theta).map(f64::sqrt) * theta * kappa;
+            exponents.pins = exponents.pins + ploughing;
+            self.rise[*node] = self.rise[*node] + ploughing;
+        }
+        let (mut tension, mut change) = (Pair::both(load_n), Pair::ZERO);
+        for (rise, t) in self.rise.iter().zip(&mut self.tension_n) {
+            // The tension of a node is that in the middle of its contact.
+            let half = *rise * Pair([-0.5, 0.5]);
+            let factor = half.map(exp_of_small);
+            let here = tension * factor;
+            tension = here * factor;
+            change = change.max((here - *t).map(f64::abs) / here);
+            *t = here;
+        }
+        let worst = change.0[0].max(change.0[1]);
+        let is_finite = change.all(f64::is_finite) && tension.all(f64::is_finite);
+        Sweep { exponents, unbalanced: 0.0, change: if is_finite { worst } else { f64::INFINITY } }
+    }
+
+    /// Computes the derivatives of the friction exponents of both directions with respect to the
+    /// logarithms of `kappa`, `mu_s` and `N0`, at the last load. `None` if a derivative does not
+    /// converge.
+    ///
+    /// Touching nodes and pins stay those of the solution; where one is about to touch, the
+    /// derivatives are one-sided.
+    pub(super) fn derivatives(
+        &mut self,
+        supports: &Supports<'_>,
+        constants: &Constants,
+        wrap_rad: f64,
+    ) -> Option<[Pair; CONSTANTS]> {
+        let (n, mu) = (self.nodes.len(), constants.mu_silicone);
+        let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
+        let bending = self.bending_n_mm2(supports.bed);
+        self.supports_at_gap(supports);
+        if !self.solve(bending) {
+            return None;
+        }
+        for i in 0..n {
+            let stiffness = self.nodes[i].silicone_n_mm;
+            let force = self.gap_mm[i].map(|u| stiffness * (-u).max(0.0));
+            self.silicone_turn[i] = force / self.tension_n[i];
+        }
+        let turned = self.turned();
+        let closure = Pair::both(wrap_rad) / turned;
+        let lowest = self.lowest_tension();
+        let bending_slope = self.bending_slope(supports.bed, bending);
+        let mut d = std::mem::take(&mut self.derivatives);
+        let zero = [Pair::ZERO; CONSTANTS];
+        d.right.resize(n, zero);
+        d.turn.resize(n, zero);
+        d.pin_turn.resize(self.pins.len(), zero);
+        d.log_tension.resize(n, zero);
+        d.log_tension.fill(zero);
+        let mut result = None;
+        for _ in 0..MAX_PASSES {
+            self.derivative_of_gap(&mut d, lowest, bending_slope);
+            self.derivative_of_turns(&mut d, closure, turned);
+            let (exponents, change) = self.derivative_of_tension(&mut d, mu, kappa, closure);
+            if change <= DERIVATIVE_TOLERANCE {
+                result = Some(exponents);
+                break;
+            }
+        }
+        self.derivatives = d;
+        result
+    }
+
+    /// Returns the node of the lowest tension of each direction, which limits the bending
+    /// stiffness.
+    fn lowest_tension(&self) -> [usize; 2] {
+        [0, 1].map(|lane| {
+            let tension = |i: usize| self.tension_n[i].0[lane];
+            (1..self.nodes.len()).fold(0, |least, i| if tension(i) < tension(least) { i } else { least })
+        })
+    }
+
+    /// Returns the derivative of the bending stiffness with respect to the logarithm of the lowest
+    /// tension.
+    fn bending_slope(&self, bed: &Bed, bending: Pair) -> Pair {
+        let least = self.tension_n.iter().fold(Pair::both(f64::INFINITY), |least, t| least.min(*t));
+        bending.zip(least, |bending, least| bed.tendon_bending_slope_n_mm2(bending, least))
+    }
+
+    /// Solves the linearised balance of forces for the derivatives of the gap, into `d.right`.
+    fn derivative_of_gap(&self, d: &mut Derivatives, lowest: [usize; 2], bending_slope: Pair) {
+        let n = self.nodes.len();
+        let u = &self.gap_mm;
+        let bent: [Pair; CONSTANTS] = std::array::from_fn(|k| {
+            bending_slope * Pair([0, 1].map(|lane| d.log_tension[lowest[lane]][k].0[lane]))
+        });
+        // Derivative of the string's pull across the element before.
+        let mut pull_before = [Pair::ZERO; CONSTANTS];
+        for i in 0..n {
+            let node = &self.nodes[i];
+            let next = (i + 1).min(n - 1);
+            let stretch = (u[i] - u[next]) * (0.5 * node.per_element_mm);
+            let string = self.tension_n[i] * (u[i] * node.string - Pair::both(node.string_load));
+            let mut bend = u[i] * node.bending[0] - Pair::both(node.bending_load);
+            if i + 1 < n {
+                bend = bend + u[i + 1] * node.bending[1];
+            }
+            if i + 2 < n {
+                bend = bend + u[i + 2] * node.bending[2];
+            }
+            if i >= 1 {
+                bend = bend + u[i - 1] * self.nodes[i - 1].bending[1];
+            }
+            if i >= 2 {
+                bend = bend + u[i - 2] * self.nodes[i - 2].bending[2];
+            }
+            for k in 0..CONSTANTS {
+                let (here, there) = (d.log_tension[i][k], d.log_tension[next][k]);
+                let pull = stretch * (self.tension_n[i] * here + self.tension_n[next] * there);
+                let force = pull - pull_before[k] + string * here + bend * bent[k];
+                pull_before[k] = pull;
+                d.right[i][k] = Pair::ZERO - force;
+            }
+        }
+        for (node, force) in self.pins.iter().zip(&self.pin_n) {
+            d.right[*node][2] = d.right[*node][2] + *force;
+        }
+        let (mut right_1, mut right_2) = ([Pair::ZERO; CONSTANTS], [Pair::ZERO; CONSTANTS]);
+        for i in 0..n {
+            let [inverse, one, two] = self.factors[i];
+            for k in 0..CONSTANTS {
+                let b = d.right[i][k] - right_1[k];
+                right_1[k] = one * b + right_2[k];
+                right_2[k] = two * b;
+                d.right[i][k] = b * inverse;
+            }
+        }
+        let (mut x_1, mut x_2) = ([Pair::ZERO; CONSTANTS], [Pair::ZERO; CONSTANTS]);
+        for (right, [_, one, two]) in d.right.iter_mut().zip(&self.factors).rev() {
+            for k in 0..CONSTANTS {
+                let x = right[k] - *two * x_2[k] - *one * x_1[k];
+                right[k] = x;
+                (x_2[k], x_1[k]) = (x_1[k], x);
+            }
+        }
+    }
+
+    /// Computes the derivatives of the turns from those of gap and tension. They sum to zero.
+    fn derivative_of_turns(&self, d: &mut Derivatives, closure: Pair, turned: Pair) {
+        let mut sum = [Pair::ZERO; CONSTANTS];
+        for i in 0..self.nodes.len() {
+            let (t, turn) = (self.tension_n[i], self.silicone_turn[i]);
+            let stiffness = self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
+            for k in 0..CONSTANTS {
+                let by = Pair::ZERO - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
+                d.turn[i][k] = by;
+                sum[k] = sum[k] + by;
+            }
+        }
+        for (p, &node) in self.pins.iter().enumerate() {
+            let t = self.tension_n[node];
+            let (turn, stiffness) = (self.pin_n[p] / t, self.pin_n_mm[p] / t);
+            for k in 0..CONSTANTS {
+                let own = if k == 2 { turn } else { Pair::ZERO };
+                let by = own - stiffness * d.right[node][k] - turn * d.log_tension[node][k];
+                d.pin_turn[p][k] = by;
+                sum[k] = sum[k] + by;
+            }
+        }
+        let closing = sum.map(|sum| sum / turned);
+        for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
+            for k in 0..CONSTANTS {
+                by[k] = (by[k] - *turn * closing[k]) * closure;
+            }
+        }
+        for (p, &node) in self.pins.iter().enumerate() {
+            let turn = self.pin_n[p] / self.tension_n[node];
+            for k in 0..CONSTANTS {
+                d.pin_turn[p][k] = (d.pin_turn[p][k] - turn * closing[k]) * closure;
+            }
+        }
+    }
+
+    /// Integrates the derivatives of the log tension from those of the turns. Returns the
+    /// derivatives of the exponents, and the largest change relative to the largest derivative.
+    fn derivative_of_tension(
+        &self,
+        d: &mut Derivatives,
+        mu: f64,
+        kappa: f64,
+        closure: Pair,
+    ) -> ([Pair; CONSTANTS], f64) {
+        for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
+            by[1] = by[1] + *turn * closure;
+            for by in by.iter_mut() {
+                *by = *by * mu;
+            }
+        }
+        for (p, &node) in self.pins.iter().enumerate() {
+            let t = self.tension_n[node];
+            let theta = closure * self.pin_n[p] / t;
+            let root = (t * theta).map(f64::sqrt) * kappa;
+            let ploughing = root * theta;
+            for k in 0..CONSTANTS {
+                let own = if k == 0 { ploughing } else { Pair::ZERO };
+                d.turn[node][k] = d.turn[node][k]
+                    + own
+                    + ploughing * d.log_tension[node][k] * 0.5
+                    + root * d.pin_turn[p][k] * 1.5;
+            }
+        }
+        let mut sum = [Pair::ZERO; CONSTANTS];
+        let (mut change, mut largest) = (0.0f64, 0.0f64);
+        for (rise, log) in d.turn.iter().zip(&mut d.log_tension) {
+            for k in 0..CONSTANTS {
+                let here = (sum[k] + rise[k] * 0.5) * Pair([-1.0, 1.0]);
+                sum[k] = sum[k] + rise[k];
+                let moved = (here - log[k]).map(f64::abs);
+                change = change.max(moved.0[0]).max(moved.0[1]);
+                largest = largest.max(here.0[0].abs()).max(here.0[1].abs());
+                log[k] = here;
+            }
+        }
+        (sum, if largest > 0.0 { change / largest } else { change })
+    }
+}
+
+/// Returns the weights of the states in the polynomial through them at `load_n`; `None` if they are
+/// too large, because the loads are too close together.
+fn weights(states: &[State], load_n: f64) -> Option<[f64; HISTORY]> {
+    let mut weights = [0.0; HISTORY];
+    for (i, state) in states.iter().enumerate() {
+        let mut weight = 1.0;
+        for (j, other) in states.iter().enumerate() {
+            if i != j {
+                weight *= (load_n - other.load_n) / (state.load_n - other.load_n);
+            }
+        }
+        weights[i] = weight;
+    }
+    let sum: f64 = weights.iter().map(|w| w.abs()).sum();
+    (sum <= MAX_WEIGHT).then_some(weights)
+}
+
+/// Returns `exp(x)`, by its Taylor series for small `x`, which is exact to the last digit or two.
+fn exp_of_small(x: f64) -> f64 {
+    if x.abs() > SMALL {
+        return libm::exp(x);
+    }
+    const TERMS: [f64; 9] =
+        [1.0 / 40320.0, 1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
+    TERMS.iter().fold(0.0, |sum, term| sum * x + term)
+}

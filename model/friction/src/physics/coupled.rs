@@ -12,12 +12,21 @@
 
 use super::constants::Constants;
 use super::equilibrium::{BALANCE, Supports};
-use super::march::TOLERANCE;
 use super::pair::Pair;
 use crate::bed::Bed;
 
 /// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
 const MAX_SWEEPS: usize = 24;
+/// Largest relative error of the tension, estimated from its last changes.
+const TENSION_ERROR: f64 = 5e-8;
+/// Assumed ratio of a change of the tension to the change before, in the first sweep.
+const UNKNOWN_RATE: f64 = 0.1;
+/// Least such ratio; usual are 0.03 to 0.1.
+const LEAST_RATE: f64 = 0.02;
+/// The line search ends when the slope of the energy is below this share of its initial value.
+const FLAT: f64 = 0.5;
+/// Largest number of cuts of a step.
+const MAX_CUTS: usize = 12;
 /// Largest sum of the magnitudes of the weights of an extrapolation.
 const MAX_WEIGHT: f64 = 16.0;
 /// Number of states from which the next one is extrapolated.
@@ -105,15 +114,6 @@ struct Derivatives {
     log_tension: Vec<[Pair; CONSTANTS]>,
 }
 
-/// Values of the state that are needed at the end of a sweep.
-struct Sweep {
-    exponents: Exponents,
-    /// Largest unbalanced force of the shape over its tolerance.
-    unbalanced: f64,
-    /// Largest relative change of the tension.
-    change: f64,
-}
-
 impl Workspace {
     /// Creates the arrays for a tendon on `supports`.
     pub(super) fn new(supports: &Supports<'_>) -> Self {
@@ -167,7 +167,8 @@ impl Workspace {
     ) -> Option<Exponents> {
         self.extrapolate(supports.bed, load_n);
         let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
-        for _ in 0..MAX_SWEEPS {
+        let (mut unbalanced_before, mut change_before) = (f64::INFINITY, f64::INFINITY);
+        for sweep in 0..MAX_SWEEPS {
             let bending = self.bending_n_mm2(supports.bed);
             let rc = supports.bed.axis_radius_mm();
             let largest = self.tension_n.iter().fold(Pair::ZERO, |most, t| most.max(*t));
@@ -176,20 +177,25 @@ impl Workspace {
             if !self.solve(bending) {
                 return None;
             }
-            let unbalanced = self.take_step(supports, tolerance_n);
+            // Active sets can alternate; a search along the step prevents this.
+            let is_far = (sweep == 0 && self.known == 0) || (sweep > 1 && unbalanced_before > 1.0);
+            let unbalanced = self.take_step(supports, tolerance_n, is_far);
             let turned = self.turned();
             if !turned.all(|t| t > 0.0) {
                 return None;
             }
             let closure = Pair::both(wrap_rad) / turned;
-            let sweep = Sweep { unbalanced, ..self.integrate(constants.mu_silicone, kappa, closure, load_n) };
-            if sweep.unbalanced <= 1.0 && sweep.change <= TOLERANCE {
+            let (exponents, change) = self.integrate(constants.mu_silicone, kappa, closure, load_n);
+            // The error of the new tension is the next change, which decreases geometrically.
+            let rate = (change / change_before).max(if sweep == 0 { UNKNOWN_RATE } else { LEAST_RATE });
+            if unbalanced <= 1.0 && rate * change <= TENSION_ERROR {
                 self.remember(load_n);
-                return Some(sweep.exponents);
+                return Some(exponents);
             }
-            if !(sweep.change < 1e3) {
+            if !change.is_finite() {
                 return None;
             }
+            (unbalanced_before, change_before) = (unbalanced, change);
         }
         None
     }
@@ -296,9 +302,73 @@ impl Workspace {
         least.all(|d| d > 0.0)
     }
 
-    /// Moves to the next gap, and computes the forces there. Returns the largest force that the
-    /// linearised springs miss, relative to the tolerance.
-    fn take_step(&mut self, supports: &Supports<'_>, tolerance_n: Pair) -> f64 {
+    /// Shortens the step to the next gap to an approximate minimum of the energy along it. Returns
+    /// whether it did so.
+    fn shorten_step(&mut self, supports: &Supports<'_>) -> bool {
+        let shares = [0, 1].map(|lane| self.step_share(supports, lane));
+        if shares == [1.0; 2] {
+            return false;
+        }
+        for (gap, next) in self.gap_mm.iter().zip(&mut self.next_gap_mm) {
+            *next = *gap + Pair(shares) * (*next - *gap);
+        }
+        true
+    }
+
+    /// Returns the share of the step of one direction at which the slope of the energy is small.
+    fn step_share(&self, supports: &Supports<'_>, lane: usize) -> f64 {
+        let n = self.nodes.len();
+        let step = |i: usize| if i < n { self.next_gap_mm[i].0[lane] - self.gap_mm[i].0[lane] } else { 0.0 };
+        // The slope at the start, from the factors of the stiffness: -s'Ks.
+        let falling: f64 = self.factors.iter().enumerate().fold(0.0, |sum, (i, [inverse, one, two])| {
+            let x = step(i) + one.0[lane] * step(i + 1) + two.0[lane] * step(i + 2);
+            sum - x * x / inverse.0[lane]
+        });
+        let slope = |share: f64| {
+            let mut missed = 0.0;
+            for (i, node) in self.nodes.iter().enumerate() {
+                let (from, by) = (self.gap_mm[i].0[lane], step(i));
+                let to = from + share * by;
+                if (from < 0.0) != (to < 0.0) {
+                    missed -= node.silicone_n_mm * to.abs() * by;
+                }
+            }
+            for (p, &node) in self.pins.iter().enumerate() {
+                let (from, by) = (self.gap_mm[node].0[lane], step(node));
+                let linear = self.pin_n[p].0[lane] - self.pin_n_mm[p].0[lane] * share * by;
+                missed += (linear - supports.pin(from + share * by).force_n) * by;
+            }
+            (1.0 - share) * falling + missed
+        };
+        let (mut low, mut high) = ((0.0, falling), None);
+        let mut share = 1.0;
+        for _ in 0..MAX_CUTS {
+            let now = slope(share);
+            if now.abs() <= FLAT * falling.abs() {
+                break;
+            }
+            if now > 0.0 {
+                high = Some((share, now));
+            } else {
+                low = (share, now);
+            }
+            share = match high {
+                None => break,
+                // Regula falsi, limited to the inner part of the interval.
+                Some((end, rising)) => {
+                    let cut = low.0 + (end - low.0) * low.1.abs() / (low.1.abs() + rising);
+                    cut.clamp(low.0 + 0.1 * (end - low.0), end - 0.1 * (end - low.0))
+                }
+            };
+        }
+        share
+    }
+
+    /// Moves to the next gap, with a search along the step if `is_far`, and computes the forces
+    /// there. Returns the largest force that the linearised springs miss, relative to the
+    /// tolerance; infinite after a shortened step.
+    fn take_step(&mut self, supports: &Supports<'_>, tolerance_n: Pair, is_far: bool) -> f64 {
+        let is_short = is_far && self.shorten_step(supports);
         let mut missed = Pair::ZERO;
         for i in 0..self.nodes.len() {
             let (gap, next, stiffness) = (self.gap_mm[i], self.next_gap_mm[i], self.nodes[i].silicone_n_mm);
@@ -317,7 +387,7 @@ impl Workspace {
         }
         std::mem::swap(&mut self.gap_mm, &mut self.next_gap_mm);
         let share = missed / tolerance_n;
-        share.0[0].max(share.0[1])
+        if is_short { f64::INFINITY } else { share.0[0].max(share.0[1]) }
     }
 
     /// Returns the sum of all turns before closure.
@@ -328,7 +398,9 @@ impl Workspace {
     }
 
     /// Integrates the tension along the wrap from the forces, and replaces it.
-    fn integrate(&mut self, mu: f64, kappa: f64, closure: Pair, load_n: f64) -> Sweep {
+    /// Returns the friction exponents, and the largest relative change of the tension; infinite if
+    /// it is not a number.
+    fn integrate(&mut self, mu: f64, kappa: f64, closure: Pair, load_n: f64) -> (Exponents, f64) {
         let mut exponents = Exponents::default();
         for (rise, turn) in self.rise.iter_mut().zip(&self.silicone_turn) {
             *rise = *turn * closure * mu;
@@ -353,7 +425,7 @@ impl Workspace {
         }
         let worst = change.0[0].max(change.0[1]);
         let is_finite = change.all(f64::is_finite) && tension.all(f64::is_finite);
-        Sweep { exponents, unbalanced: 0.0, change: if is_finite { worst } else { f64::INFINITY } }
+        (exponents, if is_finite { worst } else { f64::INFINITY })
     }
 
     /// Computes the derivatives of the friction exponents of both directions with respect to the

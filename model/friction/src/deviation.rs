@@ -135,6 +135,14 @@ impl Deviation {
 /// Computes the deviations of `contact` from the published rig, with their effects at `loads_n`
 /// newtons, in descending order of the effect at the last load.
 pub(crate) fn deviations(contact: &Contact, loads_n: &[f64]) -> Vec<Deviation> {
+    let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok();
+    let here: Option<Vec<f64>> = states.map(|states| states.iter().map(|s| s.friction_n).collect());
+    deviations_from(contact, loads_n, here.as_deref())
+}
+
+/// Computes the deviations as [`deviations`], from the friction of `contact` at `loads_n` by the
+/// physics; `None` if that does not converge.
+pub(crate) fn deviations_from(contact: &Contact, loads_n: &[f64], here_n: Option<&[f64]>) -> Vec<Deviation> {
     let Some(reference) = published_rig(contact) else { return Vec::new() };
     let differing: Vec<_> = PARAMETERS
         .iter()
@@ -148,7 +156,7 @@ pub(crate) fn deviations(contact: &Contact, loads_n: &[f64]) -> Vec<Deviation> {
         let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok()?;
         Some(states.iter().map(|s| libm::log(s.friction_n)).collect())
     };
-    let here = logs(contact);
+    let here: Option<Vec<f64>> = here_n.map(|all| all.iter().map(|d| libm::log(*d)).collect());
     let mut all: Vec<Deviation> = differing
         .into_iter()
         .map(|(p, value, published)| {

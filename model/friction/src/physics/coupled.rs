@@ -213,7 +213,8 @@ impl Workspace {
     /// Sets gap and tension to those expected at `load_n`, by a polynomial through the last states.
     fn extrapolate(&mut self, bed: &Bed, load_n: f64) {
         let known = self.known;
-        let Some(weights) = (1..=known).rev().find_map(|order| weights(&self.history[..order], load_n)) else {
+        let Some(weights) = (1..=known).rev().find_map(|order| weights(&self.history[..order], load_n))
+        else {
             // Without a state: the tendon on silicone without pins.
             let pressed = -load_n / (bed.stiffness_n_mm2() * bed.axis_radius_mm());
             self.gap_mm.fill(Pair::both(pressed));
@@ -278,7 +279,8 @@ impl Workspace {
             let (node, t) = (&nodes[i], tension[i]);
             let before = element;
             element = (t + tension[(i + 1).min(n - 1)]) * (0.5 * node.per_element_mm);
-            let diagonal = bending * node.bending[0] + before + element + t * node.string + spring[i] - diagonal_1;
+            let diagonal =
+                bending * node.bending[0] + before + element + t * node.string + spring[i] - diagonal_1;
             let first = bending * node.bending[1] - element - first_1;
             let second = bending * node.bending[2];
             let b = bending * node.bending_load + t * node.string_load + pin_load[i] - right_1;
@@ -294,7 +296,8 @@ impl Workspace {
             right[i] = b * inverse;
         }
         let (mut x_1, mut x_2) = (Pair::ZERO, Pair::ZERO);
-        for ((gap, [_, one, two]), b) in self.next_gap_mm.iter_mut().zip(&self.factors).zip(&self.right).rev() {
+        for ((gap, [_, one, two]), b) in self.next_gap_mm.iter_mut().zip(&self.factors).zip(&self.right).rev()
+        {
             let x = *b - *two * x_2 - *one * x_1;
             *gap = x;
             (x_2, x_1) = (x_1, x);
@@ -556,7 +559,8 @@ impl Workspace {
         let mut sum = [Pair::ZERO; CONSTANTS];
         for i in 0..self.nodes.len() {
             let (t, turn) = (self.tension_n[i], self.silicone_turn[i]);
-            let stiffness = self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
+            let stiffness =
+                self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
             for k in 0..CONSTANTS {
                 let by = Pair::ZERO - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
                 d.turn[i][k] = by;

@@ -19,10 +19,14 @@ use crate::bed::Bed;
 const MAX_SWEEPS: usize = 24;
 /// Largest relative error of the tension, estimated from its last changes.
 const TENSION_ERROR: f64 = 5e-8;
-/// Assumed ratio of a change of the tension to the change before, in the first sweep.
+/// Assumed ratio of a change of the tension to the change before, where it is not known.
 const UNKNOWN_RATE: f64 = 0.1;
-/// Least such ratio; usual are 0.03 to 0.1.
+/// Least such ratio; usual are 0.005 to 0.1.
 const LEAST_RATE: f64 = 0.02;
+/// Largest change of the tension from which the secant of the integrations is used.
+const ACCELERATED_BELOW: f64 = 0.02;
+/// Largest step of the secant.
+const MAX_SECANT: f64 = 0.5;
 /// The line search ends when the slope of the energy is below this share of its initial value.
 const FLAT: f64 = 0.5;
 /// Largest number of cuts of a step.
@@ -32,7 +36,7 @@ const MAX_WEIGHT: f64 = 16.0;
 /// Number of states from which the next one is extrapolated.
 const HISTORY: usize = 3;
 /// Largest exponent of the Taylor series in [`exp_of_small`].
-const SMALL: f64 = 0.125;
+const TINY: f64 = 2e-3;
 /// Largest change of a derivative of the log tension in the last pass, relative to the largest
 /// derivative.
 const DERIVATIVE_TOLERANCE: f64 = 1e-9;
@@ -69,7 +73,7 @@ struct State {
 }
 
 /// Friction exponents of both directions, `|ln(T/F)|`, by material.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Exponents {
     pub(super) pins: Pair,
     pub(super) silicone: Pair,
@@ -87,6 +91,13 @@ pub(super) struct Workspace {
     gap_mm: Vec<Pair>,
     next_gap_mm: Vec<Pair>,
     tension_n: Vec<Pair>,
+    /// Inverse of the tension before the last integration, 1/N.
+    per_tension: Vec<Pair>,
+    /// Tension of the integration before.
+    integrated_n: Vec<Pair>,
+    /// Relative change of the tension by the last integration and by the one before.
+    misfit: Vec<Pair>,
+    misfit_before: Vec<Pair>,
     /// Stiffness of the springs, N/mm.
     spring: Vec<Pair>,
     /// Linear term of the pins, N.
@@ -134,7 +145,7 @@ impl Workspace {
                 }
             })
             .collect();
-        let (zeros, pins) = (vec![Pair::ZERO; n], vec![Pair::ZERO; grid.pins.len()]);
+        let (zeros, pins) = (vec![Pair::both(0.0); n], vec![Pair::both(0.0); grid.pins.len()]);
         let state = State { load_n: 0.0, gap_mm: zeros.clone(), ratio: zeros.clone() };
         Self {
             nodes,
@@ -144,13 +155,17 @@ impl Workspace {
             gap_mm: zeros.clone(),
             next_gap_mm: zeros.clone(),
             tension_n: zeros.clone(),
+            per_tension: zeros.clone(),
+            integrated_n: zeros.clone(),
+            misfit: zeros.clone(),
+            misfit_before: zeros.clone(),
             spring: zeros.clone(),
             pin_load: zeros.clone(),
             silicone_turn: zeros.clone(),
             pin_n: pins.clone(),
             pin_n_mm: pins,
             rise: zeros.clone(),
-            factors: vec![[Pair::ZERO; 3]; n],
+            factors: vec![[Pair::both(0.0); 3]; n],
             right: zeros,
             derivatives: Derivatives::default(),
         }
@@ -171,7 +186,7 @@ impl Workspace {
         for sweep in 0..MAX_SWEEPS {
             let bending = self.bending_n_mm2(supports.bed);
             let rc = supports.bed.axis_radius_mm();
-            let largest = self.tension_n.iter().fold(Pair::ZERO, |most, t| most.max(*t));
+            let largest = self.tension_n.iter().fold(Pair::both(0.0), |most, t| most.max(*t));
             let tolerance_n = (largest + bending * (1.0 / (rc * rc))) * BALANCE;
             self.supports_at_gap(supports);
             if !self.solve(bending) {
@@ -187,7 +202,12 @@ impl Workspace {
             let closure = Pair::both(wrap_rad) / turned;
             let (exponents, change) = self.integrate(constants.mu_silicone, kappa, closure, load_n);
             // The error of the new tension is the next change, which decreases geometrically.
-            let rate = (change / change_before).max(if sweep == 0 { UNKNOWN_RATE } else { LEAST_RATE });
+            let rate = match sweep {
+                0 => UNKNOWN_RATE,
+                1 => (change / change_before).max(LEAST_RATE),
+                // The secant hides the rate of the integrations.
+                _ => (change / change_before).max(UNKNOWN_RATE),
+            };
             if unbalanced <= 1.0 && rate * change <= TENSION_ERROR {
                 self.remember(load_n);
                 return Some(exponents);
@@ -195,17 +215,41 @@ impl Workspace {
             if !change.is_finite() {
                 return None;
             }
+            self.accelerate(sweep > 0 && change < ACCELERATED_BELOW);
             (unbalanced_before, change_before) = (unbalanced, change);
         }
         None
+    }
+
+    /// Moves the tension beyond the last integration, by the secant of the last two (Anderson's
+    /// method with one step of memory), if `is_near` a solution.
+    fn accelerate(&mut self, is_near: bool) {
+        let mut ahead = Pair::both(0.0);
+        if is_near {
+            let (mut product, mut square) = (Pair::both(0.0), Pair::both(f64::MIN_POSITIVE));
+            for (now, before) in self.misfit.iter().zip(&self.misfit_before) {
+                let by = *now - *before;
+                product = product + *now * by;
+                square = square + by * by;
+            }
+            ahead = (product / square).map(|x| x.clamp(-MAX_SECANT, MAX_SECANT));
+        }
+        for (tension, before) in self.tension_n.iter_mut().zip(&mut self.integrated_n) {
+            let integrated = *tension;
+            if is_near {
+                *tension = integrated - ahead * (integrated - *before);
+            }
+            *before = integrated;
+        }
+        std::mem::swap(&mut self.misfit, &mut self.misfit_before);
     }
 
     /// Adds a state to the history that was computed otherwise: gaps and tensions of the eccentric
     /// and the concentric direction.
     pub(super) fn accept(&mut self, load_n: f64, gap_mm: [&[f64]; 2], tension_n: [&[f64]; 2]) {
         for i in 0..self.nodes.len() {
-            self.gap_mm[i] = Pair([gap_mm[0][i], gap_mm[1][i]]);
-            self.tension_n[i] = Pair([tension_n[0][i], tension_n[1][i]]);
+            self.gap_mm[i] = Pair::new([gap_mm[0][i], gap_mm[1][i]]);
+            self.tension_n[i] = Pair::new([tension_n[0][i], tension_n[1][i]]);
         }
         self.remember(load_n);
     }
@@ -251,13 +295,14 @@ impl Workspace {
     /// Computes the springs at the gap, linearised.
     fn supports_at_gap(&mut self, supports: &Supports<'_>) {
         for ((spring, node), gap) in self.spring.iter_mut().zip(&self.nodes).zip(&self.gap_mm) {
-            *spring = gap.map(|u| if u < 0.0 { node.silicone_n_mm } else { 0.0 });
+            *spring = gap.where_negative(Pair::both(node.silicone_n_mm));
         }
-        self.pin_load.fill(Pair::ZERO);
+        self.pin_load.fill(Pair::both(0.0));
         for (k, &node) in self.pins.iter().enumerate() {
             let gap = self.gap_mm[node];
-            let at = gap.0.map(|u| supports.pin(u));
-            let (force, stiffness) = (Pair(at.map(|s| s.force_n)), Pair(at.map(|s| s.stiffness_n_mm)));
+            let at = gap.numbers().map(|u| supports.pin(u));
+            let (force, stiffness) =
+                (Pair::new(at.map(|s| s.force_n)), Pair::new(at.map(|s| s.stiffness_n_mm)));
             self.spring[node] = self.spring[node] + stiffness;
             self.pin_load[node] = self.pin_load[node] + force + stiffness * gap;
             (self.pin_n[k], self.pin_n_mm[k]) = (force, stiffness);
@@ -268,10 +313,10 @@ impl Workspace {
     /// if the matrix is not positive definite.
     fn solve(&mut self, bending: Pair) -> bool {
         let n = self.nodes.len();
-        let mut element = Pair::ZERO;
-        let (mut diagonal_1, mut diagonal_2, mut first_1) = (Pair::ZERO, Pair::ZERO, Pair::ZERO);
-        let (mut right_1, mut right_2) = (Pair::ZERO, Pair::ZERO);
-        let mut least = Pair::both(f64::INFINITY);
+        let mut element = Pair::both(0.0);
+        let (mut diagonal_1, mut diagonal_2, mut first_1) =
+            (Pair::both(0.0), Pair::both(0.0), Pair::both(0.0));
+        let (mut right_1, mut right_2) = (Pair::both(0.0), Pair::both(0.0));
         let (nodes, tension) = (&self.nodes[..n], &self.tension_n[..n]);
         let (spring, pin_load) = (&self.spring[..n], &self.pin_load[..n]);
         let (factors, right) = (&mut self.factors[..n], &mut self.right[..n]);
@@ -284,7 +329,6 @@ impl Workspace {
             let first = bending * node.bending[1] - element - first_1;
             let second = bending * node.bending[2];
             let b = bending * node.bending_load + t * node.string_load + pin_load[i] - right_1;
-            least = least.min(diagonal);
             let inverse = Pair::both(1.0) / diagonal;
             let (one, two) = (first * inverse, second * inverse);
             diagonal_1 = one * first + diagonal_2;
@@ -295,14 +339,15 @@ impl Workspace {
             factors[i] = [inverse, one, two];
             right[i] = b * inverse;
         }
-        let (mut x_1, mut x_2) = (Pair::ZERO, Pair::ZERO);
+        let (mut x_1, mut x_2) = (Pair::both(0.0), Pair::both(0.0));
         for ((gap, [_, one, two]), b) in self.next_gap_mm.iter_mut().zip(&self.factors).zip(&self.right).rev()
         {
             let x = *b - *two * x_2 - *one * x_1;
             *gap = x;
             (x_2, x_1) = (x_1, x);
         }
-        least.all(|d| d > 0.0)
+        // An indefinite matrix has a pivot that is not positive.
+        self.factors.iter().fold(true, |is_positive, [inverse, ..]| is_positive & inverse.all(|d| d > 0.0))
     }
 
     /// Shortens the step to the next gap to an approximate minimum of the energy along it. Returns
@@ -313,7 +358,7 @@ impl Workspace {
             return false;
         }
         for (gap, next) in self.gap_mm.iter().zip(&mut self.next_gap_mm) {
-            *next = *gap + Pair(shares) * (*next - *gap);
+            *next = *gap + Pair::new(shares) * (*next - *gap);
         }
         true
     }
@@ -321,24 +366,25 @@ impl Workspace {
     /// Returns the share of the step of one direction at which the slope of the energy is small.
     fn step_share(&self, supports: &Supports<'_>, lane: usize) -> f64 {
         let n = self.nodes.len();
-        let step = |i: usize| if i < n { self.next_gap_mm[i].0[lane] - self.gap_mm[i].0[lane] } else { 0.0 };
+        let step =
+            |i: usize| if i < n { self.next_gap_mm[i].lane(lane) - self.gap_mm[i].lane(lane) } else { 0.0 };
         // The slope at the start, from the factors of the stiffness: -s'Ks.
         let falling: f64 = self.factors.iter().enumerate().fold(0.0, |sum, (i, [inverse, one, two])| {
-            let x = step(i) + one.0[lane] * step(i + 1) + two.0[lane] * step(i + 2);
-            sum - x * x / inverse.0[lane]
+            let x = step(i) + one.lane(lane) * step(i + 1) + two.lane(lane) * step(i + 2);
+            sum - x * x / inverse.lane(lane)
         });
         let slope = |share: f64| {
             let mut missed = 0.0;
             for (i, node) in self.nodes.iter().enumerate() {
-                let (from, by) = (self.gap_mm[i].0[lane], step(i));
+                let (from, by) = (self.gap_mm[i].lane(lane), step(i));
                 let to = from + share * by;
                 if (from < 0.0) != (to < 0.0) {
                     missed -= node.silicone_n_mm * to.abs() * by;
                 }
             }
             for (p, &node) in self.pins.iter().enumerate() {
-                let (from, by) = (self.gap_mm[node].0[lane], step(node));
-                let linear = self.pin_n[p].0[lane] - self.pin_n_mm[p].0[lane] * share * by;
+                let (from, by) = (self.gap_mm[node].lane(lane), step(node));
+                let linear = self.pin_n[p].lane(lane) - self.pin_n_mm[p].lane(lane) * share * by;
                 missed += (linear - supports.pin(from + share * by).force_n) * by;
             }
             (1.0 - share) * falling + missed
@@ -372,31 +418,33 @@ impl Workspace {
     /// tolerance; infinite after a shortened step.
     fn take_step(&mut self, supports: &Supports<'_>, tolerance_n: Pair, is_far: bool) -> f64 {
         let is_short = is_far && self.shorten_step(supports);
-        let mut missed = Pair::ZERO;
+        let mut missed = Pair::both(0.0);
         for i in 0..self.nodes.len() {
             let (gap, next, stiffness) = (self.gap_mm[i], self.next_gap_mm[i], self.nodes[i].silicone_n_mm);
-            let force = next.map(|u| stiffness * (-u).max(0.0));
-            let linear = gap.zip(next, |u, v| if u < 0.0 { -stiffness * v } else { 0.0 });
-            missed = missed.max((force - linear).map(f64::abs));
-            self.silicone_turn[i] = force / self.tension_n[i];
+            let pressed = next * -stiffness;
+            let force = next.where_negative(pressed);
+            let linear = gap.where_negative(pressed);
+            missed = missed.max((force - linear).abs());
+            self.per_tension[i] = Pair::both(1.0) / self.tension_n[i];
+            self.silicone_turn[i] = force * self.per_tension[i];
         }
         for (k, &node) in self.pins.iter().enumerate() {
             let step = self.next_gap_mm[node] - self.gap_mm[node];
             let linear = self.pin_n[k] - self.pin_n_mm[k] * step;
-            let at = self.next_gap_mm[node].0.map(|u| supports.pin(u));
+            let at = self.next_gap_mm[node].numbers().map(|u| supports.pin(u));
             (self.pin_n[k], self.pin_n_mm[k]) =
-                (Pair(at.map(|s| s.force_n)), Pair(at.map(|s| s.stiffness_n_mm)));
-            missed = missed.max((self.pin_n[k] - linear).map(f64::abs));
+                (Pair::new(at.map(|s| s.force_n)), Pair::new(at.map(|s| s.stiffness_n_mm)));
+            missed = missed.max((self.pin_n[k] - linear).abs());
         }
         std::mem::swap(&mut self.gap_mm, &mut self.next_gap_mm);
         let share = missed / tolerance_n;
-        if is_short { f64::INFINITY } else { share.0[0].max(share.0[1]) }
+        if is_short { f64::INFINITY } else { share.lane(0).max(share.lane(1)) }
     }
 
     /// Returns the sum of all turns before closure.
     fn turned(&self) -> Pair {
         let pins = self.pins.iter().zip(&self.pin_n);
-        let pins = pins.fold(Pair::ZERO, |sum, (node, force)| sum + *force / self.tension_n[*node]);
+        let pins = pins.fold(Pair::both(0.0), |sum, (node, force)| sum + *force / self.tension_n[*node]);
         self.silicone_turn.iter().fold(pins, |sum, turn| sum + *turn)
     }
 
@@ -412,21 +460,22 @@ impl Workspace {
         for (node, force) in self.pins.iter().zip(&self.pin_n) {
             let tension = self.tension_n[*node];
             let theta = closure * *force / tension;
-            let ploughing = (tension * theta).map(f64::sqrt) * theta * kappa;
+            let ploughing = (tension * theta).sqrt() * theta * kappa;
             exponents.pins = exponents.pins + ploughing;
             self.rise[*node] = self.rise[*node] + ploughing;
         }
-        let (mut tension, mut change) = (Pair::both(load_n), Pair::ZERO);
-        for (rise, t) in self.rise.iter().zip(&mut self.tension_n) {
+        let (mut tension, mut change) = (Pair::both(load_n), Pair::both(0.0));
+        let misfits = self.misfit.iter_mut().zip(&self.per_tension);
+        for ((rise, t), (misfit, per_tension)) in self.rise.iter().zip(&mut self.tension_n).zip(misfits) {
             // The tension of a node is that in the middle of its contact.
-            let half = *rise * Pair([-0.5, 0.5]);
-            let factor = half.map(exp_of_small);
+            let factor = exp_of_small(*rise * Pair::new([-0.5, 0.5]));
             let here = tension * factor;
             tension = here * factor;
-            change = change.max((here - *t).map(f64::abs) / here);
+            *misfit = (here - *t) * *per_tension;
+            change = change.max(misfit.abs());
             *t = here;
         }
-        let worst = change.0[0].max(change.0[1]);
+        let worst = change.lane(0).max(change.lane(1));
         let is_finite = change.all(f64::is_finite) && tension.all(f64::is_finite);
         (exponents, if is_finite { worst } else { f64::INFINITY })
     }
@@ -452,7 +501,7 @@ impl Workspace {
         }
         for i in 0..n {
             let stiffness = self.nodes[i].silicone_n_mm;
-            let force = self.gap_mm[i].map(|u| stiffness * (-u).max(0.0));
+            let force = self.gap_mm[i].where_negative(self.gap_mm[i] * -stiffness);
             self.silicone_turn[i] = force / self.tension_n[i];
         }
         let turned = self.turned();
@@ -460,7 +509,7 @@ impl Workspace {
         let lowest = self.lowest_tension();
         let bending_slope = self.bending_slope(supports.bed, bending);
         let mut d = std::mem::take(&mut self.derivatives);
-        let zero = [Pair::ZERO; CONSTANTS];
+        let zero = [Pair::both(0.0); CONSTANTS];
         d.right.resize(n, zero);
         d.turn.resize(n, zero);
         d.pin_turn.resize(self.pins.len(), zero);
@@ -484,7 +533,7 @@ impl Workspace {
     /// stiffness.
     fn lowest_tension(&self) -> [usize; 2] {
         [0, 1].map(|lane| {
-            let tension = |i: usize| self.tension_n[i].0[lane];
+            let tension = |i: usize| self.tension_n[i].lane(lane);
             (1..self.nodes.len()).fold(0, |least, i| if tension(i) < tension(least) { i } else { least })
         })
     }
@@ -493,7 +542,7 @@ impl Workspace {
     /// tension.
     fn bending_slope(&self, bed: &Bed, bending: Pair) -> Pair {
         let least = self.tension_n.iter().fold(Pair::both(f64::INFINITY), |least, t| least.min(*t));
-        bending.zip(least, |bending, least| bed.tendon_bending_slope_n_mm2(bending, least))
+        Pair::new([0, 1].map(|i| bed.tendon_bending_slope_n_mm2(bending.lane(i), least.lane(i))))
     }
 
     /// Solves the linearised balance of forces for the derivatives of the gap, into `d.right`.
@@ -501,10 +550,10 @@ impl Workspace {
         let n = self.nodes.len();
         let u = &self.gap_mm;
         let bent: [Pair; CONSTANTS] = std::array::from_fn(|k| {
-            bending_slope * Pair([0, 1].map(|lane| d.log_tension[lowest[lane]][k].0[lane]))
+            bending_slope * Pair::new([0, 1].map(|lane| d.log_tension[lowest[lane]][k].lane(lane)))
         });
         // Derivative of the string's pull across the element before.
-        let mut pull_before = [Pair::ZERO; CONSTANTS];
+        let mut pull_before = [Pair::both(0.0); CONSTANTS];
         for i in 0..n {
             let node = &self.nodes[i];
             let next = (i + 1).min(n - 1);
@@ -528,13 +577,13 @@ impl Workspace {
                 let pull = stretch * (self.tension_n[i] * here + self.tension_n[next] * there);
                 let force = pull - pull_before[k] + string * here + bend * bent[k];
                 pull_before[k] = pull;
-                d.right[i][k] = Pair::ZERO - force;
+                d.right[i][k] = Pair::both(0.0) - force;
             }
         }
         for (node, force) in self.pins.iter().zip(&self.pin_n) {
             d.right[*node][2] = d.right[*node][2] + *force;
         }
-        let (mut right_1, mut right_2) = ([Pair::ZERO; CONSTANTS], [Pair::ZERO; CONSTANTS]);
+        let (mut right_1, mut right_2) = ([Pair::both(0.0); CONSTANTS], [Pair::both(0.0); CONSTANTS]);
         for i in 0..n {
             let [inverse, one, two] = self.factors[i];
             for k in 0..CONSTANTS {
@@ -544,7 +593,7 @@ impl Workspace {
                 d.right[i][k] = b * inverse;
             }
         }
-        let (mut x_1, mut x_2) = ([Pair::ZERO; CONSTANTS], [Pair::ZERO; CONSTANTS]);
+        let (mut x_1, mut x_2) = ([Pair::both(0.0); CONSTANTS], [Pair::both(0.0); CONSTANTS]);
         for (right, [_, one, two]) in d.right.iter_mut().zip(&self.factors).rev() {
             for k in 0..CONSTANTS {
                 let x = right[k] - *two * x_2[k] - *one * x_1[k];
@@ -556,13 +605,13 @@ impl Workspace {
 
     /// Computes the derivatives of the turns from those of gap and tension. They sum to zero.
     fn derivative_of_turns(&self, d: &mut Derivatives, closure: Pair, turned: Pair) {
-        let mut sum = [Pair::ZERO; CONSTANTS];
+        let mut sum = [Pair::both(0.0); CONSTANTS];
         for i in 0..self.nodes.len() {
             let (t, turn) = (self.tension_n[i], self.silicone_turn[i]);
             let stiffness =
                 self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
             for k in 0..CONSTANTS {
-                let by = Pair::ZERO - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
+                let by = Pair::both(0.0) - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
                 d.turn[i][k] = by;
                 sum[k] = sum[k] + by;
             }
@@ -571,7 +620,7 @@ impl Workspace {
             let t = self.tension_n[node];
             let (turn, stiffness) = (self.pin_n[p] / t, self.pin_n_mm[p] / t);
             for k in 0..CONSTANTS {
-                let own = if k == 2 { turn } else { Pair::ZERO };
+                let own = if k == 2 { turn } else { Pair::both(0.0) };
                 let by = own - stiffness * d.right[node][k] - turn * d.log_tension[node][k];
                 d.pin_turn[p][k] = by;
                 sum[k] = sum[k] + by;
@@ -609,25 +658,25 @@ impl Workspace {
         for (p, &node) in self.pins.iter().enumerate() {
             let t = self.tension_n[node];
             let theta = closure * self.pin_n[p] / t;
-            let root = (t * theta).map(f64::sqrt) * kappa;
+            let root = (t * theta).sqrt() * kappa;
             let ploughing = root * theta;
             for k in 0..CONSTANTS {
-                let own = if k == 0 { ploughing } else { Pair::ZERO };
+                let own = if k == 0 { ploughing } else { Pair::both(0.0) };
                 d.turn[node][k] = d.turn[node][k]
                     + own
                     + ploughing * d.log_tension[node][k] * 0.5
                     + root * d.pin_turn[p][k] * 1.5;
             }
         }
-        let mut sum = [Pair::ZERO; CONSTANTS];
+        let mut sum = [Pair::both(0.0); CONSTANTS];
         let (mut change, mut largest) = (0.0f64, 0.0f64);
         for (rise, log) in d.turn.iter().zip(&mut d.log_tension) {
             for k in 0..CONSTANTS {
-                let here = (sum[k] + rise[k] * 0.5) * Pair([-1.0, 1.0]);
+                let here = (sum[k] + rise[k] * 0.5) * Pair::new([-1.0, 1.0]);
                 sum[k] = sum[k] + rise[k];
-                let moved = (here - log[k]).map(f64::abs);
-                change = change.max(moved.0[0]).max(moved.0[1]);
-                largest = largest.max(here.0[0].abs()).max(here.0[1].abs());
+                let moved = (here - log[k]).abs();
+                change = change.max(moved.lane(0)).max(moved.lane(1));
+                largest = largest.max(here.lane(0).abs()).max(here.lane(1).abs());
                 log[k] = here;
             }
         }
@@ -653,11 +702,12 @@ fn weights(states: &[State], load_n: f64) -> Option<[f64; HISTORY]> {
 }
 
 /// Returns `exp(x)`, by its Taylor series for small `x`, which is exact to the last digit or two.
-fn exp_of_small(x: f64) -> f64 {
-    if x.abs() > SMALL {
-        return libm::exp(x);
+#[inline(always)]
+fn exp_of_small(x: Pair) -> Pair {
+    if x.abs().all(|x| x < TINY) {
+        let one = Pair::both(1.0);
+        let quadratic = Pair::both(0.5) + x * (Pair::both(1.0 / 6.0) + x * (1.0 / 24.0));
+        return one + x * (one + x * quadratic);
     }
-    const TERMS: [f64; 9] =
-        [1.0 / 40320.0, 1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
-    TERMS.iter().fold(0.0, |sum, term| sum * x + term)
+    x.map(libm::exp)
 }

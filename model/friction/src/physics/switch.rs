@@ -120,11 +120,11 @@ impl PhysicsSwitch {
             let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
             let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
             let pins = DIRECTIONS.map(|direction| pins_alone_exponent(&turns, kappa, load_n, direction));
-            return Ok(Exponents { pins: Pair(pins), silicone: Pair::ZERO });
+            return Ok(Exponents { pins: Pair::new(pins), silicone: Pair::both(0.0) });
         }
         let Some(workspace) = workspace.filter(|_| load_n > 0.0) else {
             let silicone = Pair::both(self.constants.mu_silicone * wrap_rad);
-            return Ok(Exponents { pins: Pair::ZERO, silicone });
+            return Ok(Exponents { pins: Pair::both(0.0), silicone });
         };
         if let Some(exponents) = workspace.follow(&self.supports(), &self.constants, wrap_rad, load_n) {
             return Ok(exponents);
@@ -137,8 +137,8 @@ impl PhysicsSwitch {
             [&eccentric.tension_n, &concentric.tension_n],
         );
         Ok(Exponents {
-            pins: Pair([eccentric.pins_exponent, concentric.pins_exponent]),
-            silicone: Pair([eccentric.silicone_exponent, concentric.silicone_exponent]),
+            pins: Pair::new([eccentric.pins_exponent, concentric.pins_exponent]),
+            silicone: Pair::new([eccentric.silicone_exponent, concentric.silicone_exponent]),
         })
     }
 
@@ -150,11 +150,11 @@ impl PhysicsSwitch {
     ) -> Result<(SwitchState, Exponents), PhysicsError> {
         let exponents = self.exponents(load_n, workspace)?;
         let total = exponents.pins + exponents.silicone;
-        let eccentric_n = capstan_tension_n(load_n, total.0[0], Direction::Eccentric);
-        let concentric_n = capstan_tension_n(load_n, total.0[1], Direction::Concentric);
-        let both = total.0[0] + total.0[1];
+        let eccentric_n = capstan_tension_n(load_n, total.lane(0), Direction::Eccentric);
+        let concentric_n = capstan_tension_n(load_n, total.lane(1), Direction::Concentric);
+        let both = total.lane(0) + total.lane(1);
         let shared = load_n > 0.0 && both > 0.0;
-        let silicone = exponents.silicone.0[0] + exponents.silicone.0[1];
+        let silicone = exponents.silicone.lane(0) + exponents.silicone.lane(1);
         let state = SwitchState {
             load_n,
             eccentric_n,
@@ -209,13 +209,13 @@ impl PhysicsSwitch {
                 let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
                 let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
                 let slope = |direction| pins_alone_slope(&turns, kappa, state.load_n, direction);
-                [Pair(DIRECTIONS.map(slope)), Pair::ZERO, Pair::ZERO]
+                [Pair::new(DIRECTIONS.map(slope)), Pair::both(0.0), Pair::both(0.0)]
             }
-            None => [Pair::ZERO, exponents.silicone, Pair::ZERO],
+            None => [Pair::both(0.0), exponents.silicone, Pair::both(0.0)],
         };
-        let tension = Pair([state.eccentric_n, state.concentric_n]);
+        let tension = Pair::new([state.eccentric_n, state.concentric_n]);
         let of_friction = of_exponents.map(|by| {
-            let [eccentric, concentric] = (tension * by).0;
+            let [eccentric, concentric] = (tension * by).numbers();
             (eccentric + concentric) / 2.0 / state.friction_n
         });
         Ok(Vector3::from(of_friction))

@@ -21,7 +21,7 @@ use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
-use pinswitch_switch::parts::{Part, fit_on_bed, printed};
+use pinswitch_switch::parts::{PRINTED_PARTS, Part, PrintedPart, fit_on_bed, printed};
 use pinswitch_switch::prediction::Prediction;
 
 /// File of a variant's curve.
@@ -280,15 +280,16 @@ impl<'a> VariantMaker<'a> {
         if self.slicer.is_some() && listing.print.is_none() {
             return Ok(None);
         }
-        let design = Design::new(variant.configuration.clone()).ok();
-        let Some(parts) = design.and_then(|design| printed(&design).ok()) else { return Ok(None) };
-        let is_made = |part: &&Part| self.variants.sweep().parts.contains(&part.name.as_str());
-        let expected: BTreeSet<String> = parts
+        let sweep = self.variants.sweep();
+        let is_made = |part: &&PrintedPart| {
+            sweep.parts.contains(&part.name) && (part.is_wanted)(&variant.configuration)
+        };
+        let expected: BTreeSet<String> = PRINTED_PARTS
             .iter()
             .filter(is_made)
             .map(|part| format!("{}.stl", part.name))
             .chain([CURVE.to_owned()])
-            .chain(self.variants.sweep().plots.then(|| FIGURE.to_owned()))
+            .chain(sweep.plots.then(|| FIGURE.to_owned()))
             .collect();
         let listed: BTreeSet<String> = listing.files.iter().map(|file| file.file.clone()).collect();
         let inspection = if listed == expected {

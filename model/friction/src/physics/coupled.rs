@@ -113,6 +113,8 @@ pub(super) struct Workspace {
     /// Inverse pivots and both columns of the factors.
     factors: Vec<[Pair; 3]>,
     right: Vec<Pair>,
+    /// Nodes that meet or leave the silicone in a step.
+    crossing: Vec<usize>,
     derivatives: Derivatives,
 }
 
@@ -167,6 +169,7 @@ impl Workspace {
             rise: zeros.clone(),
             factors: vec![[Pair::both(0.0); 3]; n],
             right: zeros,
+            crossing: Vec::with_capacity(n),
             derivatives: Derivatives::default(),
         }
     }
@@ -311,49 +314,63 @@ impl Workspace {
 
     /// Factorises the stiffness matrix at the springs, and solves for the next gap. Returns `false`
     /// if the matrix is not positive definite.
+    ///
+    /// Rows are eliminated from both ends at once, up to the rows `middle` and `middle + 1`: two
+    /// chains of divisions instead of one.
     fn solve(&mut self, bending: Pair) -> bool {
         let n = self.nodes.len();
-        let mut element = Pair::both(0.0);
-        let (mut diagonal_1, mut diagonal_2, mut first_1) =
-            (Pair::both(0.0), Pair::both(0.0), Pair::both(0.0));
-        let (mut right_1, mut right_2) = (Pair::both(0.0), Pair::both(0.0));
+        let middle = middle_row(n);
         let (nodes, tension) = (&self.nodes[..n], &self.tension_n[..n]);
         let (spring, pin_load) = (&self.spring[..n], &self.pin_load[..n]);
         let (factors, right) = (&mut self.factors[..n], &mut self.right[..n]);
-        for i in 0..n {
+        let element = |i: usize| (tension[i] + tension[(i + 1).min(n - 1)]) * (0.5 * nodes[i].per_element_mm);
+        // Diagonal and right side of a row, from the elements on both sides.
+        let row = |i: usize, before: Pair, after: Pair| {
             let (node, t) = (&nodes[i], tension[i]);
-            let before = element;
-            element = (t + tension[(i + 1).min(n - 1)]) * (0.5 * node.per_element_mm);
-            let diagonal =
-                bending * node.bending[0] + before + element + t * node.string + spring[i] - diagonal_1;
-            let first = bending * node.bending[1] - element - first_1;
-            let second = bending * node.bending[2];
-            let b = bending * node.bending_load + t * node.string_load + pin_load[i] - right_1;
-            let inverse = Pair::both(1.0) / diagonal;
-            let (one, two) = (first * inverse, second * inverse);
-            diagonal_1 = one * first + diagonal_2;
-            diagonal_2 = two * second;
-            first_1 = one * second;
-            right_1 = one * b + right_2;
-            right_2 = two * b;
-            factors[i] = [inverse, one, two];
-            right[i] = b * inverse;
+            (
+                bending * node.bending[0] + before + after + t * node.string + spring[i],
+                bending * node.bending_load + t * node.string_load + pin_load[i],
+            )
+        };
+        let (mut top, mut bottom) = (Elimination::default(), Elimination::default());
+        let (mut above, mut below) = (Pair::both(0.0), Pair::both(0.0));
+        for k in 0..n - 2 - middle {
+            if k < middle {
+                let i = k;
+                let after = element(i);
+                let (diagonal, b) = row(i, above, after);
+                let first = bending * nodes[i].bending[1] - after;
+                (factors[i], right[i]) = top.eliminate(diagonal, first, bending * nodes[i].bending[2], b);
+                above = after;
+            }
+            let i = n - 1 - k;
+            let before = element(i - 1);
+            let (diagonal, b) = row(i, before, below);
+            let first = bending * nodes[i - 1].bending[1] - before;
+            (factors[i], right[i]) = bottom.eliminate(diagonal, first, bending * nodes[i - 2].bending[2], b);
+            below = before;
         }
-        let (mut x_1, mut x_2) = (Pair::both(0.0), Pair::both(0.0));
-        for ((gap, [_, one, two]), b) in self.next_gap_mm.iter_mut().zip(&self.factors).zip(&self.right).rev()
-        {
-            let x = *b - *two * x_2 - *one * x_1;
-            *gap = x;
-            (x_2, x_1) = (x_1, x);
-        }
+        let between = element(middle);
+        let (diagonal, b) = row(middle, above, between);
+        top.diagonal[0] = top.diagonal[0] + bottom.diagonal[1];
+        top.first = top.first + bottom.first;
+        top.right[0] = top.right[0] + bottom.right[1];
+        let first = bending * nodes[middle].bending[1] - between;
+        (factors[middle], right[middle]) = top.eliminate(diagonal, first, Pair::both(0.0), b);
+        let (diagonal, b) = row(middle + 1, between, below);
+        top.diagonal[0] = top.diagonal[0] + bottom.diagonal[0];
+        top.right[0] = top.right[0] + bottom.right[0];
+        (factors[middle + 1], right[middle + 1]) =
+            top.eliminate(diagonal, Pair::both(0.0), Pair::both(0.0), b);
+        substitute_back(factors, right, &mut self.next_gap_mm[..n]);
         // An indefinite matrix has a pivot that is not positive.
-        self.factors.iter().fold(true, |is_positive, [inverse, ..]| is_positive & inverse.all(|d| d > 0.0))
+        factors.iter().fold(true, |is_positive, [inverse, ..]| is_positive & inverse.all(|d| d > 0.0))
     }
 
     /// Shortens the step to the next gap to an approximate minimum of the energy along it. Returns
     /// whether it did so.
     fn shorten_step(&mut self, supports: &Supports<'_>) -> bool {
-        let shares = [0, 1].map(|lane| self.step_share(supports, lane));
+        let shares = [self.step_share(supports, 0), self.step_share(supports, 1)];
         if shares == [1.0; 2] {
             return false;
         }
@@ -364,22 +381,41 @@ impl Workspace {
     }
 
     /// Returns the share of the step of one direction at which the slope of the energy is small.
-    fn step_share(&self, supports: &Supports<'_>, lane: usize) -> f64 {
+    fn step_share(&mut self, supports: &Supports<'_>, lane: usize) -> f64 {
         let n = self.nodes.len();
-        let step =
-            |i: usize| if i < n { self.next_gap_mm[i].lane(lane) - self.gap_mm[i].lane(lane) } else { 0.0 };
+        let middle = middle_row(n);
+        let step = |i: usize| self.next_gap_mm[i].lane(lane) - self.gap_mm[i].lane(lane);
         // The slope at the start, from the factors of the stiffness: -s'Ks.
-        let falling: f64 = self.factors.iter().enumerate().fold(0.0, |sum, (i, [inverse, one, two])| {
-            let x = step(i) + one.lane(lane) * step(i + 1) + two.lane(lane) * step(i + 2);
-            sum - x * x / inverse.lane(lane)
-        });
+        let mut falling = 0.0;
+        let [mut near, mut far] = [step(middle + 1), 0.0];
+        for i in (0..=middle).rev() {
+            let [inverse, one, two] = self.factors[i].map(|f| f.lane(lane));
+            let here = step(i);
+            let x = here + one * near + two * far;
+            falling -= x * x / inverse;
+            [near, far] = [here, near];
+        }
+        [near, far] = [0.0, 0.0];
+        for i in middle + 1..n {
+            let [inverse, one, two] = self.factors[i].map(|f| f.lane(lane));
+            let here = step(i);
+            let x = here + one * near + two * far;
+            falling -= x * x / inverse;
+            [near, far] = [here, if i == middle + 1 { step(middle) } else { near }];
+        }
+        self.crossing.clear();
+        for (i, (from, to)) in self.gap_mm.iter().zip(&self.next_gap_mm).enumerate() {
+            if (from.lane(lane) < 0.0) != (to.lane(lane) < 0.0) {
+                self.crossing.push(i);
+            }
+        }
         let slope = |share: f64| {
             let mut missed = 0.0;
-            for (i, node) in self.nodes.iter().enumerate() {
+            for &i in &self.crossing {
                 let (from, by) = (self.gap_mm[i].lane(lane), step(i));
                 let to = from + share * by;
                 if (from < 0.0) != (to < 0.0) {
-                    missed -= node.silicone_n_mm * to.abs() * by;
+                    missed -= self.nodes[i].silicone_n_mm * to.abs() * by;
                 }
             }
             for (p, &node) in self.pins.iter().enumerate() {
@@ -431,9 +467,7 @@ impl Workspace {
         for (k, &node) in self.pins.iter().enumerate() {
             let step = self.next_gap_mm[node] - self.gap_mm[node];
             let linear = self.pin_n[k] - self.pin_n_mm[k] * step;
-            let at = self.next_gap_mm[node].numbers().map(|u| supports.pin(u));
-            (self.pin_n[k], self.pin_n_mm[k]) =
-                (Pair::new(at.map(|s| s.force_n)), Pair::new(at.map(|s| s.stiffness_n_mm)));
+            (self.pin_n[k], self.pin_n_mm[k]) = pin_support(supports, self.next_gap_mm[node]);
             missed = missed.max((self.pin_n[k] - linear).abs());
         }
         std::mem::swap(&mut self.gap_mm, &mut self.next_gap_mm);
@@ -583,23 +617,57 @@ impl Workspace {
         for (node, force) in self.pins.iter().zip(&self.pin_n) {
             d.right[*node][2] = d.right[*node][2] + *force;
         }
-        let (mut right_1, mut right_2) = ([Pair::both(0.0); CONSTANTS], [Pair::both(0.0); CONSTANTS]);
-        for i in 0..n {
-            let [inverse, one, two] = self.factors[i];
-            for k in 0..CONSTANTS {
-                let b = d.right[i][k] - right_1[k];
-                right_1[k] = one * b + right_2[k];
-                right_2[k] = two * b;
-                d.right[i][k] = b * inverse;
+        self.substitute(&mut d.right);
+    }
+
+    /// Solves for right sides of the constants, with the factors of [`Workspace::solve`].
+    fn substitute(&self, right: &mut [[Pair; CONSTANTS]]) {
+        let (n, factors) = (right.len(), &self.factors[..right.len()]);
+        let middle = middle_row(n);
+        let mut top = [[Pair::both(0.0); 2]; CONSTANTS];
+        let mut bottom = top;
+        let reduce = |[inverse, one, two]: [Pair; 3],
+                      b: &mut [Pair; CONSTANTS],
+                      carry: &mut [[Pair; 2]; CONSTANTS]| {
+            for (b, carry) in b.iter_mut().zip(carry) {
+                let reduced = *b - carry[0];
+                *carry = [one * reduced + carry[1], two * reduced];
+                *b = reduced * inverse;
             }
+        };
+        for k in 0..n - 2 - middle {
+            if k < middle {
+                reduce(factors[k], &mut right[k], &mut top);
+            }
+            reduce(factors[n - 1 - k], &mut right[n - 1 - k], &mut bottom);
         }
-        let (mut x_1, mut x_2) = ([Pair::both(0.0); CONSTANTS], [Pair::both(0.0); CONSTANTS]);
-        for (right, [_, one, two]) in d.right.iter_mut().zip(&self.factors).rev() {
+        for (top, bottom) in top.iter_mut().zip(&bottom) {
+            top[0] = top[0] + bottom[1];
+        }
+        reduce(factors[middle], &mut right[middle], &mut top);
+        for (top, bottom) in top.iter_mut().zip(&bottom) {
+            top[0] = top[0] + bottom[0];
+        }
+        reduce(factors[middle + 1], &mut right[middle + 1], &mut top);
+        let zero = [Pair::both(0.0); CONSTANTS];
+        let (mut x, mut y) = ((right[middle + 1], zero), (zero, zero));
+        let back = |[_, one, two]: [Pair; 3],
+                    b: &mut [Pair; CONSTANTS],
+                    near: &mut ([Pair; CONSTANTS], [Pair; CONSTANTS])| {
             for k in 0..CONSTANTS {
-                let x = right[k] - *two * x_2[k] - *one * x_1[k];
-                right[k] = x;
-                (x_2[k], x_1[k]) = (x_1[k], x);
+                let x = b[k] - two * near.1[k] - one * near.0[k];
+                b[k] = x;
+                (near.1[k], near.0[k]) = (near.0[k], x);
             }
+        };
+        back(factors[middle], &mut right[middle], &mut x);
+        y.0 = right[middle + 1];
+        y.1 = right[middle];
+        for k in 0..n - 2 - middle {
+            if k < middle {
+                back(factors[middle - 1 - k], &mut right[middle - 1 - k], &mut x);
+            }
+            back(factors[middle + 2 + k], &mut right[middle + 2 + k], &mut y);
         }
     }
 
@@ -681,6 +749,65 @@ impl Workspace {
             }
         }
         (sum, if largest > 0.0 { change / largest } else { change })
+    }
+}
+
+/// Returns force and stiffness of a pin at this gap.
+#[inline(always)]
+fn pin_support(supports: &Supports<'_>, gap_mm: Pair) -> (Pair, Pair) {
+    let (a, b) = (supports.pin(gap_mm.lane(0)), supports.pin(gap_mm.lane(1)));
+    (Pair::new([a.force_n, b.force_n]), Pair::new([a.stiffness_n_mm, b.stiffness_n_mm]))
+}
+
+/// Returns the first of both rows at which the eliminations from both ends meet.
+fn middle_row(rows: usize) -> usize {
+    (rows - 2) / 2
+}
+
+/// Solves for the unknowns from the middle to both ends.
+#[inline(always)]
+fn substitute_back(factors: &[[Pair; 3]], right: &[Pair], x: &mut [Pair]) {
+    let n = x.len();
+    let (factors, right) = (&factors[..n], &right[..n]);
+    let middle = middle_row(n);
+    let at = |i: usize, near: Pair, far: Pair| right[i] - factors[i][2] * far - factors[i][1] * near;
+    x[middle + 1] = right[middle + 1];
+    x[middle] = at(middle, x[middle + 1], Pair::both(0.0));
+    let (mut up, mut down) = ((x[middle], x[middle + 1]), (x[middle + 1], x[middle]));
+    for k in 0..n - 2 - middle {
+        if k < middle {
+            let i = middle - 1 - k;
+            x[i] = at(i, up.0, up.1);
+            up = (x[i], up.0);
+        }
+        let i = middle + 2 + k;
+        x[i] = at(i, down.0, down.1);
+        down = (x[i], down.0);
+    }
+}
+
+/// Elimination of rows of a symmetric matrix of half-bandwidth 2 from one end: what remains to be
+/// subtracted from the next row and from the one after it.
+#[derive(Clone, Copy, Default)]
+struct Elimination {
+    diagonal: [Pair; 2],
+    /// Of the entry that couples both rows.
+    first: Pair,
+    right: [Pair; 2],
+}
+
+impl Elimination {
+    /// Eliminates a row with its couplings to the next rows. Returns the inverse pivot, the factors
+    /// of both couplings, and the right side over the pivot.
+    #[inline(always)]
+    fn eliminate(&mut self, diagonal: Pair, first: Pair, second: Pair, b: Pair) -> ([Pair; 3], Pair) {
+        let inverse = Pair::both(1.0) / (diagonal - self.diagonal[0]);
+        let (first, b) = (first - self.first, b - self.right[0]);
+        let (one, two) = (first * inverse, second * inverse);
+        self.diagonal = [one * first + self.diagonal[1], two * second];
+        self.first = one * second;
+        self.right = [one * b + self.right[1], two * b];
+        ([inverse, one, two], b * inverse)
     }
 }
 

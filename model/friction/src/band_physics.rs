@@ -7,6 +7,7 @@ use crate::bed::{Bed, OutsidePins};
 use crate::contact::Contact;
 use crate::deviation::{Deviation, deviations_from, published_rig};
 use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
+use crate::reference::reference_friction_n;
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
 
@@ -92,7 +93,7 @@ impl BandPhysics {
         let own = here.as_ref().ok().map(|here| here.friction_n.as_slice());
         let deviations = deviations_from(contact, &load_n, own);
         let rig = published_rig(contact).filter(|_| !deviations.is_empty()).map(|rig| RigPhysics {
-            friction_n: friction(&rig, &load_n),
+            friction_n: reference_friction_n(&rig, &load_n),
             free_n: friction_with_free_spans(&rig, &load_n),
             contact: rig,
         });
@@ -111,15 +112,11 @@ fn friction_n(states: &[SwitchState]) -> Vec<f64> {
     states.iter().map(|s| s.friction_n).collect()
 }
 
-fn friction(contact: &Contact, load_n: &[f64]) -> Result<Vec<f64>, PhysicsError> {
-    PhysicsSwitch::new(contact, Constants::published()).states(load_n).map(|states| friction_n(&states))
-}
-
 /// Computes friction by the second likely hypothesis about the tendon's path, for pins on silicone.
 fn friction_with_free_spans(contact: &Contact, load_n: &[f64]) -> Option<Vec<f64>> {
     if contact.substrate() == Substrate::Abs || contact.all_pins().count() == 0 {
         return None;
     }
     let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..*contact.bed() };
-    friction(&contact.clone().with_bed(free), load_n).ok()
+    reference_friction_n(&contact.clone().with_bed(free), load_n).ok()
 }

@@ -8,6 +8,7 @@ use crate::contact::Contact;
 use crate::pattern::PinPattern;
 use crate::physics::{Constants, PhysicsSwitch};
 use crate::published;
+use crate::reference::reference_friction_n;
 use crate::sort::sort_by_number;
 use crate::substrate::Substrate;
 
@@ -153,8 +154,8 @@ pub(crate) fn deviations_from(contact: &Contact, loads_n: &[f64], here_n: Option
         return Vec::new();
     }
     let logs = |contact: &Contact| -> Option<Vec<f64>> {
-        let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok()?;
-        Some(states.iter().map(|s| libm::log(s.friction_n)).collect())
+        let friction_n = reference_friction_n(contact, loads_n).ok()?;
+        Some(friction_n.into_iter().map(libm::log).collect())
     };
     let here: Option<Vec<f64>> = here_n.map(|all| all.iter().map(|d| libm::log(*d)).collect());
     let mut all: Vec<Deviation> = differing

@@ -116,6 +116,7 @@ mod prediction;
 #[cfg(test)]
 mod prediction_tests;
 pub mod published;
+mod reference;
 mod sort;
 mod status;
 mod substrate;

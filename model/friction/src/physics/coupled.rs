@@ -183,7 +183,7 @@ impl Workspace {
         wrap_rad: f64,
         load_n: f64,
     ) -> Option<Exponents> {
-        self.extrapolate(supports.bed, load_n);
+        self.extrapolate(supports, wrap_rad, load_n);
         let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
         let (mut unbalanced_before, mut change_before) = (f64::INFINITY, f64::INFINITY);
         for sweep in 0..MAX_SWEEPS {
@@ -258,13 +258,12 @@ impl Workspace {
     }
 
     /// Sets gap and tension to those expected at `load_n`, by a polynomial through the last states.
-    fn extrapolate(&mut self, bed: &Bed, load_n: f64) {
+    fn extrapolate(&mut self, supports: &Supports<'_>, wrap_rad: f64, load_n: f64) {
         let known = self.known;
         let Some(weights) = (1..=known).rev().find_map(|order| weights(&self.history[..order], load_n))
         else {
-            // Without a state: the tendon on silicone without pins.
-            let pressed = -load_n / (bed.stiffness_n_mm2() * bed.axis_radius_mm());
-            self.gap_mm.fill(Pair::both(pressed));
+            let gap_mm = self.guessed_gap_mm(supports, wrap_rad, load_n);
+            self.gap_mm.fill(Pair::both(gap_mm));
             self.tension_n.fill(Pair::both(load_n));
             return;
         };
@@ -278,6 +277,21 @@ impl Workspace {
             let last = &self.history[0];
             self.gap_mm.copy_from_slice(&last.gap_mm);
             self.tension_n.iter_mut().zip(&last.ratio).for_each(|(t, ratio)| *t = *ratio * load_n);
+        }
+    }
+
+    /// Returns a gap without a similar state: that of pins that carry the whole load, or of the
+    /// tendon on silicone without pins if they sink flush.
+    fn guessed_gap_mm(&self, supports: &Supports<'_>, wrap_rad: f64, load_n: f64) -> f64 {
+        let bed = supports.bed;
+        let flush_n = supports.flush_force_n * self.pins.len() as f64;
+        // Of N = N0 (1 + b) x/(1 + b x).
+        let share = load_n * wrap_rad / flush_n;
+        let sunk = share / (1.0 + bed.softening * (1.0 - share));
+        if share < 1.0 {
+            bed.protrusion_mm() * (1.0 - sunk)
+        } else {
+            -load_n / (bed.stiffness_n_mm2() * bed.axis_radius_mm())
         }
     }
 

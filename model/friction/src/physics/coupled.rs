@@ -17,8 +17,8 @@ use crate::bed::Bed;
 
 /// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
 const MAX_SWEEPS: usize = 24;
-/// Largest relative error of the tension, estimated from its last changes.
-const TENSION_ERROR: f64 = 5e-8;
+/// Largest relative error of a friction exponent, estimated from the last changes of the tension.
+const EXPONENT_ERROR: f64 = 2e-7;
 /// Assumed ratio of a change of the tension to the change before, where it is not known.
 const UNKNOWN_RATE: f64 = 0.1;
 /// Least such ratio; usual are 0.005 to 0.1.
@@ -83,6 +83,8 @@ pub(super) struct Exponents {
 /// once for all loads.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
+    /// Largest relative error of a friction exponent.
+    pub(super) exponent_error: f64,
     nodes: Vec<Node>,
     pins: Vec<usize>,
     /// States at the loads before, the last one first.
@@ -150,6 +152,7 @@ impl Workspace {
         let (zeros, pins) = (vec![Pair::both(0.0); n], vec![Pair::both(0.0); grid.pins.len()]);
         let state = State { load_n: 0.0, gap_mm: zeros.clone(), ratio: zeros.clone() };
         Self {
+            exponent_error: EXPONENT_ERROR,
             nodes,
             pins: grid.pins.clone(),
             history: std::array::from_fn(|_| state.clone()),
@@ -211,7 +214,9 @@ impl Workspace {
                 // The secant hides the rate of the integrations.
                 _ => (change / change_before).max(UNKNOWN_RATE),
             };
-            if unbalanced <= 1.0 && rate * change <= TENSION_ERROR {
+            let total = exponents.pins + exponents.silicone;
+            let least_exponent = total.lane(0).min(total.lane(1));
+            if unbalanced <= 1.0 && rate * change <= self.exponent_error * least_exponent {
                 self.remember(load_n);
                 return Some(exponents);
             }

@@ -113,6 +113,14 @@ impl PhysicsSwitch {
         (!is_rigid && !is_bare).then(|| Workspace::new(&self.supports()))
     }
 
+    /// Computes the friction at one load with this relative error of the exponents.
+    #[cfg(test)]
+    pub(super) fn precise_friction_n(&self, load_n: f64, exponent_error: f64) -> Result<f64, PhysicsError> {
+        let mut workspace = self.workspace();
+        workspace.iter_mut().for_each(|workspace| workspace.exponent_error = exponent_error);
+        Ok(self.state_from(load_n, workspace.as_mut())?.0.friction_n)
+    }
+
     /// Computes the friction exponents at a load, from the states at the loads before.
     fn exponents(&self, load_n: f64, workspace: Option<&mut Workspace>) -> Result<Exponents, PhysicsError> {
         let wrap_rad = self.contact.wrap_rad();

@@ -27,6 +27,10 @@ const LEAST_RATE: f64 = 0.02;
 const ACCELERATED_BELOW: f64 = 0.02;
 /// Largest step of the secant.
 const MAX_SECANT: f64 = 0.5;
+/// Ratio of unbalanced forces of successive sweeps above which the next step is searched.
+const PROGRESS: f64 = 0.1;
+/// Number of sweeps after which every step is searched.
+const MAX_PLAIN_SWEEPS: usize = 4;
 /// The line search ends when the slope of the energy is below this share of its initial value.
 const FLAT: f64 = 0.5;
 /// Largest number of cuts of a step.
@@ -39,7 +43,7 @@ const HISTORY: usize = 3;
 const TINY: f64 = 2e-3;
 /// Largest change of a derivative of the log tension in the last pass, relative to the largest
 /// derivative.
-const DERIVATIVE_TOLERANCE: f64 = 1e-9;
+const DERIVATIVE_TOLERANCE: f64 = 1e-8;
 /// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
 const MAX_PASSES: usize = 60;
 /// Number of material constants.
@@ -60,6 +64,20 @@ struct Node {
     string_load: f64,
     /// Stiffness of the silicone, N/mm.
     silicone_n_mm: f64,
+}
+
+impl Node {
+    /// Returns the diagonal entry of string and bending, without the elements on both sides.
+    #[inline(always)]
+    fn diagonal(&self, bending: Pair, tension: Pair) -> Pair {
+        bending * self.bending[0] + tension * self.string
+    }
+
+    /// Returns the linear term of string and bending.
+    #[inline(always)]
+    fn load(&self, bending: Pair, tension: Pair) -> Pair {
+        bending * self.bending_load + tension * self.string_load
+    }
 }
 
 /// State of the tendon at one load, in both directions.
@@ -188,7 +206,8 @@ impl Workspace {
     ) -> Option<Exponents> {
         self.extrapolate(supports, wrap_rad, load_n);
         let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
-        let (mut unbalanced_before, mut change_before) = (f64::INFINITY, f64::INFINITY);
+        let (mut unbalanced_before, mut unbalanced_before_that) = (f64::INFINITY, f64::INFINITY);
+        let mut change_before = f64::INFINITY;
         for sweep in 0..MAX_SWEEPS {
             let bending = self.bending_n_mm2(supports.bed);
             let rc = supports.bed.axis_radius_mm();
@@ -199,7 +218,14 @@ impl Workspace {
                 return None;
             }
             // Active sets can alternate; a search along the step prevents this.
-            let is_far = (sweep == 0 && self.known == 0) || (sweep > 1 && unbalanced_before > 1.0);
+            let is_far = match sweep {
+                0 => self.known == 0,
+                1 => false,
+                _ => {
+                    let is_slow = !(unbalanced_before < PROGRESS * unbalanced_before_that);
+                    unbalanced_before > 1.0 && (sweep >= MAX_PLAIN_SWEEPS || is_slow)
+                }
+            };
             let unbalanced = self.take_step(supports, tolerance_n, is_far);
             let turned = self.turned();
             if !turned.all(|t| t > 0.0) {
@@ -224,7 +250,8 @@ impl Workspace {
                 return None;
             }
             self.accelerate(sweep > 0 && change < ACCELERATED_BELOW);
-            (unbalanced_before, change_before) = (unbalanced, change);
+            (unbalanced_before_that, unbalanced_before) = (unbalanced_before, unbalanced);
+            change_before = change;
         }
         None
     }
@@ -322,9 +349,7 @@ impl Workspace {
         self.pin_load.fill(Pair::both(0.0));
         for (k, &node) in self.pins.iter().enumerate() {
             let gap = self.gap_mm[node];
-            let at = gap.numbers().map(|u| supports.pin(u));
-            let (force, stiffness) =
-                (Pair::new(at.map(|s| s.force_n)), Pair::new(at.map(|s| s.stiffness_n_mm)));
+            let (force, stiffness) = pin_support(supports, gap);
             self.spring[node] = self.spring[node] + stiffness;
             self.pin_load[node] = self.pin_load[node] + force + stiffness * gap;
             (self.pin_n[k], self.pin_n_mm[k]) = (force, stiffness);
@@ -343,40 +368,37 @@ impl Workspace {
         let (spring, pin_load) = (&self.spring[..n], &self.pin_load[..n]);
         let (factors, right) = (&mut self.factors[..n], &mut self.right[..n]);
         let element = |i: usize| (tension[i] + tension[(i + 1).min(n - 1)]) * (0.5 * nodes[i].per_element_mm);
-        // Diagonal and right side of a row, from the elements on both sides.
-        let row = |i: usize, before: Pair, after: Pair| {
-            let (node, t) = (&nodes[i], tension[i]);
-            (
-                bending * node.bending[0] + before + after + t * node.string + spring[i],
-                bending * node.bending_load + t * node.string_load + pin_load[i],
-            )
-        };
         let (mut top, mut bottom) = (Elimination::default(), Elimination::default());
         let (mut above, mut below) = (Pair::both(0.0), Pair::both(0.0));
         for k in 0..n - 2 - middle {
             if k < middle {
                 let i = k;
                 let after = element(i);
-                let (diagonal, b) = row(i, above, after);
+                let diagonal = nodes[i].diagonal(bending, tension[i]) + above + after + spring[i];
+                let b = nodes[i].load(bending, tension[i]) + pin_load[i];
                 let first = bending * nodes[i].bending[1] - after;
                 (factors[i], right[i]) = top.eliminate(diagonal, first, bending * nodes[i].bending[2], b);
                 above = after;
             }
             let i = n - 1 - k;
             let before = element(i - 1);
-            let (diagonal, b) = row(i, before, below);
+            let diagonal = nodes[i].diagonal(bending, tension[i]) + before + below + spring[i];
+            let b = nodes[i].load(bending, tension[i]) + pin_load[i];
             let first = bending * nodes[i - 1].bending[1] - before;
             (factors[i], right[i]) = bottom.eliminate(diagonal, first, bending * nodes[i - 2].bending[2], b);
             below = before;
         }
         let between = element(middle);
-        let (diagonal, b) = row(middle, above, between);
+        let diagonal = nodes[middle].diagonal(bending, tension[middle]) + above + between + spring[middle];
+        let b = nodes[middle].load(bending, tension[middle]) + pin_load[middle];
         top.diagonal[0] = top.diagonal[0] + bottom.diagonal[1];
         top.first = top.first + bottom.first;
         top.right[0] = top.right[0] + bottom.right[1];
         let first = bending * nodes[middle].bending[1] - between;
         (factors[middle], right[middle]) = top.eliminate(diagonal, first, Pair::both(0.0), b);
-        let (diagonal, b) = row(middle + 1, between, below);
+        let diagonal =
+            nodes[middle + 1].diagonal(bending, tension[middle + 1]) + between + below + spring[middle + 1];
+        let b = nodes[middle + 1].load(bending, tension[middle + 1]) + pin_load[middle + 1];
         top.diagonal[0] = top.diagonal[0] + bottom.diagonal[0];
         top.right[0] = top.right[0] + bottom.right[0];
         (factors[middle + 1], right[middle + 1]) =
@@ -389,7 +411,15 @@ impl Workspace {
     /// Shortens the step to the next gap to an approximate minimum of the energy along it. Returns
     /// whether it did so.
     fn shorten_step(&mut self, supports: &Supports<'_>) -> bool {
-        let shares = [self.step_share(supports, 0), self.step_share(supports, 1)];
+        self.crossing.clear();
+        for (i, (from, to)) in self.gap_mm.iter().zip(&self.next_gap_mm).enumerate() {
+            let [a, b] = [0, 1].map(|lane| (from.lane(lane) < 0.0) != (to.lane(lane) < 0.0));
+            if a | b {
+                self.crossing.push(i);
+            }
+        }
+        let falling = self.slope_at_start().numbers();
+        let shares = [self.step_share(supports, falling[0], 0), self.step_share(supports, falling[1], 1)];
         if shares == [1.0; 2] {
             return false;
         }
@@ -399,35 +429,36 @@ impl Workspace {
         true
     }
 
-    /// Returns the share of the step of one direction at which the slope of the energy is small.
-    fn step_share(&mut self, supports: &Supports<'_>, lane: usize) -> f64 {
+    /// Returns the slope of the energy along the step at its start, from the factors of the
+    /// stiffness: `-s'Ks`.
+    fn slope_at_start(&self) -> Pair {
         let n = self.nodes.len();
         let middle = middle_row(n);
-        let step = |i: usize| self.next_gap_mm[i].lane(lane) - self.gap_mm[i].lane(lane);
-        // The slope at the start, from the factors of the stiffness: -s'Ks.
-        let mut falling = 0.0;
-        let [mut near, mut far] = [step(middle + 1), 0.0];
+        let step = |i: usize| self.next_gap_mm[i] - self.gap_mm[i];
+        let mut slope = Pair::both(0.0);
+        let (mut near, mut far) = (step(middle + 1), Pair::both(0.0));
         for i in (0..=middle).rev() {
-            let [inverse, one, two] = self.factors[i].map(|f| f.lane(lane));
+            let [inverse, one, two] = self.factors[i];
             let here = step(i);
             let x = here + one * near + two * far;
-            falling -= x * x / inverse;
-            [near, far] = [here, near];
+            slope = slope - x * x / inverse;
+            (near, far) = (here, near);
         }
-        [near, far] = [0.0, 0.0];
+        (near, far) = (Pair::both(0.0), Pair::both(0.0));
         for i in middle + 1..n {
-            let [inverse, one, two] = self.factors[i].map(|f| f.lane(lane));
+            let [inverse, one, two] = self.factors[i];
             let here = step(i);
             let x = here + one * near + two * far;
-            falling -= x * x / inverse;
-            [near, far] = [here, if i == middle + 1 { step(middle) } else { near }];
+            slope = slope - x * x / inverse;
+            (near, far) = (here, if i == middle + 1 { step(middle) } else { near });
         }
-        self.crossing.clear();
-        for (i, (from, to)) in self.gap_mm.iter().zip(&self.next_gap_mm).enumerate() {
-            if (from.lane(lane) < 0.0) != (to.lane(lane) < 0.0) {
-                self.crossing.push(i);
-            }
-        }
+        slope
+    }
+
+    /// Returns the share of the step of one direction at which the slope of the energy is small;
+    /// `falling` is the slope at its start.
+    fn step_share(&self, supports: &Supports<'_>, falling: f64, lane: usize) -> f64 {
+        let step = |i: usize| self.next_gap_mm[i].lane(lane) - self.gap_mm[i].lane(lane);
         let slope = |share: f64| {
             let mut missed = 0.0;
             for &i in &self.crossing {

@@ -10,6 +10,9 @@
 //! function theorem): the factors of the stiffness matrix are computed once, and every pass of the
 //! fixed point over shape and tension is a back-substitution.
 
+// A constant is the index into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
 use super::constants::Constants;
 use super::equilibrium::{BALANCE, Supports};
 use super::pair::Pair;
@@ -45,7 +48,7 @@ const TINY: f64 = 2e-3;
 /// derivative.
 const DERIVATIVE_TOLERANCE: f64 = 1e-8;
 /// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
-const MAX_PASSES: usize = 60;
+pub(super) const MAX_PASSES: usize = 60;
 /// Number of material constants.
 pub(super) const CONSTANTS: usize = 3;
 
@@ -222,7 +225,7 @@ impl Workspace {
                 0 => self.known == 0,
                 1 => false,
                 _ => {
-                    let is_slow = !(unbalanced_before < PROGRESS * unbalanced_before_that);
+                    let is_slow = unbalanced_before >= PROGRESS * unbalanced_before_that;
                     unbalanced_before > 1.0 && (sweep >= MAX_PLAIN_SWEEPS || is_slow)
                 }
             };

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::constants::Constants;
-use super::coupled::{Exponents, Workspace};
+use super::coupled::{Exponents, MAX_PASSES, Workspace};
 use super::equilibrium::Supports;
 use super::error::PhysicsError;
 use super::grid::{self, Grid};
@@ -212,7 +212,7 @@ impl PhysicsSwitch {
         let of_exponents = match workspace.filter(|_| state.load_n > 0.0) {
             Some(workspace) => workspace
                 .derivatives(&self.supports(), &self.constants, wrap_rad)
-                .ok_or(PhysicsError::NoSupport)?,
+                .ok_or(PhysicsError::TensionNotConverged { load_n: state.load_n, iterations: MAX_PASSES })?,
             None if self.contact.substrate() == Substrate::Abs => {
                 let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
                 let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();

@@ -1,14 +1,10 @@
 //! The variants in plots and page: an evenly spaced sample of the sweep, small enough for a
 //! browser.
 
-use std::collections::HashMap;
-
 use serde::Serialize;
 
-use super::prediction_cache::PredictionKey;
 use super::table::{Cell, Row, Schema};
 use super::variant::Variants;
-use pinswitch_friction::predict;
 use pinswitch_switch::design::Design;
 
 /// Most variants in the gallery; of a larger sweep, every second, third, ... one.
@@ -93,13 +89,64 @@ impl Glyph {
     }
 }
 
-/// A curve in the gallery.
+/// Curve and drawing of a variant in the gallery.
 #[derive(Clone, Debug)]
-struct ShownCurve {
-    /// Smallest and largest load.
+pub(super) struct Sketch {
+    /// Smallest and largest load, N.
     loads_n: [f64; 2],
-    /// Friction at evenly spaced loads.
+    /// Friction at evenly spaced loads, N.
     friction_n: Vec<f64>,
+    glyph: Glyph,
+}
+
+impl Sketch {
+    /// Creates the sketch of variant `index` from the bytes of its curve's table; `None` if the
+    /// variant is not in the gallery.
+    pub(super) fn new(variants: &Variants, index: u64, curve: &[u8]) -> Option<Self> {
+        if !index.is_multiple_of(every(variants)) {
+            return None;
+        }
+        // Building the design again is cheaper than keeping or reading what was made.
+        let design = Design::new(variants.get(index).configuration).ok()?;
+        let (load_n, friction_n) = written_curve(curve)?;
+        let friction = &design.configuration().friction;
+        let loads_n = [friction.load_min_n, friction.load_max_n].map(rounded);
+        #[allow(clippy::cast_precision_loss)]
+        let at = |i: usize| loads_n[0] + (loads_n[1] - loads_n[0]) * i as f64 / (POINTS - 1) as f64;
+        let friction_n = (0..POINTS).map(|i| rounded(interpolated(&load_n, &friction_n, at(i)))).collect();
+        Some(Self { loads_n, friction_n, glyph: Glyph::from_design(&design) })
+    }
+}
+
+/// Returns loads and friction of a curve's table, N; `None` if it is malformed.
+fn written_curve(bytes: &[u8]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let mut lines = std::str::from_utf8(bytes).ok()?.lines();
+    let names: Vec<&str> = lines.next()?.split(',').collect();
+    let column = |name: &str| names.iter().position(|n| *n == name);
+    let (load, friction) = (column("load_N")?, column("friction_N")?);
+    let number = |line: &str, column: usize| line.split(',').nth(column)?.parse::<f64>().ok();
+    let rows: Option<Vec<_>> =
+        lines.map(|line| Some((number(line, load)?, number(line, friction)?))).collect();
+    Some(rows?.into_iter().unzip())
+}
+
+/// Returns `column` at `load` by the polynomial through the four nearest loads, or all of fewer.
+fn interpolated(loads: &[f64], column: &[f64], load: f64) -> f64 {
+    const NEAREST: usize = 4;
+    let count = loads.len().min(NEAREST);
+    let above = loads.partition_point(|l| *l < load);
+    let first = above.saturating_sub(NEAREST / 2).min(loads.len() - count);
+    let (loads, column) = (&loads[first..first + count], &column[first..first + count]);
+    let weight = |i: usize| {
+        let others = loads.iter().enumerate().filter(|(j, _)| *j != i);
+        others.map(|(_, other)| (load - other) / (loads[i] - other)).product::<f64>()
+    };
+    column.iter().enumerate().map(|(i, value)| weight(i) * value).sum()
+}
+
+/// Returns every how many variants one is in the gallery.
+fn every(variants: &Variants) -> u64 {
+    variants.count().div_ceil(MAX_SHOWN).max(1)
 }
 
 /// The variants in plots and page.
@@ -113,8 +160,6 @@ pub(super) struct Gallery {
     pub every: u64,
     /// The variants in the gallery.
     pub shown: Vec<GalleryEntry>,
-    /// Curves by their inputs.
-    curves: HashMap<PredictionKey, ShownCurve>,
 }
 
 impl Gallery {
@@ -123,24 +168,19 @@ impl Gallery {
         Self {
             fields: variants.fields().map(|f| f.path()).collect(),
             of: variants.count(),
-            every: variants.count().div_ceil(MAX_SHOWN).max(1),
+            every: every(variants),
             shown: Vec::new(),
-            curves: HashMap::new(),
         }
     }
 
-    /// Adds variant `index` if it is in the sample.
-    pub(super) fn add(&mut self, variants: &Variants, index: u64, schema: &Schema, row: &Row) {
+    /// Adds variant `index` if it is in the sample; a variant that was made has a sketch.
+    pub(super) fn add(&mut self, index: u64, schema: &Schema, row: &Row, sketch: Option<Sketch>) {
         if !index.is_multiple_of(self.every) {
             return;
         }
         let cell = |name: &str| schema.cell(row, name);
         let text = |name: &str| cell(name).text().map(str::to_owned);
         let number = |name: &str| cell(name).number().map(rounded);
-        let made = cell("status").text() == Some("made");
-        // Building the design again is cheaper than keeping or reading what was made.
-        let design = made.then(|| Design::new(variants.get(index).configuration).ok()).flatten();
-        let curve = design.as_ref().map(|design| self.curve(design));
         let settings = self.fields.iter().map(|name| match cell(name) {
             Cell::Text(text) => SettingValue::Text(text.clone()),
             other => {
@@ -160,31 +200,16 @@ impl Gallery {
             threshold_n: number("threshold_n"),
             trust: text("friction_trust"),
             printed_g: number("printed_mass_g"),
-            loads_n: curve.as_ref().map(|curve| curve.loads_n),
-            curve_n: curve.map(|curve| curve.friction_n).unwrap_or_default(),
-            glyph: design.as_ref().map(Glyph::from_design),
+            loads_n: sketch.as_ref().map(|sketch| sketch.loads_n),
+            curve_n: sketch.as_ref().map(|sketch| sketch.friction_n.clone()).unwrap_or_default(),
+            glyph: sketch.map(|sketch| sketch.glyph),
         });
-    }
-
-    fn curve(&mut self, design: &Design) -> ShownCurve {
-        let entry = self.curves.entry(PredictionKey::from_design(design));
-        entry.or_insert_with(|| shown_curve(design)).clone()
     }
 
     /// Returns the variants with a curve.
     pub(super) fn made(&self) -> impl Iterator<Item = &GalleryEntry> {
         self.shown.iter().filter(|s| s.loads_n.is_some())
     }
-}
-
-fn shown_curve(design: &Design) -> ShownCurve {
-    let f = &design.configuration().friction;
-    let ends = [f.load_min_n, f.load_max_n];
-    #[allow(clippy::cast_precision_loss)]
-    let loads: Vec<_> =
-        (0..POINTS).map(|i| ends[0] + (ends[1] - ends[0]) * i as f64 / (POINTS - 1) as f64).collect();
-    let curve = predict(design.contact(), &loads);
-    ShownCurve { loads_n: ends.map(rounded), friction_n: curve.friction_n.into_iter().map(rounded).collect() }
 }
 
 /// Rounds to a tenth of a millinewton, or of a micrometre, for display.

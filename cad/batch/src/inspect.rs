@@ -11,7 +11,7 @@ use super::checksum::has_valid_checksum;
 use super::content::content_path;
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
-use super::make::variant_folder;
+use super::make::{CURVE, variant_folder};
 
 /// The parts of a variant's manifest that are read.
 #[derive(Debug, Deserialize)]
@@ -40,6 +40,15 @@ pub(super) struct ListedFile {
     content: Option<String>,
 }
 
+/// The result of comparing the files of a variant with its manifest.
+#[derive(Debug)]
+pub(super) struct Inspection<'l> {
+    /// The first file that is missing or has changed.
+    pub(super) damaged: Option<&'l str>,
+    /// The bytes of the curve's table, if it is intact.
+    pub(super) curve: Option<Vec<u8>>,
+}
+
 /// Checks the variants of one destination; a file that many variants share is read once.
 pub(super) struct Inspector<'a> {
     destination: &'a Destination,
@@ -65,22 +74,29 @@ impl<'a> Inspector<'a> {
         }))
     }
 
-    /// Returns the first file of the variant that is missing or has changed.
+    /// Compares the files of the variant with its manifest, up to the first that is missing or has
+    /// changed.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub(super) fn damaged<'l>(
+    pub(super) fn inspect<'l>(
         &self,
         id: &str,
         listing: &'l VariantListing,
-    ) -> Result<Option<&'l str>, DestinationError> {
+    ) -> Result<Inspection<'l>, DestinationError> {
         let folder = variant_folder(id);
+        let mut curve = None;
         for file in &listing.files {
-            if !self.is_intact(&folder, file)? {
-                return Ok(Some(&file.file));
+            if file.content.is_none() && file.file == CURVE {
+                curve = self.intact_bytes(&format!("{folder}/{}", file.file), file)?;
+                if curve.is_none() {
+                    return Ok(Inspection { damaged: Some(&file.file), curve });
+                }
+            } else if !self.is_intact(&folder, file)? {
+                return Ok(Inspection { damaged: Some(&file.file), curve });
             }
         }
-        Ok(None)
+        Ok(Inspection { damaged: None, curve })
     }
 
     fn is_intact(&self, folder: &str, file: &ListedFile) -> Result<bool, DestinationError> {
@@ -115,7 +131,13 @@ impl<'a> Inspector<'a> {
     }
 
     fn has_hash(&self, name: &str, file: &ListedFile) -> Result<bool, DestinationError> {
+        Ok(self.intact_bytes(name, file)?.is_some())
+    }
+
+    /// Returns the bytes of a file with the hash of its entry; `None` if it is missing or has
+    /// changed.
+    fn intact_bytes(&self, name: &str, file: &ListedFile) -> Result<Option<Vec<u8>>, DestinationError> {
         let bytes = self.destination.get(name)?;
-        Ok(bytes.is_some_and(|bytes| file.sha256 == hexadecimal(&Sha256::digest(&bytes))))
+        Ok(bytes.filter(|bytes| file.sha256 == hexadecimal(&Sha256::digest(bytes))))
     }
 }

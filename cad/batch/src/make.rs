@@ -10,7 +10,7 @@ use super::checksum::with_checksum;
 use super::constraint::Violation;
 use super::content::{ContentError, MeshMaker, PartStore, StoredPart, content_path};
 use super::destination::{Destination, DestinationError};
-use super::inspect::Inspector;
+use super::inspect::{Inspection, Inspector};
 use super::prediction_cache::{CachedPrediction, PredictionCache};
 use super::slicing::VariantSlicer;
 use super::variant::{Variant, Variants};
@@ -21,11 +21,11 @@ use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
-use pinswitch_switch::parts::{Part, fit_on_bed, printed};
+use pinswitch_switch::parts::{PRINTED_PARTS, Part, PrintedPart, fit_on_bed, printed};
 use pinswitch_switch::prediction::Prediction;
 
 /// File of a variant's curve.
-const CURVE: &str = "friction.csv";
+pub(super) const CURVE: &str = "friction.csv";
 /// File of its plot, in a sweep with plots.
 const FIGURE: &str = "friction.svg";
 
@@ -36,6 +36,8 @@ pub enum VariantOutcome {
     Made {
         /// The bytes of its manifest.
         manifest: Vec<u8>,
+        /// The bytes of the table of its curve.
+        curve: Vec<u8>,
         /// Whether an earlier run made it.
         reused: bool,
     },
@@ -180,17 +182,17 @@ impl<'a> VariantMaker<'a> {
     /// # Errors
     /// An error that would fail every other variant, too, such as a full disk.
     pub(super) fn make(&self, variant: &Variant) -> Result<VariantOutcome, DestinationError> {
+        if let Some(inspector) = &self.inspector
+            && let Some(made) = self.existing(inspector, variant)?
+        {
+            return Ok(made);
+        }
         let accepted = match accept(self.variants, variant, &self.predictions) {
             Ok(accepted) => accepted,
             Err(refusal) => return Ok(VariantOutcome::Refused(refusal)),
         };
-        if let Some(inspector) = &self.inspector
-            && let Some(manifest) = self.existing_manifest(inspector, variant, &accepted)?
-        {
-            return Ok(VariantOutcome::Made { manifest, reused: true });
-        }
         match self.build(variant, &accepted) {
-            Ok(manifest) => Ok(VariantOutcome::Made { manifest, reused: false }),
+            Ok((manifest, curve)) => Ok(VariantOutcome::Made { manifest, curve, reused: false }),
             Err(ContentError::Destination(e)) if e.is_fatal() => Err(e),
             Err(ContentError::Set(SetError::Build(error))) => {
                 // A part that cannot be built is the fault of a value, if another value makes it buildable.
@@ -203,7 +205,12 @@ impl<'a> VariantMaker<'a> {
         }
     }
 
-    fn build(&self, variant: &Variant, accepted: &AcceptedVariant) -> Result<Vec<u8>, ContentError> {
+    /// Makes the files of a variant, and returns the bytes of its manifest and of its curve.
+    fn build(
+        &self,
+        variant: &Variant,
+        accepted: &AcceptedVariant,
+    ) -> Result<(Vec<u8>, Vec<u8>), ContentError> {
         let AcceptedVariant { design, prediction, parts } = accepted;
         let stored: Vec<_> =
             parts.iter().map(|part| self.contents.store(part, design)).collect::<Result<_, _>>()?;
@@ -244,7 +251,8 @@ impl<'a> VariantMaker<'a> {
         }
         // The manifest comes last: a variant with a manifest is complete.
         self.destination.put(&format!("{folder}/manifest.json"), &bytes)?;
-        Ok(bytes)
+        let table = curve.files.iter().find(|(file, _)| file.name == CURVE);
+        Ok((bytes, table.map(|(file, _)| file.bytes.clone()).unwrap_or_default()))
     }
 
     /// Draws the plots of one variant; they contain its name.
@@ -257,14 +265,13 @@ impl<'a> VariantMaker<'a> {
         Ok(files)
     }
 
-    /// Returns the manifest of a variant of an earlier run, if it lists the files that this run
-    /// would make and all of them are unchanged.
-    fn existing_manifest(
+    /// Returns a variant of an earlier run, if its manifest lists the files that this run would make
+    /// and all of them are unchanged. That run has accepted the variant.
+    fn existing(
         &self,
         inspector: &Inspector<'_>,
         variant: &Variant,
-        accepted: &AcceptedVariant,
-    ) -> Result<Option<Vec<u8>>, DestinationError> {
+    ) -> Result<Option<VariantOutcome>, DestinationError> {
         let Some((bytes, listing)) = inspector.manifest(&variant.id)? else { return Ok(None) };
         if listing.batch.sweep_sha256 != self.sweep_sha256 || listing.batch.index != variant.index {
             return Ok(None);
@@ -273,24 +280,33 @@ impl<'a> VariantMaker<'a> {
         if self.slicer.is_some() && listing.print.is_none() {
             return Ok(None);
         }
-        let expected: BTreeSet<String> = accepted
-            .parts
+        let sweep = self.variants.sweep();
+        let is_made = |part: &&PrintedPart| {
+            sweep.parts.contains(&part.name) && (part.is_wanted)(&variant.configuration)
+        };
+        let expected: BTreeSet<String> = PRINTED_PARTS
             .iter()
+            .filter(is_made)
             .map(|part| format!("{}.stl", part.name))
             .chain([CURVE.to_owned()])
-            .chain(self.variants.sweep().plots.then(|| FIGURE.to_owned()))
+            .chain(sweep.plots.then(|| FIGURE.to_owned()))
             .collect();
         let listed: BTreeSet<String> = listing.files.iter().map(|file| file.file.clone()).collect();
-        let problem = if listed == expected {
-            inspector.damaged(&variant.id, &listing)?
+        let inspection = if listed == expected {
+            inspector.inspect(&variant.id, &listing)?
         } else {
-            Some("manifest.json")
+            Inspection { damaged: Some("manifest.json"), curve: None }
         };
-        if let Some(file) = problem {
-            log::warn!("{}: {file} is missing or has changed; the variant is made again", variant.id);
-            return Ok(None);
+        match inspection {
+            Inspection { damaged: None, curve: Some(curve) } => {
+                Ok(Some(VariantOutcome::Made { manifest: bytes, curve, reused: true }))
+            }
+            Inspection { damaged, .. } => {
+                let file = damaged.unwrap_or(CURVE);
+                log::warn!("{}: {file} is missing or has changed; the variant is made again", variant.id);
+                Ok(None)
+            }
         }
-        Ok(Some(bytes))
     }
 }
 

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use super::checksum::has_valid_checksum;
 use super::destination::{Destination, DestinationError};
 use super::diagnostics::diagnostic_error;
+use super::gallery::Sketch;
 use super::hexadecimal;
 use super::inspect::Inspector;
 use super::make::variant_folder;
@@ -18,7 +19,7 @@ use super::run::ShardStamp;
 use super::shard::Shard;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
-use super::table::{Row, Schema};
+use super::table::{Cell, Row, Schema};
 use super::table_files::{BatchTableError, read_rows};
 use super::tally::Tally;
 use super::variant::Variants;
@@ -183,7 +184,7 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
     let mut products = Products::new(&variants, target)?;
     let mut damaged: Vec<(String, String)> = Vec::new();
     for shard in &shards {
-        add_rows(shard, &mut products, &mut damaged)?;
+        add_rows(shard, &variants, &mut products, &mut damaged)?;
     }
     if let Some(error) = damage(&damaged) {
         return Err(error);
@@ -221,6 +222,7 @@ fn finished_shards(places: &[Destination], variants: u64) -> Result<Vec<Finished
 /// Adds the rows of a shard to the products, and its damaged files to `damaged`.
 fn add_rows(
     shard: &FinishedShard<'_>,
+    variants: &Variants,
     products: &mut Products<'_>,
     damaged: &mut Vec<(String, String)>,
 ) -> Result<(), MergeError> {
@@ -238,15 +240,15 @@ fn add_rows(
         if chunk.is_empty() {
             break;
         }
-        let files = parallel::try_map(&chunk, |row| damaged_file(&inspector, &schema, row))?;
-        damaged.extend(files.into_iter().flatten().map(|file| (shard.name(), file)));
-        for row in chunk {
+        let inspected = parallel::try_map(&chunk, |row| inspected(&inspector, variants, &schema, row))?;
+        for (row, variant) in chunk.into_iter().zip(inspected) {
+            damaged.extend(variant.damaged.map(|file| (shard.name(), file)));
             let index = expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
             #[allow(clippy::cast_precision_loss)]
             if schema.cell(&row, "index").number() != Some(index as f64) {
                 return Err(broken(format!("its table lacks variant {}", index + 1)));
             }
-            products.push(index, row)?;
+            products.push(index, row, variant.sketch)?;
         }
     }
     if expected.is_empty() {
@@ -270,23 +272,44 @@ fn damage(damaged: &[(String, String)]) -> Option<MergeError> {
     Some(MergeError::Broken { shard: shard.clone(), problem })
 }
 
-/// Returns the first file of a row's variant that is missing or changed.
-fn damaged_file(
+/// The inspected variant of a row.
+#[derive(Default)]
+struct InspectedVariant {
+    /// The first file that is missing or has changed.
+    damaged: Option<String>,
+    sketch: Option<Sketch>,
+}
+
+/// Compares the files of a row's variant with its manifest, and sketches its curve.
+fn inspected(
     inspector: &Inspector<'_>,
+    variants: &Variants,
     schema: &Schema,
     row: &Row,
-) -> Result<Option<String>, DestinationError> {
+) -> Result<InspectedVariant, DestinationError> {
     let text = |name: &str| schema.cell(row, name).text().unwrap_or_default();
     if text("status") != "made" {
-        return Ok(None);
+        return Ok(InspectedVariant::default());
     }
     let id = text("id");
-    let in_folder = |file: &str| Some(format!("{}/{file}", variant_folder(id)));
+    let damaged = |file: &str| InspectedVariant {
+        damaged: Some(format!("{}/{file}", variant_folder(id))),
+        sketch: None,
+    };
     let manifest = inspector.manifest(id)?;
     let unchanged =
         manifest.filter(|(bytes, _)| hexadecimal(&Sha256::digest(bytes)) == text("manifest_sha256"));
-    let Some((_, listing)) = unchanged else { return Ok(in_folder("manifest.json")) };
-    Ok(inspector.damaged(id, &listing)?.and_then(in_folder))
+    let Some((_, listing)) = unchanged else { return Ok(damaged("manifest.json")) };
+    let inspection = inspector.inspect(id, &listing)?;
+    if let Some(file) = inspection.damaged {
+        return Ok(damaged(file));
+    }
+    let index = match schema.cell(row, "index") {
+        Cell::Integer(index) => u64::try_from(*index).ok().filter(|index| *index < variants.count()),
+        _ => None,
+    };
+    let sketch = index.zip(inspection.curve).and_then(|(index, curve)| Sketch::new(variants, index, &curve));
+    Ok(InspectedVariant { damaged: None, sketch })
 }
 
 /// Reads the stamp that all places have in common.

@@ -10,7 +10,7 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::FileEntry;
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{OutputFile, SetError};
-use pinswitch_switch::prediction::{Prediction, predicted_curve};
+use pinswitch_switch::prediction::{PredictedCurve, Prediction};
 
 /// Predictions in the cache, about 15 kB each with their table.
 const CACHED_PREDICTIONS: usize = 64;
@@ -47,7 +47,7 @@ impl Hash for PredictionKey {
 /// The prediction for every design with one key; each step is computed on first use.
 #[derive(Default)]
 pub(super) struct CachedPrediction {
-    curve: OnceLock<FrictionCurve>,
+    curve: OnceLock<PredictedCurve>,
     shared: OnceLock<SharedCurve>,
 }
 
@@ -62,7 +62,11 @@ pub(super) struct SharedCurve {
 impl CachedPrediction {
     /// Returns the curve; `design` has the key of this prediction.
     pub(super) fn curve(&self, design: &Design) -> &FrictionCurve {
-        self.curve.get_or_init(|| predicted_curve(design))
+        &self.predicted(design).curve
+    }
+
+    fn predicted(&self, design: &Design) -> &PredictedCurve {
+        self.curve.get_or_init(|| PredictedCurve::of(design))
     }
 
     /// Returns the curve with its table; `design` has the key of this prediction.
@@ -73,7 +77,7 @@ impl CachedPrediction {
         if let Some(cached) = self.shared.get() {
             return Ok(cached);
         }
-        let prediction = Prediction::with_curve(design, self.curve(design).clone());
+        let prediction = Prediction::of_curve(design, self.predicted(design));
         let files = curve_files(design, &prediction, false)?;
         let with_entry = |file: OutputFile| {
             let entry = FileEntry::of(&file);
@@ -109,6 +113,7 @@ impl PredictionCache {
 mod tests {
     use super::*;
     use pinswitch_switch::config::{Configuration, assign};
+    use pinswitch_switch::prediction::predicted_curve;
 
     #[test]
     fn equal_contacts_share_a_prediction() {

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::diagnostics::diagnostic_error;
-use super::gallery::Gallery;
+use super::gallery::{Gallery, Sketch};
 use super::hexadecimal;
 use super::page::page;
 use super::plots::{curves_svg, threshold_svg};
@@ -124,13 +124,13 @@ impl<'a> Products<'a> {
         &self.schema
     }
 
-    /// Adds the row of the next variant.
+    /// Adds the row of the next variant, with its sketch if it was made and is in the gallery.
     ///
     /// # Errors
     /// A table that cannot be written, for example on a full disk.
-    pub(super) fn push(&mut self, index: u64, row: Row) -> Result<(), ProductError> {
+    pub(super) fn push(&mut self, index: u64, row: Row, sketch: Option<Sketch>) -> Result<(), ProductError> {
         self.count(&row);
-        self.gallery.add(self.variants, index, &self.schema, &row);
+        self.gallery.add(index, &self.schema, &row, sketch);
         self.table.push(row)?;
         Ok(())
     }

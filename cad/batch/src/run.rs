@@ -14,6 +14,7 @@ use super::checksum::with_checksum;
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::diagnostics::diagnostic_error;
+use super::gallery::Sketch;
 use super::make::{VariantMaker, VariantOutcome};
 use super::obstructions::check_paths;
 use super::parallel::{self, Pool};
@@ -217,10 +218,10 @@ pub fn run(
         let chunk = start..range.end.min(start + CHUNK_VARIANTS);
         let results =
             pool.install(|| make_chunk(chunk.clone(), variants, &maker, &schema, options, observer));
-        let finished = results.iter().filter(|r| matches!(r, VariantResult::Row(_))).count() as u64;
+        let finished = results.iter().filter(|r| matches!(r, VariantResult::Row(..))).count() as u64;
         for (index, result) in chunk.zip(results) {
             match result {
-                VariantResult::Row(row) => products.push(index, row)?,
+                VariantResult::Row(row, sketch) => products.push(index, row, sketch)?,
                 VariantResult::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
                 VariantResult::Fatal(source) => {
                     return Err(RunError::Destination { source, done: done + finished, of });
@@ -272,7 +273,7 @@ pub fn check_destination(
 
 /// The result of one variant of a chunk.
 enum VariantResult {
-    Row(Row),
+    Row(Row, Option<Sketch>),
     Failed { id: String, reason: Diagnostic },
     Fatal(DestinationError),
     NotStarted,
@@ -308,7 +309,14 @@ fn make_chunk(
             }
             Ok(outcome) => {
                 observer.variant_done(&outcome);
-                VariantResult::Row(schema.row(&variant, &outcome))
+                let sketch = match &outcome {
+                    // Only a whole batch has a gallery.
+                    VariantOutcome::Made { curve, .. } if options.shard.is_whole() => {
+                        Sketch::new(variants, index, curve)
+                    }
+                    _ => None,
+                };
+                VariantResult::Row(schema.row(&variant, &outcome), sketch)
             }
         }
     })

@@ -1,7 +1,10 @@
 //! Predicted friction curves of a design, by its law and by the other laws.
 
 use crate::design::Design;
-use pinswitch_friction::{FrictionCurve, Law, LawError, other_laws, predict, predict_by};
+use pinswitch_friction::{
+    BandPhysics, FrictionCurve, Law, LawError, other_laws_with_physics, predict, predict_by,
+    predict_with_physics,
+};
 
 /// Number of loads of the curves of other laws, enough for a line in a plot.
 const COMPARISON_POINTS: usize = 26;
@@ -29,7 +32,13 @@ pub struct Prediction {
 impl Prediction {
     /// Predicts the friction of a design by the default law.
     pub fn of(design: &Design) -> Self {
-        Self::with_curve(design, predicted_curve(design))
+        Self::of_curve(design, &PredictedCurve::of(design))
+    }
+
+    /// Adds the curves of the other laws to the curve of a design by the default law.
+    pub fn of_curve(design: &Design, predicted: &PredictedCurve) -> Self {
+        let PredictedCurve { curve, physics } = predicted;
+        Self::with_physics(design, curve.clone(), physics.as_ref())
     }
 
     /// Predicts the friction of a design by `law`.
@@ -42,8 +51,29 @@ impl Prediction {
 
     /// Adds the curves of the other laws to a curve, such as that of a calibrated model.
     pub fn with_curve(design: &Design, curve: FrictionCurve) -> Self {
-        let others = other_laws(curve.law, design.contact(), &spaced_loads_n(design, COMPARISON_POINTS));
+        Self::with_physics(design, curve, None)
+    }
+
+    fn with_physics(design: &Design, curve: FrictionCurve, physics: Option<&BandPhysics>) -> Self {
+        let loads_n = spaced_loads_n(design, COMPARISON_POINTS);
+        let others = other_laws_with_physics(curve.law, design.contact(), &loads_n, physics);
         Self { curve, others }
+    }
+}
+
+/// The curve of a design by the default law, with what the curves of the other laws share with it.
+#[derive(Clone, Debug)]
+pub struct PredictedCurve {
+    /// The curve.
+    pub curve: FrictionCurve,
+    physics: Option<BandPhysics>,
+}
+
+impl PredictedCurve {
+    /// Predicts the friction of a design by the default law.
+    pub fn of(design: &Design) -> Self {
+        let (curve, physics) = predict_with_physics(design.contact(), &loads_n(design));
+        Self { curve, physics }
     }
 }
 

@@ -8,12 +8,11 @@
 
 use serde::Serialize;
 
+use crate::band_physics::BandPhysics;
 use crate::band_source::{BandSource, NORMAL_95};
-use crate::bed::{Bed, OutsidePins};
 use crate::contact::Contact;
-use crate::deviation::{Deviation, deviations, published_rig};
-use crate::law::{Law, LawError, UncertainFriction};
-use crate::physics::{Constants, PhysicsSwitch};
+use crate::deviation::Deviation;
+use crate::law::{self, Law, LawError, UncertainFriction};
 use crate::published;
 use crate::status::{is_measured, layout_distance};
 use crate::substrate::Substrate;
@@ -68,9 +67,19 @@ impl Band {
     /// # Errors
     /// [`LawError`] if the law does not describe the contact.
     pub fn new(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
-        let load_n = spaced(loads_n);
-        let deviations = deviations(contact, &load_n);
-        let UncertainFriction { friction_n, mut sources } = law.uncertain_friction(contact, &load_n)?;
+        Self::from_physics(law, contact, &BandPhysics::new(contact, loads_n))
+    }
+
+    /// Computes the band of `law` for the contact of `physics`, at its loads.
+    ///
+    /// # Errors
+    /// [`LawError`] if the law does not describe the contact.
+    pub(crate) fn from_physics(law: Law, contact: &Contact, physics: &BandPhysics) -> Result<Self, LawError> {
+        let (load_n, deviations) = (physics.load_n.clone(), physics.deviations.clone());
+        let UncertainFriction { friction_n, mut sources } = match law {
+            Law::Physics => law::physics::with_uncertainty(physics.here.clone()?),
+            _ => law.uncertain_friction(contact, &load_n)?,
+        };
         for deviation in &deviations {
             sources.push(deviation_source(deviation, load_n.len()));
         }
@@ -91,12 +100,18 @@ impl Band {
         if let Some(source) = beyond_loads(&load_n) {
             sources.push(source);
         }
-        let rivals = rivals(law, contact, &load_n, &friction_n)?;
+        let own = physics.here.as_ref().ok().map(|here| here.friction_n.as_slice());
+        let rivals = rivals(law, contact, &load_n, &friction_n, (own, physics.free_n.as_deref()))?;
         // On another rig the rivals may agree by chance: the band is at least as wide as on the
         // published rig.
-        let on_published = match published_rig(contact).filter(|_| !deviations.is_empty()) {
+        let on_published = match &physics.rig {
             Some(rig) => {
-                self::rivals(law, &rig, &load_n, &law.friction_n(&rig, &load_n)?).unwrap_or_default()
+                let friction = match law {
+                    Law::Physics => rig.friction_n.clone()?,
+                    _ => law.friction_n(&rig.contact, &load_n)?,
+                };
+                let by_physics = (rig.friction_n.as_deref().ok(), rig.free_n.as_deref());
+                self::rivals(law, &rig.contact, &load_n, &friction, by_physics).unwrap_or_default()
             }
             None => Vec::new(),
         };
@@ -147,7 +162,7 @@ impl Band {
 
 /// Returns the loads of the sources: those of `loads_n` if they are few, else evenly spaced in the
 /// logarithm.
-fn spaced(loads_n: &[f64]) -> Vec<f64> {
+pub(crate) fn spaced(loads_n: &[f64]) -> Vec<f64> {
     let mut positive: Vec<f64> = loads_n.iter().copied().filter(|l| *l > 0.0).collect();
     positive.sort_by(f64::total_cmp);
     positive.dedup();
@@ -180,12 +195,14 @@ fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {
     half.iter().any(|h| *h > 0.0).then(|| BandSource::symmetric("loads beyond the tested range", half))
 }
 
-/// Computes the rivals of `law`: name, and `ln` of their friction over `own`, that of the law.
+/// Computes the rivals of `law`: name, and `ln` of their friction over `own`, that of the law. The
+/// frictions by the physics, and with free spans outside the pins, are known.
 fn rivals(
     law: Law,
     contact: &Contact,
     load_n: &[f64],
     own: &[f64],
+    (physics_n, free_n): (Option<&[f64]>, Option<&[f64]>),
 ) -> Result<Vec<(String, Vec<f64>)>, LawError> {
     let on_proxy = contact.substrate() == Substrate::Abs;
     let mut all: Vec<(String, Vec<f64>)> = Law::predictive()
@@ -194,15 +211,16 @@ fn rivals(
         // proxy its constant coefficient contradicts its own maxima; only its trend with load is
         // used, see below.
         .filter(|other| *other != law && *other != Law::Paper)
-        .filter_map(|other| Some((other.title().to_owned(), other.friction_n(contact, load_n).ok()?)))
+        .filter_map(|other| {
+            let friction = match other {
+                Law::Physics => physics_n?.to_vec(),
+                _ => other.friction_n(contact, load_n).ok()?,
+            };
+            Some((other.title().to_owned(), friction))
+        })
         .collect();
-    if law == Law::Physics && !on_proxy && contact.all_pins().count() > 0 {
-        let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..*contact.bed() };
-        let switch = PhysicsSwitch::new(&contact.clone().with_bed(free), Constants::published());
-        if let Ok(states) = switch.states(load_n) {
-            let friction = states.iter().map(|s| s.friction_n).collect();
-            all.push(("physics with free spans outside the pins".to_owned(), friction));
-        }
+    if let Some(friction) = free_n.filter(|_| law == Law::Physics) {
+        all.push(("physics with free spans outside the pins".to_owned(), friction.to_vec()));
     }
     if law == Law::Physics && on_proxy {
         let heaviest = published::heaviest_load_n();

@@ -140,6 +140,12 @@ impl Bed {
         let whole = self.bending_n_mm2 * (self.tendon_radius_mm / Self::published().tendon_radius_mm).powi(4);
         whole / (1.0 + whole / (MAX_BENDING * tension_n * self.axis_radius_mm().powi(2)))
     }
+
+    /// Returns the derivative of [`Bed::tendon_bending_n_mm2`] with respect to the logarithm of the
+    /// tension, from the bending stiffness at that tension.
+    pub(crate) fn tendon_bending_slope_n_mm2(&self, bending_n_mm2: f64, tension_n: f64) -> f64 {
+        bending_n_mm2 * bending_n_mm2 / (MAX_BENDING * tension_n * self.axis_radius_mm().powi(2))
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::contact::Contact;
 use crate::pattern::PinPattern;
 use crate::physics::{Constants, PhysicsSwitch};
 use crate::published;
+use crate::reference::reference_friction_n;
 use crate::sort::sort_by_number;
 use crate::substrate::Substrate;
 
@@ -135,6 +136,14 @@ impl Deviation {
 /// Computes the deviations of `contact` from the published rig, with their effects at `loads_n`
 /// newtons, in descending order of the effect at the last load.
 pub(crate) fn deviations(contact: &Contact, loads_n: &[f64]) -> Vec<Deviation> {
+    let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok();
+    let here: Option<Vec<f64>> = states.map(|states| states.iter().map(|s| s.friction_n).collect());
+    deviations_from(contact, loads_n, here.as_deref())
+}
+
+/// Computes the deviations as [`deviations`], from the friction of `contact` at `loads_n` by the
+/// physics; `None` if that does not converge.
+pub(crate) fn deviations_from(contact: &Contact, loads_n: &[f64], here_n: Option<&[f64]>) -> Vec<Deviation> {
     let Some(reference) = published_rig(contact) else { return Vec::new() };
     let differing: Vec<_> = PARAMETERS
         .iter()
@@ -145,10 +154,10 @@ pub(crate) fn deviations(contact: &Contact, loads_n: &[f64]) -> Vec<Deviation> {
         return Vec::new();
     }
     let logs = |contact: &Contact| -> Option<Vec<f64>> {
-        let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok()?;
-        Some(states.iter().map(|s| libm::log(s.friction_n)).collect())
+        let friction_n = reference_friction_n(contact, loads_n).ok()?;
+        Some(friction_n.into_iter().map(libm::log).collect())
     };
-    let here = logs(contact);
+    let here: Option<Vec<f64>> = here_n.map(|all| all.iter().map(|d| libm::log(*d)).collect());
     let mut all: Vec<Deviation> = differing
         .into_iter()
         .map(|(p, value, published)| {

@@ -98,6 +98,7 @@
 #![warn(clippy::disallowed_methods)]
 
 mod band;
+mod band_physics;
 mod band_source;
 mod bed;
 mod capstan;
@@ -115,6 +116,7 @@ mod prediction;
 #[cfg(test)]
 mod prediction_tests;
 pub mod published;
+mod reference;
 mod sort;
 mod status;
 mod substrate;
@@ -124,6 +126,7 @@ mod transition;
 pub mod validation;
 
 pub use band::Band;
+pub use band_physics::BandPhysics;
 pub use band_source::BandSource;
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
 pub use contact::{Contact, ContactError};
@@ -133,7 +136,7 @@ pub use law::layout::{LayoutLaw, ThresholdRule};
 pub use law::{Law, LawError};
 pub use pattern::PinPattern;
 pub use plural::pluralise;
-pub use prediction::{other_laws, predict, predict_by};
+pub use prediction::{other_laws, other_laws_with_physics, predict, predict_by, predict_with_physics};
 pub use sort::sort_by_number;
 pub use status::PredictionStatus;
 pub use substrate::Substrate;

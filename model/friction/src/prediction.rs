@@ -3,12 +3,14 @@
 use pinswitch_diagnostic::Diagnostic;
 
 use crate::band::Band;
+use crate::band_physics::BandPhysics;
 use crate::band_source::BandSource;
 use crate::contact::Contact;
 use crate::curve::FrictionCurve;
 use crate::law::{Law, LawError, paper};
 use crate::published;
 use crate::status::{PredictionStatus, prediction_status};
+use crate::switch::SwitchState;
 
 /// Smallest ratio of the frictions of two laws that the reasons of a curve mention.
 const NOTEWORTHY: f64 = 1.25;
@@ -29,9 +31,32 @@ const NOTEWORTHY: f64 = 1.25;
 /// # Errors
 /// [`LawError`] if the law does not apply, or the physics does not converge.
 pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
-    let states = law.states(contact, loads_n)?;
-    let band = Band::new(law, contact, loads_n)?;
-    let (status, mut reasons) = prediction_status(contact, &band.deviations, loads_n);
+    predict_by_with_physics(law, contact, loads_n).map(|(curve, _)| curve)
+}
+
+/// Predicts a curve as [`predict_by`], and returns the physics of its band for other laws.
+fn predict_by_with_physics(
+    law: Law,
+    contact: &Contact,
+    loads_n: &[f64],
+) -> Result<(FrictionCurve, BandPhysics), LawError> {
+    let (states, physics) = match law {
+        Law::Physics => BandPhysics::with_states(contact, loads_n)?,
+        _ => (law.states(contact, loads_n)?, BandPhysics::new(contact, loads_n)),
+    };
+    Ok((curve_of_states(law, contact, &states, &physics)?, physics))
+}
+
+/// Returns the curve of `states` with the band of `law`.
+fn curve_of_states(
+    law: Law,
+    contact: &Contact,
+    states: &[SwitchState],
+    physics: &BandPhysics,
+) -> Result<FrictionCurve, LawError> {
+    let band = Band::from_physics(law, contact, physics)?;
+    let loads_n: Vec<f64> = states.iter().map(|s| s.load_n).collect();
+    let (status, mut reasons) = prediction_status(contact, &band.deviations, &loads_n);
     if let Some((rival, load_n, ratio)) = band.widest_rival(NOTEWORTHY) {
         let law = law.title();
         reasons.push(if ratio > 1.0 {
@@ -46,7 +71,7 @@ pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Fricti
         });
     }
     reasons.extend(law.remark(contact));
-    Ok(FrictionCurve::from_states(law, status, reasons, &states, &band))
+    Ok(FrictionCurve::from_states(law, status, reasons, states, &band))
 }
 
 /// Predicts tension and friction of `contact` at `loads_n` newtons by [`Law::DEFAULT`].
@@ -68,8 +93,14 @@ pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Fricti
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
 pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let error = match predict_by(Law::DEFAULT, contact, loads_n) {
-        Ok(curve) => return curve,
+    predict_with_physics(contact, loads_n).0
+}
+
+/// Predicts a curve as [`predict`], and returns the physics of its band, if the default law
+/// converges.
+pub fn predict_with_physics(contact: &Contact, loads_n: &[f64]) -> (FrictionCurve, Option<BandPhysics>) {
+    let error = match predict_by_with_physics(Law::DEFAULT, contact, loads_n) {
+        Ok((curve, physics)) => return (curve, Some(physics)),
         Err(error) => error,
     };
     let mut curve = predict_by(Law::Layout, contact, loads_n)
@@ -77,7 +108,7 @@ pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
         .unwrap_or_else(|_| capstan_curve(contact, loads_n));
     let problem = Diagnostic::from(error);
     curve.reasons.push(format!("{} is the fallback: {}", curve.law.title(), problem.problem()));
-    curve
+    (curve, None)
 }
 
 /// Returns the capstan of the paper on one material, the fallback for any contact; its band is a
@@ -97,8 +128,46 @@ fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
 
 /// Returns the curves of all other laws that apply, for comparison with that of `main`.
 pub fn other_laws(main: Law, contact: &Contact, loads_n: &[f64]) -> Vec<FrictionCurve> {
-    Law::predictive()
-        .filter(|law| *law != main)
-        .filter_map(|law| predict_by(law, contact, loads_n).ok())
+    other_laws_with_physics(main, contact, loads_n, None)
+}
+
+/// Returns the curves of [`other_laws`]; `physics` is that of a band of the same contact, for
+/// instance that of `main`, and is used if it is over the same range of loads.
+pub fn other_laws_with_physics(
+    main: Law,
+    contact: &Contact,
+    loads_n: &[f64],
+    physics: Option<&BandPhysics>,
+) -> Vec<FrictionCurve> {
+    let others: Vec<Law> = Law::predictive().filter(|law| *law != main).collect();
+    let mut by_physics = None;
+    let computed;
+    let physics = match physics.filter(|physics| physics.covers(loads_n)) {
+        Some(physics) => physics,
+        None if others.contains(&Law::Physics) => match BandPhysics::with_states(contact, loads_n) {
+            Ok((states, physics)) => {
+                by_physics = Some(states);
+                computed = physics;
+                &computed
+            }
+            Err(_) => {
+                computed = BandPhysics::new(contact, loads_n);
+                &computed
+            }
+        },
+        None => {
+            computed = BandPhysics::new(contact, loads_n);
+            &computed
+        }
+    };
+    others
+        .into_iter()
+        .filter_map(|law| {
+            let states = match by_physics.take_if(|_| law == Law::Physics) {
+                Some(states) => states,
+                None => law.states(contact, loads_n).ok()?,
+            };
+            curve_of_states(law, contact, &states, physics).ok()
+        })
         .collect()
 }

@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::definition::{LawDefinition, UncertainFriction};
 use super::error::LawError;
+use crate::band_physics::FrictionWithSensitivities;
 use crate::band_source::BandSource;
 use crate::contact::Contact;
 use crate::physics::{Constants, PUBLISHED_FIT, PhysicsSwitch};
@@ -29,21 +30,29 @@ const CONFIDENCE: f64 = 0.95;
 /// Predicts the friction of `contact` with two sources of uncertainty: the constants, by their
 /// covariance, and the model, by its leave-one-layout-out error on the published layouts.
 fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
+    let switch = PhysicsSwitch::new(contact, PUBLISHED_FIT.constants());
+    let (states, sensitivities) = switch.states_and_sensitivities(loads_n, |_| true)?;
+    let friction_n = states.iter().map(|s| s.friction_n).collect();
+    Ok(with_uncertainty(FrictionWithSensitivities { friction_n, sensitivities }))
+}
+
+/// Adds both sources of uncertainty to known friction.
+pub(crate) fn with_uncertainty(known: FrictionWithSensitivities) -> UncertainFriction {
     let fit = &PUBLISHED_FIT;
-    let switch = PhysicsSwitch::new(contact, fit.constants());
-    let (friction_n, sensitivities) = switch.friction_and_sensitivities(loads_n)?;
+    let FrictionWithSensitivities { friction_n, sensitivities } = known;
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile = StudentsT::new(0.0, 1.0, fit.degrees_of_freedom)
         .map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
     let constants =
         sensitivities.iter().map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt()).collect();
-    Ok(UncertainFriction {
+    let model = vec![quantile * fit.left_out_rms; friction_n.len()];
+    UncertainFriction {
         friction_n,
         sources: vec![
             BandSource::symmetric("constants", constants),
-            BandSource::symmetric("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
+            BandSource::symmetric("model", model),
         ],
-    })
+    }
 }
 
 /// Returns the known error of the physics for a published condition.

@@ -23,7 +23,7 @@ use crate::bed::Bed;
 /// Largest number of Newton steps; 3 to 10 are usual.
 const MAX_STEPS: usize = 60;
 /// Largest unbalanced force at a node, relative to the tension plus `EI/Rc^2`.
-const BALANCE: f64 = 1e-8;
+pub(super) const BALANCE: f64 = 1e-8;
 /// Rounding error of a node's force, relative to its largest summand.
 const ROUNDING: f64 = 1e-12;
 /// Largest number of cuts of a step; the last one is used then.
@@ -59,15 +59,16 @@ pub(super) struct Supports<'a> {
 }
 
 /// Force and stiffness of a pin that is pressed into the silicone.
-struct Support {
-    force_n: f64,
-    stiffness_n_mm: f64,
+#[derive(Clone, Copy)]
+pub(super) struct Support {
+    pub(super) force_n: f64,
+    pub(super) stiffness_n_mm: f64,
 }
 
 impl Supports<'_> {
     /// Returns the support of a pin at a gap of `u` mm: `N = N0 (1 + b) x/(1 + b x)` with `x = <h0
     /// - u>/h0`.
-    fn pin(&self, gap_mm: f64) -> Support {
+    pub(super) fn pin(&self, gap_mm: f64) -> Support {
         let h0 = self.bed.protrusion_mm();
         let (x, b) = ((h0 - gap_mm).max(0.0) / h0, self.bed.softening);
         if x == 0.0 {

@@ -133,6 +133,11 @@ impl Grid {
         (form, scaled(load))
     }
 
+    /// Returns the quadratic form and the linear term of bending for a stiffness of 1 N mm².
+    pub(super) fn unit_bending(&self) -> (&BandedMatrix, &[f64]) {
+        (&self.unit_bending.0, &self.unit_bending.1)
+    }
+
     /// Returns the number of nodes.
     pub(super) fn len(&self) -> usize {
         self.angle_rad.len()

@@ -15,7 +15,7 @@ const MAX_ITERATIONS: usize = 40;
 /// Number of iterations without damping of the tension.
 const UNDAMPED_ITERATIONS: usize = 8;
 /// Largest relative change of the tension in the last iteration.
-const TOLERANCE: f64 = 1e-6;
+pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// State of a loaded tendon that slides in one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,4 +174,20 @@ pub(super) fn pins_alone_exponent(turns_rad: &[f64], kappa: f64, load_n: f64, di
         let first = plough(middle(0.0));
         x + plough(middle(plough(middle(first))))
     })
+}
+
+/// Returns the derivative of [`pins_alone_exponent`] with respect to the logarithm of `kappa`.
+pub(super) fn pins_alone_slope(turns_rad: &[f64], kappa: f64, load_n: f64, direction: Direction) -> f64 {
+    let (_, slope) = turns_rad.iter().fold((0.0, 0.0), |(x, slope), theta| {
+        let sign = direction.sign();
+        let middle = |rise: f64| load_n * libm::exp(sign * (x + rise / 2.0));
+        // Rise of a pin, and its derivative, from the rise in the iteration before.
+        let plough = |(rise, by): (f64, f64)| {
+            let new = kappa * (middle(rise) * theta).sqrt() * theta;
+            (new, new * (1.0 + sign * (slope + by / 2.0) / 2.0))
+        };
+        let (rise, by) = plough(plough(plough((0.0, 0.0))));
+        (x + rise, slope + by)
+    });
+    slope
 }

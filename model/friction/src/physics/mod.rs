@@ -9,12 +9,14 @@
 
 mod banded;
 mod constants;
+mod coupled;
 mod equilibrium;
 mod error;
 mod fit;
 mod grid;
 pub mod hypotheses;
 mod march;
+mod pair;
 mod profile;
 mod switch;
 

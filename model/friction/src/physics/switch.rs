@@ -3,18 +3,17 @@
 use nalgebra::Vector3;
 
 use super::constants::Constants;
+use super::coupled::{Exponents, MAX_PASSES, Workspace};
 use super::equilibrium::Supports;
 use super::error::PhysicsError;
 use super::grid::{self, Grid};
-use super::march::{Slide, Sliding, pins_alone_exponent, polygon_turns_rad, slide};
+use super::march::{Slide, Sliding, pins_alone_exponent, pins_alone_slope, polygon_turns_rad, slide};
+use super::pair::Pair;
 use crate::bed::Bed;
 use crate::capstan::{Direction, capstan_tension_n};
 use crate::contact::Contact;
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
-
-/// Step of a logarithm for finite differences.
-const STEP: f64 = 1e-3;
 
 /// Switch whose friction follows from its contact, bed and material constants.
 ///
@@ -35,13 +34,6 @@ pub struct PhysicsSwitch {
     bed: Bed,
     constants: Constants,
     grid: Grid,
-}
-
-/// States at the previous load, from which the next iteration starts.
-#[derive(Default)]
-struct PreviousStates {
-    eccentric: Option<Sliding>,
-    concentric: Option<Sliding>,
 }
 
 impl PhysicsSwitch {
@@ -68,7 +60,8 @@ impl PhysicsSwitch {
     /// # Errors
     /// [`PhysicsError`] if the model does not converge at a load.
     pub fn states(&self, loads_n: &[f64]) -> Result<Vec<SwitchState>, PhysicsError> {
-        Ok(self.points(loads_n)?.iter().map(|p| p.state).collect())
+        let mut workspace = self.workspace();
+        loads_n.iter().map(|load| Ok(self.state_from(*load, workspace.as_mut())?.0)).collect()
     }
 
     /// Computes the friction at one load, in newtons.
@@ -76,7 +69,7 @@ impl PhysicsSwitch {
     /// # Errors
     /// [`PhysicsError`] if the model does not converge.
     pub fn friction_n(&self, load_n: f64) -> Result<f64, PhysicsError> {
-        self.point_from(load_n, &mut PreviousStates::default()).map(|p| p.state.friction_n)
+        Ok(self.state_from(load_n, self.workspace().as_mut())?.0.friction_n)
     }
 
     /// Computes the state of the tendon that slides in one direction.
@@ -86,9 +79,7 @@ impl PhysicsSwitch {
         direction: Direction,
         start: Option<&Sliding>,
     ) -> Result<Sliding, PhysicsError> {
-        let flush_force_n = self.constants.flush_force_n * self.bed.flush_force_ratio();
-        let supports = Supports { grid: &self.grid, bed: &self.bed, flush_force_n };
-        let (constants, wrap_rad) = (&self.constants, self.contact.wrap_rad());
+        let (supports, constants, wrap_rad) = (self.supports(), &self.constants, self.contact.wrap_rad());
         slide(Slide { supports, constants, wrap_rad, load_n, direction }, start)
     }
 
@@ -109,115 +100,135 @@ impl PhysicsSwitch {
         &self.grid.angle_rad
     }
 
-    /// Computes the friction exponents of pins and silicone in a direction, and updates the state
-    /// for the next load.
-    fn exponents(
-        &self,
-        load_n: f64,
-        direction: Direction,
-        start: &mut Option<Sliding>,
-    ) -> Result<Exponent, PhysicsError> {
-        let pins = self.contact.all_pins().angles_rad();
-        if self.contact.substrate() == Substrate::Abs {
-            let turns = polygon_turns_rad(pins, self.contact.wrap_rad());
-            let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
-            let pins = pins_alone_exponent(&turns, kappa, load_n, direction);
-            return Ok(Exponent { pins, silicone: 0.0 });
-        }
-        if pins.is_empty() || load_n <= 0.0 {
-            return Ok(Exponent {
-                pins: 0.0,
-                silicone: self.constants.mu_silicone * self.contact.wrap_rad(),
-            });
-        }
-        let sliding = self.sliding(load_n, direction, start.as_ref())?;
-        let exponent = Exponent { pins: sliding.pins_exponent, silicone: sliding.silicone_exponent };
-        *start = Some(sliding);
-        Ok(exponent)
+    /// Returns the supports of the tendon.
+    fn supports(&self) -> Supports<'_> {
+        let flush_force_n = self.constants.flush_force_n * self.bed.flush_force_ratio();
+        Supports { grid: &self.grid, bed: &self.bed, flush_force_n }
     }
 
-    /// Computes the state at one load, starting from that at the previous load.
-    fn point_from(&self, load_n: f64, previous: &mut PreviousStates) -> Result<Point, PhysicsError> {
-        let eccentric = self.exponents(load_n, Direction::Eccentric, &mut previous.eccentric)?;
-        let concentric = self.exponents(load_n, Direction::Concentric, &mut previous.concentric)?;
-        let total = |x: Exponent| x.pins + x.silicone;
-        let eccentric_n = capstan_tension_n(load_n, total(eccentric), Direction::Eccentric);
-        let concentric_n = capstan_tension_n(load_n, total(concentric), Direction::Concentric);
-        let both = total(eccentric) + total(concentric);
+    /// Returns the arrays for the loads of a curve; `None` if its friction has a closed form.
+    fn workspace(&self) -> Option<Workspace> {
+        let is_rigid = self.contact.substrate() == Substrate::Abs;
+        let is_bare = self.contact.all_pins().angles_rad().is_empty();
+        (!is_rigid && !is_bare).then(|| Workspace::new(&self.supports()))
+    }
+
+    /// Computes the friction at one load with this relative error of the exponents.
+    #[cfg(test)]
+    pub(super) fn precise_friction_n(&self, load_n: f64, exponent_error: f64) -> Result<f64, PhysicsError> {
+        let mut workspace = self.workspace();
+        workspace.iter_mut().for_each(|workspace| workspace.exponent_error = exponent_error);
+        Ok(self.state_from(load_n, workspace.as_mut())?.0.friction_n)
+    }
+
+    /// Computes the friction exponents at a load, from the states at the loads before.
+    fn exponents(&self, load_n: f64, workspace: Option<&mut Workspace>) -> Result<Exponents, PhysicsError> {
+        let wrap_rad = self.contact.wrap_rad();
+        if self.contact.substrate() == Substrate::Abs {
+            let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
+            let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
+            let pins = DIRECTIONS.map(|direction| pins_alone_exponent(&turns, kappa, load_n, direction));
+            return Ok(Exponents { pins: Pair::new(pins), silicone: Pair::both(0.0) });
+        }
+        let Some(workspace) = workspace.filter(|_| load_n > 0.0) else {
+            let silicone = Pair::both(self.constants.mu_silicone * wrap_rad);
+            return Ok(Exponents { pins: Pair::both(0.0), silicone });
+        };
+        if let Some(exponents) = workspace.follow(&self.supports(), &self.constants, wrap_rad, load_n) {
+            return Ok(exponents);
+        }
+        let eccentric = self.sliding(load_n, Direction::Eccentric, None)?;
+        let concentric = self.sliding(load_n, Direction::Concentric, None)?;
+        workspace.accept(
+            load_n,
+            [&eccentric.shape.gap_mm, &concentric.shape.gap_mm],
+            [&eccentric.tension_n, &concentric.tension_n],
+        );
+        Ok(Exponents {
+            pins: Pair::new([eccentric.pins_exponent, concentric.pins_exponent]),
+            silicone: Pair::new([eccentric.silicone_exponent, concentric.silicone_exponent]),
+        })
+    }
+
+    /// Computes the state at one load, from those at the loads before.
+    fn state_from(
+        &self,
+        load_n: f64,
+        workspace: Option<&mut Workspace>,
+    ) -> Result<(SwitchState, Exponents), PhysicsError> {
+        let exponents = self.exponents(load_n, workspace)?;
+        let total = exponents.pins + exponents.silicone;
+        let eccentric_n = capstan_tension_n(load_n, total.lane(0), Direction::Eccentric);
+        let concentric_n = capstan_tension_n(load_n, total.lane(1), Direction::Concentric);
+        let both = total.lane(0) + total.lane(1);
         let shared = load_n > 0.0 && both > 0.0;
+        let silicone = exponents.silicone.lane(0) + exponents.silicone.lane(1);
         let state = SwitchState {
             load_n,
             eccentric_n,
             concentric_n,
             friction_n: (concentric_n - eccentric_n) / 2.0,
-            silicone_share: if shared { (eccentric.silicone + concentric.silicone) / both } else { 0.0 },
+            silicone_share: if shared { silicone / both } else { 0.0 },
         };
-        Ok(Point { state, eccentric, concentric })
+        Ok((state, exponents))
     }
 
-    /// Computes the states at several loads, each starting from the previous one.
-    fn points(&self, loads_n: &[f64]) -> Result<Vec<Point>, PhysicsError> {
-        let mut previous = PreviousStates::default();
-        loads_n.iter().map(|load| self.point_from(*load, &mut previous)).collect()
-    }
-
-    /// Computes friction at `loads_n` newtons, and the sensitivities of `ln D` to the logarithms of
-    /// the constants.
+    /// Computes the states at `loads_n` newtons, and the derivatives of `ln D` with respect to the
+    /// logarithms of the constants at the loads for which `is_needed` is true; the others are zero.
+    /// Ascending loads are fastest.
     ///
-    /// A sensitivity is zero without friction. The exponents are proportional to `kappa` and
-    /// `mu_s`; the feedback of the tension on the shape is neglected. The flush force changes the
-    /// shape, and needs a second curve.
-    pub(crate) fn friction_and_sensitivities(
+    /// A derivative is zero without friction.
+    ///
+    /// # Errors
+    /// [`PhysicsError`] if the model does not converge at a load.
+    pub fn states_and_sensitivities(
         &self,
         loads_n: &[f64],
-    ) -> Result<(Vec<f64>, Vec<Vector3<f64>>), PhysicsError> {
-        let points = self.points(loads_n)?;
-        let mut at = self.constants.logarithms();
-        at[2] += STEP;
-        let stiffer = match self.contact.substrate() {
-            Substrate::Silicone => self.with_constants(Constants::from_logarithms(&at)).points(loads_n)?,
-            Substrate::Abs => points.clone(),
+        is_needed: impl Fn(usize) -> bool,
+    ) -> Result<(Vec<SwitchState>, Vec<Vector3<f64>>), PhysicsError> {
+        let mut workspace = self.workspace();
+        let mut states = Vec::with_capacity(loads_n.len());
+        let mut sensitivities = Vec::with_capacity(loads_n.len());
+        for (i, load_n) in loads_n.iter().enumerate() {
+            let (state, exponents) = self.state_from(*load_n, workspace.as_mut())?;
+            states.push(state);
+            sensitivities.push(if is_needed(i) && state.friction_n > 0.0 {
+                self.sensitivities(&state, &exponents, workspace.as_mut())?
+            } else {
+                Vector3::zeros()
+            });
+        }
+        Ok((states, sensitivities))
+    }
+
+    /// Computes the derivatives of `ln D` at the last state.
+    fn sensitivities(
+        &self,
+        state: &SwitchState,
+        exponents: &Exponents,
+        workspace: Option<&mut Workspace>,
+    ) -> Result<Vector3<f64>, PhysicsError> {
+        let wrap_rad = self.contact.wrap_rad();
+        let of_exponents = match workspace.filter(|_| state.load_n > 0.0) {
+            Some(workspace) => workspace
+                .derivatives(&self.supports(), &self.constants, wrap_rad)
+                .ok_or(PhysicsError::TensionNotConverged { load_n: state.load_n, iterations: MAX_PASSES })?,
+            None if self.contact.substrate() == Substrate::Abs => {
+                let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
+                let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
+                let slope = |direction| pins_alone_slope(&turns, kappa, state.load_n, direction);
+                [Pair::new(DIRECTIONS.map(slope)), Pair::both(0.0), Pair::both(0.0)]
+            }
+            None => [Pair::both(0.0), exponents.silicone, Pair::both(0.0)],
         };
-        let sensitivities = points
-            .iter()
-            .zip(&stiffer)
-            .map(|(point, stiffer)| {
-                let d = point.state.friction_n;
-                if d > 0.0 {
-                    Vector3::new(
-                        point.friction_per_exponent(|x| x.pins) / d,
-                        point.friction_per_exponent(|x| x.silicone) / d,
-                        libm::log(stiffer.state.friction_n / d) / STEP,
-                    )
-                } else {
-                    Vector3::zeros()
-                }
-            })
-            .collect();
-        Ok((points.iter().map(|p| p.state.friction_n).collect(), sensitivities))
+        let tension = Pair::new([state.eccentric_n, state.concentric_n]);
+        let of_friction = of_exponents.map(|by| {
+            let [eccentric, concentric] = (tension * by).numbers();
+            (eccentric + concentric) / 2.0 / state.friction_n
+        });
+        Ok(Vector3::from(of_friction))
     }
 }
 
-/// Parts of a friction exponent `|ln(T/F)|`.
-#[derive(Clone, Copy, Debug)]
-struct Exponent {
-    pins: f64,
-    silicone: f64,
-}
-
-/// State with the exponents of both directions.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    state: SwitchState,
-    eccentric: Exponent,
-    concentric: Exponent,
-}
-
-impl Point {
-    /// Returns the derivative of `D` with respect to a relative change of this part of the
-    /// exponents: `(T_e x_e + T_c x_c)/2`.
-    fn friction_per_exponent(&self, part: impl Fn(&Exponent) -> f64) -> f64 {
-        (self.state.eccentric_n * part(&self.eccentric) + self.state.concentric_n * part(&self.concentric))
-            / 2.0
-    }
-}
+/// Both directions of motion, in the order of a [`Pair`].
+const DIRECTIONS: [Direction; 2] = [Direction::Eccentric, Direction::Concentric];

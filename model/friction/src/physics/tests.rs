@@ -86,6 +86,53 @@ fn uniform_material_gives_the_capstan() {
     }
 }
 
+/// Derivatives by the implicit function theorem agree with differences of curves that are converged
+/// to the last digits: with the central one, or a one-sided one where a node is about to touch.
+#[test]
+fn sensitivities_match_differences() {
+    const STEP: f64 = 2e-4;
+    let groove = published::GROOVE_PITCH_DEG.to_radians();
+    let uneven = PinPattern::new([3, 6, 7, 11].map(|g| f64::from(g - 8) * groove).to_vec());
+    let soft = Bed { layer_mm: 3.0, contact_radius_mm: 25.0, ..Bed::published() };
+    let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..Bed::published() };
+    let rigid = Contact::new(Substrate::Abs, layout(1), published::wrap_angle_rad()).unwrap();
+    let contacts = [
+        device(layout(0)),
+        device(layout(1)),
+        device(uneven.clone()),
+        device(uneven).with_bed(soft),
+        device(layout(2)).with_bed(free),
+        device(PinPattern::default()),
+        rigid,
+    ];
+    for (i, contact) in contacts.iter().enumerate() {
+        for load in [4.0, 9.0, 21.0, 33.0, HEAVIEST_N] {
+            let constants = Constants::published();
+            let switch = PhysicsSwitch::new(contact, constants);
+            let (_, slopes) = switch.states_and_sensitivities(&[load], |_| true).unwrap();
+            for k in 0..3 {
+                let log_friction = |by: f64| {
+                    let mut at = constants.logarithms();
+                    at[k] += by;
+                    let moved = switch.with_constants(Constants::from_logarithms(&at));
+                    libm::log(moved.precise_friction_n(load, 1e-10).unwrap())
+                };
+                let here = log_friction(0.0);
+                let [back_2, back, ahead, ahead_2] =
+                    [-2.0, -1.0, 1.0, 2.0].map(|steps| log_friction(steps * STEP) - here);
+                let expected = [
+                    (8.0 * (ahead - back) - (ahead_2 - back_2)) / (12.0 * STEP),
+                    (4.0 * ahead - ahead_2) / (2.0 * STEP),
+                    (back_2 - 4.0 * back) / (2.0 * STEP),
+                ];
+                let error = expected.map(|e| (slopes[0][k] - e).abs()).into_iter().fold(1.0, f64::min);
+                let is_close = error < 1e-6 * slopes[0].norm();
+                assert!(is_close, "contact {i}, {load} N, constant {k}: {} {expected:?}", slopes[0][k]);
+            }
+        }
+    }
+}
+
 /// Finer elements change friction by less than 0.2 %, with layouts of all kinds and at all loads.
 #[test]
 fn refinement_converges() {

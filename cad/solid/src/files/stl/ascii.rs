@@ -93,6 +93,7 @@ impl Reader {
         }
         words.expect(b"endloop", "endloop")?;
         words.expect(b"endfacet", "endfacet")?;
+        words.skip_remark();
         self.facets.add(normal, corners);
         Ok(())
     }
@@ -139,6 +140,18 @@ impl<'a> Words<'a> {
         rest.iter()
             .position(|byte| matches!(byte, b'\r' | b'\n'))
             .map_or(self.bytes.len(), |end| self.at + end)
+    }
+
+    /// Skips text between `endfacet` and the end of its line, unless that continues the solid.
+    fn skip_remark(&mut self) {
+        let end = self.end_of_line();
+        let mut ahead = Words { bytes: &self.bytes[..end], at: self.at, last: self.last };
+        let is_keyword = |word: &[u8]| {
+            [&b"facet"[..], b"endsolid"].iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
+        };
+        if ahead.next().is_some_and(|word| !is_keyword(word)) {
+            self.at = end;
+        }
     }
 
     fn skip_line(&mut self) {
@@ -242,6 +255,7 @@ mod tests {
                 None,
             ),
             (one_line, 2, None),
+            (format!("solid a\n{}endsolid\n", ONE.replace("endfacet", "endfacet remark")), 1, None),
             (format!("solid facet of a thing\n{ONE}endsolid facet of a thing\n"), 1, None),
             (format!("solid a\n{ONE}"), 1, Some("endsolid is missing")),
             (format!("solid a\n{ONE}endsolid a\nmade by a program\n\n"), 1, Some("text follows endsolid")),

@@ -2,6 +2,7 @@
 
 use super::step_file::{StepError, StepFile, StepSolid};
 use super::{StepPart, step_assembly, step_part};
+use crate::mesh::Vector3;
 use crate::pose::Pose;
 use crate::profile::{Contour, Pen, Point2, polar};
 use crate::solid::Solid;

@@ -153,6 +153,64 @@ fn special_files_are_not_opened() {
     }
 }
 
+/// Inputs, and files next to them, may be pipes that no one writes.
+#[test]
+fn pipes_in_place_of_inputs_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    with_measurements(path);
+    done(path, &["-q", "calibrate", "bench/plateaus.csv", "--out", "first"]);
+    std::fs::write(path.join("rows.toml"), "rows.file = \"pipe\"\n").unwrap();
+    for name in ["pipe", "one/provenance.json", "piped/report.json"] {
+        std::fs::create_dir_all(path.join(name).parent().unwrap()).unwrap();
+        pipe(&path.join(name));
+    }
+    done(path, &["init", "three-double", "--out", "mine.toml"]);
+    std::fs::copy(path.join("mine.toml"), path.join("one/mine.toml")).unwrap();
+    for (command, word) in [
+        (&["predict", "pipe"][..], "pipe"),
+        (&["predict", "one/mine.toml"], "provenance.json"),
+        (&["generate", "one/mine.toml", "--out", "set"], "provenance.json"),
+        (&["calibrate", "pipe", "--out", "out"], "pipe"),
+        (&["experiment", "piped", "--out", "out"], "report.json"),
+        (&["batch", "rows.toml", "--dry-run"], "pipe"),
+        (&["import", "pipe", "--out", "t.csv"], "pipe"),
+        (&["check", "pipe"], "pipe"),
+    ] {
+        let (code, output) = ends_soon(path, command);
+        assert!(code == Some(2) && output.contains(word), "{command:?}: {output}");
+    }
+}
+
+#[test]
+fn a_log_from_elsewhere_is_not_executed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    done(path, &["init", "three-double", "--out", "mine.toml"]);
+    std::fs::write(path.join("notes.txt"), "dear").unwrap();
+    std::fs::write(path.join(".pinswitch-commit"), "pinswitch-commit/1\0remove\0notes.txt\0\0\0").unwrap();
+    for command in [&["predict", "mine.toml"][..], &["init", "three-single", "--out", "other.toml"]] {
+        let (code, output) = ends_soon(path, command);
+        assert!(code != Some(0) && output.contains(".pinswitch-commit"), "{command:?}: {output}");
+        assert_eq!(std::fs::read(path.join("notes.txt")).unwrap(), b"dear");
+    }
+}
+
+#[test]
+fn json_has_no_active_characters() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a\u{9b}31m\u{202e}.toml"), "[switch]\nname = \"x\"\n").unwrap();
+    let run = crate::harness::pinswitch(
+        folder.path(),
+        &["generate", "a\u{9b}31m\u{202e}.toml", "--out", "o", "--json"],
+    );
+    let text = String::from_utf8(run.stdout).unwrap();
+    let active = text.chars().find(|c| *c != '\n' && c.is_control() || *c == '\u{202e}');
+    assert_eq!(active, None);
+    let parsed: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert!(parsed["source"]["name"].as_str().unwrap().contains('\u{202e}'), "{text}");
+}
+
 #[test]
 fn empty_paths_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,7 @@ use super::law::LawChoice;
 use super::second_kernel::requested_kernel;
 use super::slicing;
 use super::source::{Fix, LoadedDesign, Source};
-use super::terminal::warn;
+use super::terminal::{escaped_json, warn};
 use super::{Failure, print_data, print_text};
 use crate::input::sha256_read;
 use crate::write::{PublishError, SetFolder};
@@ -153,7 +153,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_text(&slicing.table())?;
     }
     if arguments.json {
-        print_data(&set.manifest.bytes().map_err(Failure::failed)?)?;
+        let bytes = set.manifest.bytes().map_err(Failure::failed)?;
+        print_data(escaped_json(&String::from_utf8_lossy(&bytes)).as_bytes())?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -95,9 +95,9 @@ pub(super) fn sources_from(folder: &Path) -> Vec<SourceFile> {
 /// A [`Diagnostic`] if it cannot be read or was changed.
 fn manifest_in(folder: &Path) -> Result<Option<Provenance>, Diagnostic> {
     let path = folder.join(PROVENANCE);
-    let bytes = match pinswitch_store::read_at_most(&path, MAX_TEXT) {
-        Ok(bytes) => bytes,
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+    let bytes = match pinswitch_store::read_own(&path, MAX_TEXT) {
+        Ok(Some(bytes)) => bytes,
+        Ok(None) => return Ok(None),
         Err(e) => {
             return Err(Diagnostic::new("cannot read")
                 .with_location(Location::file(path.display().to_string()))

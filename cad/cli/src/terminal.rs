@@ -46,10 +46,24 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::failed`] if the value has no JSON form.
 pub(super) fn to_json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
-    let mut bytes =
-        serde_json::to_vec_pretty(value).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
-    bytes.push(b'\n');
-    Ok(bytes)
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    Ok(escaped_json(&(text + "\n")).into_bytes())
+}
+
+/// Escapes the characters that a terminal may act on, and that JSON allows in its strings.
+pub(super) fn escaped_json(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        let mut one = [0; 4];
+        // A line feed is between values here: within strings it is escaped already.
+        if c == '\n' || neutral(c.encode_utf8(&mut one)) == *c.encode_utf8(&mut [0; 4]) {
+            escaped.push(c);
+        } else {
+            let mut units = [0; 2];
+            c.encode_utf16(&mut units).iter().for_each(|unit| escaped.push_str(&format!("\\u{unit:04x}")));
+        }
+    }
+    escaped
 }
 
 /// Prints a failure as text on standard error, and as JSON on standard output if `as_json`. A command that has

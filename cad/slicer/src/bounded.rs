@@ -3,7 +3,9 @@
 use std::io::{Error, Read, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 /// Limits of one run of a program.
@@ -44,6 +46,8 @@ pub(crate) enum RunError {
 /// Interval at which a program is observed: a short one is not delayed by more.
 const FIRST_INTERVAL: Duration = Duration::from_millis(1);
 const LAST_INTERVAL: Duration = Duration::from_millis(50);
+/// Time after the end of a program in which its pipes end, unless something that it has started keeps them open.
+const MESSAGE_TIME: Duration = Duration::from_secs(1);
 /// Bytes of the end of a message that are kept.
 const KEPT_BYTES: usize = 8 << 10;
 
@@ -63,18 +67,22 @@ pub(crate) fn run(
     // Open until the end: the supervisor ends the program when it is closed.
     let _open = child.0.stdin.take();
     let pipes = (child.0.stdout.take(), child.0.stderr.take());
-    let printed = AtomicU64::new(0);
-    std::thread::scope(|scope| {
-        let keep = |pipe: Option<Box<dyn Read + Send>>| scope.spawn(|| last_bytes(pipe, &printed));
-        let output = keep(pipes.0.map(|pipe| Box::new(pipe) as _));
-        let errors = keep(pipes.1.map(|pipe| Box::new(pipe) as _));
-        let ended = wait(&mut child.0, &printed, written, limits);
-        // Also what the program has started: it would keep the pipes open.
-        drop(child);
-        let [output, errors] = [output, errors].map(|kept| kept.join().unwrap_or_default());
-        let message = if errors.trim_ascii().is_empty() { output } else { errors };
-        Ok(Run { status: ended?, message })
-    })
+    let printed = Arc::new(AtomicU64::new(0));
+    let keep = |pipe: Option<Box<dyn Read + Send>>| {
+        let (sender, kept) = channel();
+        let printed = Arc::clone(&printed);
+        std::thread::spawn(move || sender.send(last_bytes(pipe, &printed)));
+        kept
+    };
+    let output = keep(pipes.0.map(|pipe| Box::new(pipe) as _));
+    let errors = keep(pipes.1.map(|pipe| Box::new(pipe) as _));
+    let ended = wait(&mut child.0, &printed, written, limits);
+    // Also what the program has started: it would keep the pipes open. What has left the process group may keep them
+    // open all the same, and is not waited for.
+    drop(child);
+    let [output, errors] = [output, errors].map(|kept| kept.recv_timeout(MESSAGE_TIME).unwrap_or_default());
+    let message = if errors.trim_ascii().is_empty() { output } else { errors };
+    Ok(Run { status: ended?, message })
 }
 
 /// Returns the command that runs `command` under a supervisor, or the command itself, in a process group of its own.
@@ -195,11 +203,13 @@ mod tests {
             ("sleep 60", "longer than 0.5 s"),
             // What it has started holds the pipes.
             ("sleep 60 & sleep 60", "longer than 0.5 s"),
+            // A child that has left the group holds the pipes.
+            ("setsid sleep 20 & sleep 60", "longer than 0.5 s"),
             ("yes", "printed more than 1048576"),
             ("yes > written", "more than 1048576 bytes"),
         ] {
             let start = Instant::now();
-            let time = if script.starts_with("sleep") { 500 } else { 20_000 };
+            let time = if script.contains("sleep") { 500 } else { 20_000 };
             match shell(script, folder.path(), limits(time)) {
                 Err(RunError::Limit(text)) => assert!(text.contains(reason), "{script}: {text}"),
                 other => panic!("{script}: {other:?}"),

@@ -1,7 +1,7 @@
 //! Replaces one file. A reader finds the old file or the new one, never a part.
 
 use std::fs::{File, Metadata};
-use std::io::{Error, ErrorKind, Result, Seek, Write};
+use std::io::{Error, ErrorKind, Read, Result, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,6 +11,9 @@ use crate::place::{
     read_own, require_ordinary, require_path, require_writable, temporary_file, without_waiting,
 };
 use crate::staging::Staging;
+
+/// End of the names of temporary files.
+pub(crate) const TEMPORARY_SUFFIX: &str = ".part";
 
 /// Time for which a single file waits for others, which take milliseconds: commands that run at the same time and each
 /// write one file into a folder succeed.
@@ -31,13 +34,14 @@ impl From<Error> for RewriteError {
     }
 }
 
-/// Replaces the file at `path`, which may not exist. A pipe or a terminal is written to.
+/// Replaces the file at `path`, which may not exist, or the target of a symlink. A pipe or a terminal is written to.
 ///
 /// # Errors
 /// `WouldBlock` if another process writes into its folder for longer than `policy` and one second; `NotFound` if its
 /// folder does not exist; `PermissionDenied` if it is write-protected; the error of the file system.
 pub fn replace_file(path: &Path, bytes: &[u8], policy: LockPolicy) -> Result<()> {
     require_path(path)?;
+    let path = &target(path)?;
     match std::fs::metadata(path) {
         Ok(existing) if existing.is_dir() => return Err(ErrorKind::IsADirectory.into()),
         Ok(existing) if !existing.is_file() => return write_to_special(path, bytes),
@@ -90,11 +94,9 @@ pub fn rewrite_file(
         };
     }
     if is_linked(&std::fs::metadata(path)?) {
-        // The staged copy has shown that there is room.
-        let mut file = without_waiting().write(true).open(path)?;
-        file.rewind()?;
-        file.write_all(bytes)?;
-        return Ok(file.set_len(bytes.len() as u64)?);
+        // Its room is needed here.
+        drop(temporary);
+        return rewrite_in_place(path, expected.unwrap_or_default(), bytes);
     }
     match exchange(temporary.path(), path) {
         Ok(()) if is_expected(temporary.path())? => Ok(()),
@@ -108,6 +110,43 @@ pub fn rewrite_file(
         }
         Err(e) => Err(e.into()),
     }
+}
+
+/// Rewrites a file with several links in place. The room is reserved first; if writing fails all the same, the old
+/// content is restored, which needs no more room.
+fn rewrite_in_place(path: &Path, expected: &[u8], bytes: &[u8]) -> std::result::Result<(), RewriteError> {
+    let mut file = without_waiting().read(true).write(true).open(path)?;
+    reserve(&file, bytes.len() as u64)?;
+    let mut now = Vec::new();
+    (&mut file).take(expected.len() as u64 + 1).read_to_end(&mut now)?;
+    if now != expected {
+        return Err(RewriteError::Changed);
+    }
+    let mut write = |content: &[u8]| {
+        file.rewind()?;
+        file.write_all(content)?;
+        file.set_len(content.len() as u64)
+    };
+    write(bytes).map_err(|e| {
+        let _ = write(expected);
+        RewriteError::System(e)
+    })
+}
+
+/// Reserves room for a file of this length, where the system can, without changing its content or length.
+#[cfg(target_os = "linux")]
+fn reserve(file: &File, length: u64) -> Result<()> {
+    use rustix::fs::{FallocateFlags, fallocate};
+    match fallocate(file, FallocateFlags::KEEP_SIZE, 0, length.max(1)).map_err(Error::from) {
+        Err(e) if matches!(e.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded) => Err(e),
+        // Some file systems cannot.
+        _ => Ok(()),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn reserve(_: &File, _: u64) -> Result<()> {
+    Ok(())
 }
 
 /// Returns the file that is replaced: the target of a symlink.
@@ -127,7 +166,8 @@ fn staged_next_to(
     }
     let existing = replaceable(path)?;
     let lock = Staging::new(FolderLock::take(folder, policy.at_least(SINGLE_FILE_TIME))?)?;
-    let mut temporary = temporary_file().prefix(TEMPORARY_PREFIX).tempfile_in(folder)?;
+    let mut temporary =
+        temporary_file().prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX).tempfile_in(folder)?;
     temporary.write_all(bytes)?;
     if let Some(existing) = existing {
         keep_attributes(temporary.as_file(), &existing)?;

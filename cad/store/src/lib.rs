@@ -38,4 +38,4 @@ pub use place::{is_dangling_symlink, read_at_most, read_own, temporary_file, wri
 pub use staging::{CommitError, Staging, Step, is_plain, recover};
 
 /// Begin of the names of temporary files.
-pub const TEMPORARY_PREFIX: &str = ".pinswitch-";
+pub(crate) const TEMPORARY_PREFIX: &str = ".pinswitch-";

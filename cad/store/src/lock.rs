@@ -7,9 +7,7 @@ use std::io::{Error, ErrorKind, Read, Result, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::TEMPORARY_PREFIX;
 use crate::place::{require_ordinary, require_path, without_waiting};
-use crate::staging::LOG;
 
 /// Name of the locked file.
 const LOCK_FILE: &str = ".pinswitch-lock";
@@ -161,27 +159,13 @@ impl FolderLock {
         &self.folder
     }
 
-    /// Removes the unfinished files of killed runs, except a log of committed changes.
-    ///
-    /// # Errors
-    /// The error of the file system.
-    pub fn remove_unfinished(&self) -> Result<()> {
-        self.remove_entries(|name| name.starts_with(TEMPORARY_PREFIX) && name != LOG)
-    }
-
     /// Removes all entries of a folder that contains unfinished files only.
     ///
     /// # Errors
     /// The error of the file system.
     pub fn clear(&self) -> Result<()> {
-        self.remove_entries(|_| true)
-    }
-
-    fn remove_entries(&self, is_removed: impl Fn(&str) -> bool) -> Result<()> {
         for entry in std::fs::read_dir(&self.folder)?.filter_map(Result::ok) {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            if name == LOCK_FILE || !is_removed(&name) {
+            if entry.file_name() == LOCK_FILE {
                 continue;
             }
             if entry.file_type()?.is_dir() {

@@ -24,11 +24,18 @@ pub fn read_own(path: &Path, most: u64) -> Result<Option<Vec<u8>>> {
     read_bounded(file, most).map(Some)
 }
 
-/// Reads at most `most` bytes of an input: an ordinary file, a pipe or a device.
+/// Reads at most `most` bytes of an input: an ordinary file, or a pipe or a device in `/dev` or `/proc`, such as the
+/// `/dev/fd/63` of `<(...)`. A pipe elsewhere may have no writer, and would be waited for without end.
 ///
 /// # Errors
-/// `FileTooLarge` above `most` bytes; the error of the file system.
+/// `FileTooLarge` above `most` bytes; `InvalidInput` for a pipe; the error of the file system.
 pub fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>> {
+    if !["/dev", "/proc"].iter().any(|place| path.starts_with(place)) {
+        let facts = std::fs::metadata(path)?;
+        if !facts.is_dir() {
+            require_ordinary(&facts)?;
+        }
+    }
     read_bounded(File::open(path)?, most)
 }
 

@@ -119,14 +119,15 @@ pub(crate) fn find(sheet: &Sheet, line: Option<usize>) -> Option<Header> {
     }
     if let Some(line) = line {
         let row = (0..sheet.len()).find(|row| sheet.line(*row) == line)?;
-        return candidate(sheet, row).map(|(header, _)| header);
+        return candidate(sheet, row, &next_rows(sheet)).map(|(header, _)| header);
     }
+    let next = next_rows(sheet);
     let mut best: Option<(Header, usize)> = None;
     for row in 0..last {
         if is_data(sheet, row) {
             continue;
         }
-        if let Some((header, score)) = candidate(sheet, row)
+        if let Some((header, score)) = candidate(sheet, row, &next)
             && best.as_ref().is_none_or(|(_, most)| score > *most)
         {
             best = Some((header, score));
@@ -135,9 +136,22 @@ pub(crate) fn find(sheet: &Sheet, line: Option<usize>) -> Option<Header> {
     best.map(|(header, _)| header)
 }
 
+/// Returns for each row the first row from it on that is not a comment.
+fn next_rows(sheet: &Sheet) -> Vec<Option<usize>> {
+    let mut next = vec![None; sheet.len()];
+    let mut last = None;
+    for row in (0..sheet.len()).rev() {
+        if !is_comment(sheet, row) {
+            last = Some(row);
+        }
+        next[row] = last;
+    }
+    next
+}
+
 /// Reads a row as the names; returns the header and its score, or `None` if no data follow.
-fn candidate(sheet: &Sheet, row: usize) -> Option<(Header, usize)> {
-    let after = |from: usize| (from..sheet.len()).find(|row| !is_comment(sheet, *row));
+fn candidate(sheet: &Sheet, row: usize, next: &[Option<usize>]) -> Option<(Header, usize)> {
+    let after = |from: usize| next.get(from).copied().flatten();
     let mut first_data = after(row + 1)?;
     let mut units_row = None;
     if !is_data(sheet, first_data) && is_units_row(sheet, first_data) {

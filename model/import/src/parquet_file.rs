@@ -22,6 +22,10 @@ mod reader {
     use crate::recording::Recording;
     use crate::sheet::Sheet;
 
+    /// Most cells of a file, and most bytes of their texts.
+    const MAX_CELLS: u64 = 4_000_000;
+    const MAX_TEXT: usize = 128 << 20;
+
     /// Reads the columns of a Parquet file.
     ///
     /// # Errors
@@ -33,6 +37,18 @@ mod reader {
                 .with_source(error)
         };
         let reader = SerializedFileReader::new(Bytes::copy_from_slice(bytes)).map_err(damaged)?;
+        let too_large = || {
+            Diagnostic::new("the Parquet file is too large")
+                .with_help(format!("write at most {MAX_CELLS} cells with {} MB of text", MAX_TEXT >> 20))
+        };
+        // Before the work: a few bytes may repeat one value many times.
+        let file = reader.metadata().file_metadata();
+        let columns = file.schema().get_fields().len() as u64;
+        let rows = u64::try_from(file.num_rows()).unwrap_or(u64::MAX);
+        if rows.saturating_mul(columns) > MAX_CELLS {
+            return Err(too_large());
+        }
+        let (mut cells, mut text_bytes) = (0_u64, 0_usize);
         let mut sheet = Sheet::default();
         for field in reader.metadata().file_metadata().schema().get_fields() {
             sheet.push(field.name());
@@ -40,7 +56,12 @@ mod reader {
         sheet.end_row(1)?;
         for (i, row) in reader.get_row_iter(None).map_err(damaged)?.enumerate() {
             for (_, field) in row.map_err(damaged)?.get_column_iter() {
-                sheet.push(&text(field));
+                let text = text(field);
+                (cells, text_bytes) = (cells + 1, text_bytes + text.len());
+                if cells > MAX_CELLS || text_bytes > MAX_TEXT {
+                    return Err(too_large());
+                }
+                sheet.push(&text);
             }
             sheet.end_row(i + 2)?;
         }

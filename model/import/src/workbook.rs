@@ -17,7 +17,7 @@ pub(crate) use reader::read;
 mod reader {
     use std::io::Cursor;
 
-    use calamine::{Data, Range, Reader, open_workbook_auto_from_rs};
+    use calamine::{Data, DataRef, Range, Reader, Sheets, open_workbook_auto_from_rs};
     use pinswitch_diagnostic::Diagnostic;
 
     use crate::number::DecimalSign;
@@ -31,7 +31,10 @@ mod reader {
     /// Longest elapsed time in days: its hours have two digits.
     const MAX_ELAPSED_DAYS: f64 = 4.16;
     /// Most bytes of its unpacked contents.
-    const MAX_UNPACKED: u64 = 1 << 30;
+    const MAX_UNPACKED: u64 = 256 << 20;
+    /// Most cells of the rectangle that a sheet covers, and most bytes of their texts.
+    const MAX_CELLS: u64 = 4_000_000;
+    const MAX_TEXT: u64 = 128 << 20;
 
     /// Reads a sheet of a workbook: the named one, or the first with numbers.
     ///
@@ -54,6 +57,7 @@ mod reader {
             if sheet.is_some_and(|wanted| wanted != name) {
                 continue;
             }
+            require_bounded(&mut workbook, name)?;
             let range = workbook.worksheet_range(name).map_err(damaged)?;
             let has_numbers = range
                 .used_cells()
@@ -90,6 +94,63 @@ mod reader {
             sign: Some(DecimalSign::Point),
             notes,
         })
+    }
+
+    /// Refuses a sheet whose rectangle has too many cells, or too much text: a file of a kilobyte may have a cell in the
+    /// last row, and one text in every cell. Older formats and OpenDocument have smaller sheets.
+    fn require_bounded(workbook: &mut Sheets<Cursor<&[u8]>>, name: &str) -> Result<(), Diagnostic> {
+        let mut extent = Extent::default();
+        // A damaged sheet is reported when it is read.
+        match workbook {
+            Sheets::Xlsx(book) => {
+                let Ok(mut cells) = book.worksheet_cells_reader(name) else { return Ok(()) };
+                while let Ok(Some(cell)) = cells.next_cell() {
+                    extent.add(cell.get_position(), cell.get_value())?;
+                }
+            }
+            Sheets::Xlsb(book) => {
+                let Ok(mut cells) = book.worksheet_cells_reader(name) else { return Ok(()) };
+                while let Ok(Some(cell)) = cells.next_cell() {
+                    extent.add(cell.get_position(), cell.get_value())?;
+                }
+            }
+            Sheets::Xls(_) | Sheets::Ods(_) => {}
+        }
+        Ok(())
+    }
+
+    /// The rectangle of the cells so far, and the bytes of their texts.
+    #[derive(Default)]
+    struct Extent {
+        rows: Option<(u32, u32)>,
+        columns: Option<(u32, u32)>,
+        text: u64,
+    }
+
+    impl Extent {
+        fn add(&mut self, (row, column): (u32, u32), value: &DataRef<'_>) -> Result<(), Diagnostic> {
+            let with = |span: Option<(u32, u32)>, at: u32| {
+                span.map_or((at, at), |(first, last)| (first.min(at), last.max(at)))
+            };
+            let (rows, columns) = (with(self.rows, row), with(self.columns, column));
+            (self.rows, self.columns) = (Some(rows), Some(columns));
+            self.text += match value {
+                DataRef::String(text) => text.len() as u64,
+                DataRef::SharedString(text) => text.len() as u64,
+                _ => 0,
+            };
+            let count = |(first, last): (u32, u32)| u64::from(last - first) + 1;
+            if count(rows) * count(columns) > MAX_CELLS || self.text > MAX_TEXT {
+                let problem = format!(
+                    "the sheet is too large: cell {column} of row {row} extends it to more than {MAX_CELLS} cells",
+                    column = column + 1,
+                    row = row + 1
+                );
+                return Err(Diagnostic::new(problem)
+                    .with_help("remove cells far from the table, or export it as CSV"));
+            }
+            Ok(())
+        }
     }
 
     /// A time of up to four days as hours, minutes and seconds: dates of the year 1900 are such times.

@@ -8,6 +8,7 @@ use hyper::body::Bytes;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use serde::Deserialize;
+use tokio::sync::Semaphore;
 
 use super::state::stamp;
 use super::worker::Worker;
@@ -22,9 +23,14 @@ pub(super) struct Configurator {
     /// Engine of files, which take longer than a drag of a slider can wait.
     files: Mutex<Engine>,
     source: Arc<dyn ConfigurationSource>,
+    /// Processes for long requests that may still be started.
+    workers: Semaphore,
     /// Whether values can be written into the followed file.
     is_writable: bool,
 }
+
+/// Most processes for long requests at once.
+const MAX_WORKERS: usize = 4;
 
 /// How long a request takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +52,7 @@ impl Workload {
             ask: Cow<'a, str>,
         }
         match serde_json::from_slice::<Kind<'_>>(request).as_ref().map(|kind| &*kind.ask) {
-            Ok("search" | "calibrate") => Self::Long,
+            Ok("search" | "calibrate" | "import") => Self::Long,
             Ok("files" | "file" | "zip") => Self::Files,
             _ => Self::Design,
         }
@@ -92,7 +98,13 @@ impl From<Diagnostic> for SaveError {
 
 impl Configurator {
     pub(super) fn new(source: Arc<dyn ConfigurationSource>, is_writable: bool) -> Self {
-        Self { designs: Mutex::default(), files: Mutex::default(), source, is_writable }
+        Self {
+            designs: Mutex::default(),
+            files: Mutex::default(),
+            source,
+            workers: Semaphore::new(MAX_WORKERS),
+            is_writable,
+        }
     }
 
     /// Describes what the server shows, as JSON: the followed file, whether it can be written, and
@@ -110,6 +122,8 @@ impl Configurator {
     pub(super) async fn answer(self: Arc<Self>, request: Bytes) -> Answer {
         let workload = Workload::of(&request);
         if let (Workload::Long, Some(command)) = (workload, self.source.worker()) {
+            // Others wait for their turn, or until their page goes away.
+            let _turn = self.workers.acquire().await;
             let program = command.get_program().to_string_lossy().into_owned();
             match Worker::start(command) {
                 // No second attempt here: what ended a process could end the server, or delay other

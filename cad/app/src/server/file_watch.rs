@@ -20,7 +20,7 @@ const MISSING_SETTLE_TIME: Duration = Duration::from_secs(2);
 const TRUNCATED_SETTLE_TIME: Duration = Duration::from_secs(2);
 
 /// Longest file that is followed, in bytes: some times the largest 3MF of a set.
-const MAX_FOLLOWED_BYTES: u64 = 64 << 20;
+const MAX_FOLLOWED_BYTES: u64 = 16 << 20;
 
 /// The content of a file, and since when it is unchanged.
 #[derive(Debug)]

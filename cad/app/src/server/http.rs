@@ -38,6 +38,8 @@ const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
 const CONNECTION_TIMEOUT: Duration = Duration::from_secs(600);
 /// Time in which the body of a request must arrive.
 const BODY_TIMEOUT: Duration = Duration::from_secs(30);
+/// Most requests whose bodies arrive at once: slow ones leave connections for pages.
+const MAX_POSTS: usize = MAX_CONNECTIONS / 2;
 /// Most bytes of all long bodies that arrive or are answered at once. A request beyond it is refused,
 /// and can be repeated.
 const MAX_ARRIVING_BYTES: usize = 128 << 20;
@@ -54,6 +56,8 @@ const POST_PATHS: [&str; 2] = ["/answer", "/save"];
 struct Site {
     states: watch::Receiver<State>,
     long_polls: Semaphore,
+    /// Requests whose bodies may still arrive at once.
+    posts: Semaphore,
     /// Bytes that long bodies may still have.
     arriving_bytes: Semaphore,
     address: SocketAddr,
@@ -83,6 +87,7 @@ pub(super) async fn serve(
     let site = Arc::new(Site {
         states,
         long_polls: Semaphore::new(MAX_LONG_POLLS),
+        posts: Semaphore::new(MAX_POSTS),
         arriving_bytes: Semaphore::new(MAX_ARRIVING_BYTES),
         address,
         policy: page_policy(),
@@ -161,7 +166,10 @@ impl Site {
 
     /// Answers a request of the configurator.
     async fn answer_post(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
-        let arrived = tokio::time::timeout(BODY_TIMEOUT, self.body(body)).await;
+        let arrived = match self.posts.try_acquire() {
+            Ok(_post) => tokio::time::timeout(BODY_TIMEOUT, self.body(body)).await,
+            Err(_) => Ok(Err(BodyError::Busy)),
+        };
         let (status, reason) = match arrived {
             // The permits are returned after the answer.
             Ok(Ok((request, _permits))) => {
@@ -180,7 +188,7 @@ impl Site {
                 (StatusCode::PAYLOAD_TOO_LARGE, reason)
             }
             Ok(Err(BodyError::Busy)) => {
-                let reason = "other long requests are being answered: repeat it later".to_owned();
+                let reason = "other requests are being answered: repeat it later".to_owned();
                 (StatusCode::SERVICE_UNAVAILABLE, reason)
             }
             Ok(Err(BodyError::Ended)) => (StatusCode::BAD_REQUEST, "the request ended early".to_owned()),

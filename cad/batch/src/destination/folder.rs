@@ -135,7 +135,7 @@ impl Folder {
     }
 
     pub(super) fn is_same(&self, one: &str, other: &str) -> bool {
-        same_file::is_same_file(self.root.join(one), self.root.join(other)).unwrap_or(false)
+        is_same(&self.root.join(one), &self.root.join(other))
     }
 
     pub(super) fn local_file(&self) -> std::io::Result<tempfile::NamedTempFile> {
@@ -203,4 +203,18 @@ fn rename(scratch: &Path, target: &Path) -> std::io::Result<()> {
         }
         done => done,
     }
+}
+
+/// Whether two paths are links to one file, which is not opened: it may be a pipe.
+#[cfg(unix)]
+fn is_same(one: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |path: &Path| std::fs::metadata(path).ok().map(|facts| (facts.dev(), facts.ino()));
+    let one = identity(one);
+    one.is_some() && one == identity(other)
+}
+
+#[cfg(not(unix))]
+fn is_same(one: &Path, other: &Path) -> bool {
+    same_file::is_same_file(one, other).unwrap_or(false)
 }

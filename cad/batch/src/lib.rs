@@ -87,7 +87,8 @@ pub use checksum::{has_valid_checksum, with_checksum};
 pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 pub use curves::{
-    ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveTableError, CurveTally, predict_rows,
+    ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveOutcome, CurveTableError, CurveTally,
+    predict_rows,
 };
 #[cfg(feature = "cloud")]
 pub use destination::Store;

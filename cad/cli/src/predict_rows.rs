@@ -6,7 +6,8 @@ use std::time::Duration;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pinswitch_batch::{
-    ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveTableError, CurveTally, predict_rows,
+    ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveOutcome, CurveTableError, CurveTally,
+    predict_rows,
 };
 use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::PlateauTable;
@@ -243,16 +244,23 @@ fn progress_bar(rows: u64) -> Result<ProgressBar, Failure> {
     Ok(bar)
 }
 
-fn report(out: &Path, tally: &CurveTally) -> Result<(), Failure> {
-    let CurveTally { predicted, refused, failed } = tally;
-    log::info!("{}: {predicted} rows predicted, {refused} refused, {failed} failed", out.display());
-    if *refused > 0 {
-        let problem = format!("{refused} of {} rows are refused", tally.rows());
-        warn(Diagnostic::new(problem).with_help("see columns status and reason"));
+fn report(out: &Path, outcome: &CurveOutcome) -> Result<(), Failure> {
+    let CurveTally { predicted, refused, failed } = outcome.tally;
+    let rows = outcome.tally.rows();
+    let existing = match outcome.existing {
+        0 => String::new(),
+        existing => format!("; {existing} existed before"),
+    };
+    let out = out.display();
+    log::info!("{out}: {predicted} of {rows} rows predicted, {refused} refused, {failed} failed{existing}");
+    let help = "see columns status and reason";
+    if refused > 0 {
+        warn(Diagnostic::new(format!("{refused} of {rows} rows refused")).with_help(help));
     }
-    if *failed > 0 {
-        let problem = format!("{failed} rows failed");
-        return Err(Failure::failed(Diagnostic::new(problem).with_help("see columns status and reason")));
+    if failed > 0 {
+        return Err(Failure::failed(
+            Diagnostic::new(format!("{failed} of {rows} rows failed")).with_help(help),
+        ));
     }
     Ok(())
 }

@@ -70,7 +70,7 @@ impl Rows {
         }
         if starts.is_empty() {
             let error = Diagnostic::new("the table has no rows");
-            let error = error.with_help("write one variant a line below the header");
+            let error = error.with_help("write at least one row below the header");
             return Err(at_row(error, file, text, 0));
         }
         Ok(Self { file: file.to_owned(), text: text.to_owned(), fields, starts })

@@ -76,6 +76,14 @@ impl ConfigurationTable {
         &self.fields
     }
 
+    /// Returns the values in the cells of the first rows, at most `most`.
+    ///
+    /// # Errors
+    /// A malformed row.
+    pub fn first_rows(&self, most: u64) -> Result<Vec<Vec<Value>>, Diagnostic> {
+        self.reader()?.take(0..self.count.min(most))
+    }
+
     /// Returns the SHA-256 of the file.
     pub(super) fn sha256(&self) -> &str {
         &self.sha256
@@ -141,7 +149,7 @@ fn parquet_fields(bytes: &Bytes, file: &str) -> Result<(Vec<ParameterRef>, u64),
     let count = groups.map(|group| u64::try_from(group.num_rows()).unwrap_or_default()).sum();
     if count == 0 || fields.is_empty() {
         let error = Diagnostic::new("the table has no rows").with_location(Location::file(file));
-        return Err(error.with_help("write one configuration per row"));
+        return Err(error.with_help("write at least one row"));
     }
     Ok((fields, count))
 }

@@ -8,6 +8,7 @@ mod columns;
 mod configurations;
 mod work_folder;
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::{self, BufWriter, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -33,7 +34,7 @@ use crate::prediction_cache::PredictionCache;
 use crate::table::Column;
 use crate::table_files::{BatchTableError, CsvTable, ParquetTable};
 use columns::RowOutcome;
-use work_folder::{FinishedOutput, WorkFolder};
+use work_folder::{FinishedBlock, FinishedOutput, WorkFolder};
 
 /// Most rows of a block: after a run is killed, at most this many per thread are predicted again.
 const BLOCK_ROWS: u64 = 256;
@@ -111,6 +112,15 @@ impl CurveTally {
     }
 }
 
+/// A finished table of curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CurveOutcome {
+    /// Its rows by their status.
+    pub tally: CurveTally,
+    /// Number of rows that an earlier run has predicted.
+    pub existing: u64,
+}
+
 /// Why a table of curves cannot be written. Finished blocks remain, and the same command resumes the run.
 #[derive(Debug)]
 pub enum CurveTableError {
@@ -171,17 +181,19 @@ fn file_error(path: &Path) -> impl FnOnce(io::Error) -> CurveTableError + '_ {
 ///
 /// # Errors
 /// [`CurveTableError`]; an earlier file at `out` is unchanged.
-pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveTally, CurveTableError> {
+pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveOutcome, CurveTableError> {
     let format = CurveFormat::of_file(out).map_err(CurveTableError::Input)?;
     let work = WorkFolder::lock(out, job.digest(format), job.policy)?;
     if let Some(finished) = work.finished()?
         && file_sha256(out).as_ref() == Some(&finished.sha256)
     {
-        (job.progress)(finished.tally.rows());
-        return Ok(finished.tally);
+        let FinishedOutput { tally, .. } = finished;
+        (job.progress)(tally.rows());
+        return Ok(CurveOutcome { tally, existing: tally.rows() });
     }
     let mut blocks = work.resume()?;
-    blocks.values().for_each(|block| (job.progress)(block.tally.rows()));
+    let existing = total(&blocks).rows();
+    (job.progress)(existing);
     let pool = Pool::new(job.threads).map_err(CurveTableError::Threads)?;
     let predictor = Predictor {
         job,
@@ -210,8 +222,7 @@ pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveTally, CurveT
         })?;
         blocks.extend(written);
     }
-    let mut tally = CurveTally::default();
-    blocks.values().for_each(|block| tally.add(block.tally));
+    let tally = total(&blocks);
     let mut sha256 = String::new();
     replace_file_with(out, job.policy, |file| {
         let mut output = HashingWriter { output: BufWriter::new(file), hash: Sha256::new() };
@@ -223,7 +234,14 @@ pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveTally, CurveT
     })
     .map_err(file_error(out))?;
     work.finish(FinishedOutput { sha256, tally }, &blocks)?;
-    Ok(tally)
+    Ok(CurveOutcome { tally, existing })
+}
+
+/// Returns the totals of blocks.
+fn total(blocks: &BTreeMap<u64, FinishedBlock>) -> CurveTally {
+    let mut tally = CurveTally::default();
+    blocks.values().for_each(|block| tally.add(block.tally));
+    tally
 }
 
 /// Writes a table that consists of these blocks.

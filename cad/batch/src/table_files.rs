@@ -372,7 +372,7 @@ fn check_extents(metadata: &ParquetMetaData, length: u64) -> Result<(), BatchTab
     Ok(())
 }
 
-fn cell(field: &Field) -> Cell {
+pub(crate) fn cell(field: &Field) -> Cell {
     match field {
         Field::Str(text) => Cell::Text(text.clone()),
         Field::Double(x) => Cell::Real(*x),

@@ -403,3 +403,74 @@ fn file_sha256(path: &Path) -> Option<String> {
     io::copy(&mut file, &mut hash).ok()?;
     Some(hexadecimal(&hash.hash.finalize()))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use super::*;
+    use crate::table_files::{column_names, open_parquet, parquet_rows};
+
+    fn predict(table: &ConfigurationTable, out: &Path, rows: &AtomicU64) -> CurveOutcome {
+        let mut base = Configuration::default();
+        pinswitch_switch::config::assign(&mut base, "friction.points=2").unwrap();
+        let job = CurveJob {
+            table,
+            base: &base,
+            law: None,
+            threads: 2,
+            policy: LockPolicy::Refuse,
+            progress: &|count| {
+                rows.fetch_add(count, Ordering::Relaxed);
+            },
+        };
+        predict_rows(&job, out).unwrap()
+    }
+
+    /// 600 rows are three blocks, with 87 refused rows among them.
+    fn table() -> ConfigurationTable {
+        let row = |i: u32| format!("\"[{}]\",{}\n", 5 + i % 2, if i % 7 == 3 { -1.0 } else { 12.5 });
+        let text: String = (0..610).map(row).collect();
+        ConfigurationTable::read(format!("layout.pins,shell.width_mm\n{text}").into_bytes(), "t.csv").unwrap()
+    }
+
+    #[test]
+    fn csv_and_parquet_are_equal() {
+        let folder = tempfile::tempdir().unwrap();
+        let [csv, parquet] = ["t.csv", "t.parquet"].map(|name| folder.path().join(name));
+        let rows = AtomicU64::new(0);
+        let outcome = predict(&table(), &csv, &rows);
+        let tally = CurveTally { predicted: 523, refused: 87, failed: 0 };
+        assert_eq!((outcome, rows.into_inner()), (CurveOutcome { tally, existing: 0 }, 610));
+        assert_eq!(predict(&table(), &parquet, &AtomicU64::new(0)), outcome);
+        let reader = open_parquet(Bytes::from(std::fs::read(&parquet).unwrap())).unwrap();
+        let mut text = csv::Reader::from_path(&csv).unwrap();
+        assert!(column_names(&reader).eq(text.headers().unwrap().iter()));
+        let cells = |row: parquet::record::Row| -> Vec<String> {
+            row.get_column_iter().map(|(_, field)| crate::table_files::cell(field).to_string()).collect()
+        };
+        let parquet: Vec<_> = parquet_rows(reader).unwrap().map(|row| cells(row.unwrap())).collect();
+        let csv: Vec<Vec<String>> =
+            text.records().map(|r| r.unwrap().iter().map(str::to_owned).collect()).collect();
+        assert_eq!(csv.len(), 2 * 523 + 87);
+        assert_eq!(csv, parquet);
+    }
+
+    #[test]
+    fn one_run_writes_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("t.csv");
+        let _lock = WorkFolder::lock(&out, String::new(), LockPolicy::Refuse).unwrap();
+        let job = CurveJob {
+            table: &table(),
+            base: &Configuration::default(),
+            law: None,
+            threads: 1,
+            policy: LockPolicy::Refuse,
+            progress: &|_| {},
+        };
+        let error = predict_rows(&job, &out).unwrap_err();
+        assert!(error.to_string().contains("another run is writing into this folder"), "{error}");
+        assert!(!out.exists());
+    }
+}

@@ -18,6 +18,8 @@ const LOCK_FILE: &str = ".pinswitch-lock";
 const MAX_VANISHED: usize = 100;
 /// Interval of attempts to lock a folder that is in use.
 const RETRY_INTERVAL: Duration = Duration::from_millis(20);
+/// Most attempts to read who has the lock.
+const HOLDER_ATTEMPTS: usize = 5;
 /// Longest content of a lock file that is read: a process and a time have at most 42 bytes.
 const MAX_HOLDER: u64 = 64;
 
@@ -63,8 +65,19 @@ impl Busy {
         })
     }
 
-    /// Reads the holder from the lock file.
+    /// Reads the holder from the lock file. A process writes its name just after it has locked the file.
     fn of(file: &mut File) -> Self {
+        for _ in 0..HOLDER_ATTEMPTS {
+            let busy = Self::read(file);
+            if busy.holder.is_some() {
+                return busy;
+            }
+            std::thread::sleep(RETRY_INTERVAL);
+        }
+        Self { holder: None }
+    }
+
+    fn read(file: &mut File) -> Self {
         let mut text = String::new();
         let read = file.rewind().and_then(|()| file.take(MAX_HOLDER).read_to_string(&mut text));
         let holder = read.ok().and_then(|_| {

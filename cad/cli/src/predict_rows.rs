@@ -92,7 +92,7 @@ impl Args for SourceUnlessRows {
 }
 
 impl Rows {
-    /// Predicts the rows, with `source` as the base of configurations; `None` if there are no rows.
+    /// Predicts the rows, with `source` as the base of configurations; `None` without `--rows`.
     pub(super) fn run(&self, source: Option<&Source>, law: &LawChoice) -> Option<Result<(), Failure>> {
         let rows = self.rows.as_ref()?;
         Some(crate::input::read_file(rows).and_then(|bytes| {
@@ -187,12 +187,13 @@ impl Rows {
             Some((model, name)) => pinswitch_app::calibrated_curve(design, model, name),
             None => by_law(design),
         };
-        let model_sha256 = self.model.as_deref().and_then(crate::input::sha256_read);
-        let law: Option<(String, CurveFunction<'_>)> = match (model_sha256, law.name()) {
-            (Some(sha256), _) => Some((sha256, &by_model)),
+        let law: Option<(String, CurveFunction<'_>)> = match (&model, law.name()) {
+            (Some((model, _)), _) => {
+                // A model from a pipe has no recorded hash.
+                let sha256 = self.model.as_deref().and_then(crate::input::sha256_read);
+                Some((sha256.unwrap_or_else(|| format!("{model:?}")), &by_model))
+            }
             (None, Some(name)) => Some((name.to_owned(), &by_law)),
-            // A model from a pipe has no recorded hash.
-            (None, None) if model.is_some() => Some((String::new(), &by_model)),
             (None, None) => None,
         };
         let bar = progress_bar(table.count())?;

@@ -155,7 +155,8 @@ fn parquet_fields(bytes: &Bytes, file: &str) -> Result<(Vec<ParameterRef>, u64),
 }
 
 fn damaged(error: &BatchTableError, file: &str) -> Diagnostic {
-    Diagnostic::from(error.diagnostic())
+    error
+        .diagnostic()
         .with_location(Location::file(file))
         .with_help("write the table again, uncompressed or compressed with Snappy, or as CSV")
 }

@@ -370,7 +370,7 @@ impl Predictor<'_> {
     }
 
     fn curve(&self, configuration: Configuration) -> Result<FrictionCurve, Diagnostic> {
-        let design = Design::new(configuration).map_err(Diagnostic::from)?;
+        let design = Design::new(configuration)?;
         match &self.job.law {
             Some((_, curve)) => curve(&design),
             None => Ok(self.predictions.get(&design).curve(&design).clone()),

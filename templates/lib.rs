@@ -55,8 +55,9 @@ pub const TEMPLATES: [Template; 10] = [
 ];
 
 /// Example files of other kinds, by the name that `pinswitch init` takes; each explains its keys and is valid unchanged.
-pub const EXAMPLES: [(&str, &str); 6] = [
+pub const EXAMPLES: [(&str, &str); 7] = [
     ("sweep", include_str!("batch/sweep.toml")),
+    ("configurations", include_str!("batch/configurations.csv")),
     ("effects", include_str!("rig/effects.toml")),
     ("plan", include_str!("rig/plan.toml")),
     ("run", include_str!("rig/run.toml")),

@@ -74,6 +74,8 @@ fn shipped_files_are_accepted() {
         let bytes = std::fs::read(repository(&format!("templates/rig/{name}.toml"))).unwrap();
         assert_eq!(judge(name, &bytes), Ok(Reading::Accepted), "{name}");
     }
-    let sweep = std::fs::read(repository("templates/batch/sweep.toml")).unwrap();
-    assert_eq!(judge("sweep", &sweep), Ok(Reading::Accepted));
+    for (name, file) in [("sweep", "sweep.toml"), ("configurations", "configurations.csv")] {
+        let bytes = std::fs::read(repository("templates/batch").join(file)).unwrap();
+        assert_eq!(judge(name, &bytes), Ok(Reading::Accepted), "{file}");
+    }
 }

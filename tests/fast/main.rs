@@ -32,6 +32,7 @@ mod mesh_files;
 mod next_experiment;
 mod own_effects;
 mod pictures;
+mod predict_rows;
 mod provenance;
 mod readme;
 mod reference_shell;

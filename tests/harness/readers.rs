@@ -10,8 +10,8 @@ use std::io::Cursor;
 use std::path::Path;
 
 use pinswitch_batch::{
-    Destination, MergeError, Observer, Options, Schema, Shard, Sweep, SweepSource, TableWriter,
-    VariantOutcome, Variants, merge, mesh_file, partial_folder, read_rows, run,
+    ConfigurationTable, Destination, MergeError, Observer, Options, Schema, Shard, Sweep, SweepSource,
+    TableWriter, VariantOutcome, Variants, merge, mesh_file, partial_folder, read_rows, run,
 };
 use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::effects::{OwnEffect, Vocabulary, own_effects_text, read_own_effects};
@@ -49,7 +49,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 18] = [
+pub const READERS: [Reader; 19] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -65,6 +65,7 @@ pub const READERS: [Reader; 18] = [
     Reader { name: "stl", judge: stl },
     Reader { name: "three_mf", judge: three_mf },
     Reader { name: "shard_table", judge: shard_table },
+    Reader { name: "configurations", judge: configurations },
     Reader { name: "batch_files", judge: batch_files },
     Reader { name: "import", judge: import_file },
     Reader { name: "import_map", judge: import_map },
@@ -463,6 +464,20 @@ fn small_source() -> SweepSource {
         base: to_toml(&Configuration::default()),
         rows: None,
     }
+}
+
+/// Reads the rows of a table of configurations.
+fn configurations(bytes: &[u8]) -> Result<Reading, String> {
+    let rows = ConfigurationTable::read(bytes.to_vec(), FILE)
+        .and_then(|table| Ok((table.first_rows(10_000)?, table.fields().len())));
+    let (rows, columns) = match rows {
+        Ok(read) => read,
+        Err(e) => return refused(&e),
+    };
+    require(!rows.is_empty() && rows.iter().all(|row| row.len() == columns), || {
+        "no rows, or a row of another width".to_owned()
+    })?;
+    Ok(Reading::Accepted)
 }
 
 /// Reads rows from a Parquet file, as a merge of shards does.

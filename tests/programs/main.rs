@@ -1,4 +1,4 @@
-//! Tests with external programs: slicers, mesh checkers, a browser, Slurm. Where its program is
+//! Tests with external programs: slicers, mesh checkers, a browser, Slurm, Snakemake. Where its program is
 //! absent, a test prints `SKIPPED` and the reason.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

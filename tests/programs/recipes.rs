@@ -1,5 +1,5 @@
-//! The recipes for many machines: a Slurm cluster of one node runs the job array, and a schema
-//! checks the Kubernetes Job.
+//! The recipes for many machines: a Slurm cluster of one node runs the job array, Snakemake runs its
+//! workflow, a shell runs the commands of the Nextflow workflow, and a schema checks the Kubernetes Job.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -147,10 +147,72 @@ fn slurm_array_equals_one_run() {
     };
     assert!(path.join("array/index.html").exists(), "{merged}: {}", logs());
     drop(slurm);
+    assert_equals_one_run(path, "array");
+}
+
+/// Asserts that the merged batch in the folder `out` has the files of one run.
+fn assert_equals_one_run(path: &Path, out: &str) {
     done(path, &["batch", "sweep.toml", "--out", "whole"]);
-    let mut array = hashes(&path.join("array"));
-    array.retain(|name, _| !name.starts_with("shards/"));
-    assert_eq!(differences(&hashes(&path.join("whole")), &array), Vec::<String>::new());
+    let mut merged = hashes(&path.join(out));
+    merged.retain(|name, _| !name.starts_with("shards/"));
+    assert_eq!(differences(&hashes(&path.join("whole")), &merged), Vec::<String>::new());
+}
+
+#[test]
+fn snakemake_workflow_equals_one_run() {
+    if Command::new("snakemake").arg("--version").output().is_err() {
+        crate::harness::report_skipped("snakemake is not installed (pip install snakemake)");
+        return;
+    }
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    let run = || {
+        let output = Command::new("snakemake")
+            .arg("--snakefile")
+            .arg(recipe("Snakefile"))
+            .args(["--cores", "2", "--config", "sweep=sweep.toml", "out=made/snakes", "shards=3"])
+            .arg(format!("pinswitch={}", env!("CARGO_BIN_EXE_pinswitch")))
+            .env("XDG_CACHE_HOME", path.join("cache"))
+            .current_dir(path)
+            .output()
+            .unwrap();
+        let message = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(output.status.success(), "{message}");
+        message
+    };
+    run();
+    assert_equals_one_run(path, "made/snakes");
+    // Every shard is finished.
+    assert!(run().contains("Nothing to be done"));
+}
+
+/// Replaces the variables of the workflow and runs its commands in a shell: Nextflow itself cannot be installed
+/// without its own server.
+#[test]
+fn nextflow_commands_equal_one_run() {
+    let text = std::fs::read_to_string(recipe("pinswitch.nf")).unwrap();
+    let scripts: Vec<_> =
+        text.lines().filter_map(|line| line.trim().strip_prefix("script: \"")?.strip_suffix('"')).collect();
+    let [shard, merge] = scripts[..] else { panic!("{scripts:?}") };
+    let folder = with_sweep(SWEEP);
+    let run = |script: &str, k: u32| {
+        let values = [
+            ("${params.pinswitch}", env!("CARGO_BIN_EXE_pinswitch")),
+            ("${params.sweep}", "sweep.toml"),
+            ("${params.out}", "flow"),
+            ("${params.shards}", "3"),
+            ("${task.cpus}", "2"),
+            ("${k}", &k.to_string()),
+        ];
+        let script =
+            values.iter().fold(script.to_owned(), |script, (name, value)| script.replace(name, value));
+        assert!(!script.contains('$'), "{script}");
+        let status = Command::new("sh").args(["-c", &script]).current_dir(folder.path()).status().unwrap();
+        assert!(status.success(), "{script}");
+    };
+    (1..=3).for_each(|k| run(shard, k));
+    run(merge, 0);
+    assert_equals_one_run(folder.path(), "flow");
 }
 
 #[test]

@@ -44,6 +44,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`predict_rows`] predicts the curves of a [`ConfigurationTable`] without making parts.
+//!
 //! [`run`] makes the variants at a [`Destination`]; `cad/examples/sweep.rs` is a complete program.
 //! `cad/doc/batch.md` describes the files of a batch, how it is resumed and distributed, and what
 //! it costs.
@@ -55,6 +57,7 @@ mod axis;
 mod checksum;
 mod constraint;
 mod content;
+mod curves;
 mod destination;
 mod diagnostics;
 mod estimate;
@@ -83,6 +86,10 @@ pub use axis::{Method, ParameterRef, SweepAxis, unit_points};
 pub use checksum::{has_valid_checksum, with_checksum};
 pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
+pub use curves::{
+    ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveOutcome, CurveTableError, CurveTally,
+    predict_rows,
+};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
 pub use destination::{Destination, DestinationError, DestinationLock, Folder};

@@ -27,6 +27,14 @@ impl Pool {
         Ok(Self {})
     }
 
+    /// Returns the number of threads.
+    pub(crate) fn threads(&self) -> usize {
+        #[cfg(feature = "parallel")]
+        return self.threads.current_num_threads();
+        #[cfg(not(feature = "parallel"))]
+        return 1;
+    }
+
     /// Calls `work`; the loops in it run on the threads of the pool.
     pub(crate) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         #[cfg(feature = "parallel")]
@@ -34,6 +42,14 @@ impl Pool {
         #[cfg(not(feature = "parallel"))]
         return work();
     }
+}
+
+/// Calls `work` for each item; returns the results in the order of the items.
+pub(crate) fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    return items.par_iter().map(work).collect();
+    #[cfg(not(feature = "parallel"))]
+    return items.iter().map(work).collect();
 }
 
 /// Calls `work` for each index; returns the results in the order of the indices.

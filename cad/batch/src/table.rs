@@ -201,7 +201,7 @@ fn dimensions() -> Vec<String> {
     design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit)).collect()
 }
 
-fn kind_of(value: &toml_edit::Value) -> ColumnType {
+pub(super) fn kind_of(value: &toml_edit::Value) -> ColumnType {
     match value {
         toml_edit::Value::Integer(_) => ColumnType::Integer,
         toml_edit::Value::Float(_) => ColumnType::Real,
@@ -210,7 +210,7 @@ fn kind_of(value: &toml_edit::Value) -> ColumnType {
     }
 }
 
-fn cell(value: &Json, kind: ColumnType) -> Cell {
+pub(super) fn cell(value: &Json, kind: ColumnType) -> Cell {
     let cell = match kind {
         ColumnType::Real => value.as_f64().map(Cell::Real),
         ColumnType::Integer => value.as_i64().map(Cell::Integer),

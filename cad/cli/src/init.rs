@@ -19,7 +19,7 @@ use crate::write::write_file;
   pinswitch init reference")]
 pub(super) struct Arguments {
     /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
-    /// of other kinds: `sweep` for a batch, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
+    /// of other kinds: `sweep` for a batch, `configurations` for a table to predict, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
     /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file.
     name: String,
     /// Kind of rig, with the name `rig` [default: the paper's].
@@ -32,6 +32,9 @@ pub(super) struct Arguments {
     #[arg(long)]
     force: bool,
 }
+
+/// Name of the example that is a CSV; the others are TOML files.
+const CONFIGURATIONS: &str = "configurations";
 
 /// Commands whose names may be given by mistake, and the kind of file that each needs.
 const NEEDS: [(&str, &str); 5] =
@@ -79,7 +82,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Failure::bad_input(Diagnostic::new(problem).with_location(location).with_help(help)))
     };
     if path.is_dir() {
-        let file = path.join(format!("{}.toml", arguments.name));
+        let ending = if name == CONFIGURATIONS { "csv" } else { "toml" };
+        let file = path.join(format!("{name}.{ending}"));
         return refused("is a folder", format!("give the name of a file, such as {}", file.display()));
     }
     if path.exists() && !arguments.force {
@@ -116,7 +120,10 @@ mod tests {
             assert_eq!(diagnostic.location(), Some(&Location::file(name)));
             let help = diagnostic.help().unwrap();
             assert!(help.starts_with(suggestion), "{help}");
-            assert!(help.contains("the kinds are sweep, effects, plan, run, rig, import,"), "{help}");
+            assert!(
+                help.contains("the kinds are sweep, configurations, effects, plan, run, rig, import,"),
+                "{help}"
+            );
         }
     }
 }

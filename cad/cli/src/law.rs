@@ -45,6 +45,11 @@ impl LawChoice {
         }
     }
 
+    /// Returns the name of the law, unless the default applies.
+    pub(super) fn name(&self) -> Option<&str> {
+        self.law.as_deref()
+    }
+
     /// Predicts the friction of `design` with the chosen law.
     ///
     /// # Errors

@@ -12,14 +12,17 @@ use super::law::{LawChoice, compare_laws};
 use super::predict_rows::{Rows, SourceUnlessRows};
 use super::{Failure, print_data, print_json};
 
-/// Predict the friction curve of a configuration, without making parts.
+/// Predict the friction curve of a configuration, or of every row of a table, without making parts.
 ///
-/// The curve has a law, a 95 % band and a status: published, interpolated or extrapolated.
+/// A curve has a law, a 95 % band and a status: published, interpolated or extrapolated. With --rows, each row of a CSV or
+/// Parquet table changes the configuration, and all curves become one table.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch predict three-double
   pinswitch predict three-double --set layout.pins=[4,8,12] --json
-  pinswitch predict three-double --law physics")]
+  pinswitch predict three-double --law physics
+  pinswitch predict three-double --rows configurations.csv --out curves.parquet
+  pinswitch predict --model model.toml --rows plateaus.csv --out predicted.csv")]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: SourceUnlessRows,
@@ -41,7 +44,7 @@ struct Output {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(outcome) = arguments.rows.run() {
+    if let Some(outcome) = arguments.rows.run(arguments.source.0.as_ref(), &arguments.law) {
         return outcome;
     }
     let source = arguments.source.0.as_ref().ok_or_else(|| {

@@ -120,6 +120,15 @@ impl Source {
         }
     }
 
+    /// Reads the configuration with everything that overrides it.
+    ///
+    /// # Errors
+    /// As [`Self::design`], without the rules that need a design.
+    pub(super) fn configuration(&self) -> Result<Configuration, Failure> {
+        let (text, file, _) = read_configuration_text(self.config())?;
+        self.configuration_of_text(&text, &file).map(|(configuration, _)| configuration)
+    }
+
     /// As [`Self::design`], with the origin of the configuration and the law of its set.
     ///
     /// # Errors

@@ -40,14 +40,26 @@ impl From<Error> for RewriteError {
 /// `WouldBlock` if another process writes into its folder for longer than `policy` and one second; `NotFound` if its
 /// folder does not exist; `PermissionDenied` if it is write-protected; the error of the file system.
 pub fn replace_file(path: &Path, bytes: &[u8], policy: LockPolicy) -> Result<()> {
+    replace_file_with(path, policy, |file| file.write_all(bytes))
+}
+
+/// As [`replace_file`], with content that `write` produces: a file that is larger than the memory is written in steps.
+///
+/// # Errors
+/// As [`replace_file`], and the error of `write`; the old file is unchanged.
+pub fn replace_file_with(
+    path: &Path,
+    policy: LockPolicy,
+    write: impl FnOnce(&mut File) -> Result<()>,
+) -> Result<()> {
     require_path(path)?;
     let path = &target(path)?;
     match std::fs::metadata(path) {
         Ok(existing) if existing.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-        Ok(existing) if !existing.is_file() => return write_to_special(path, bytes),
+        Ok(existing) if !existing.is_file() => return write(&mut open_special(path)?),
         _ => {}
     }
-    let (staging, temporary) = staged_next_to(path, bytes, policy)?;
+    let (staging, temporary) = staged_next_to(path, write, policy)?;
     temporary.persist(path).map_err(|e| e.error)?;
     drop(staging);
     Ok(())
@@ -75,7 +87,7 @@ pub fn rewrite_file(
         }
         require_ordinary(&existing)?;
     }
-    let (_lock, temporary) = staged_next_to(path, bytes, policy)?;
+    let (_lock, temporary) = staged_next_to(path, |file| file.write_all(bytes), policy)?;
     // A file of another length cannot be the expected one.
     let most = expected.map_or(0, <[u8]>::len) as u64;
     let is_expected = |path: &Path| match read_own(path, most) {
@@ -157,7 +169,7 @@ fn target(path: &Path) -> Result<PathBuf> {
 /// Locks the folder of `path` and stages a file in it.
 fn staged_next_to(
     path: &Path,
-    bytes: &[u8],
+    write: impl FnOnce(&mut File) -> Result<()>,
     policy: LockPolicy,
 ) -> Result<(Staging, tempfile::NamedTempFile)> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
@@ -168,7 +180,7 @@ fn staged_next_to(
     let lock = Staging::new(FolderLock::take(folder, policy.at_least(SINGLE_FILE_TIME))?)?;
     let mut temporary =
         temporary_file().prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX).tempfile_in(folder)?;
-    temporary.write_all(bytes)?;
+    write(temporary.as_file_mut())?;
     if let Some(existing) = existing {
         keep_attributes(temporary.as_file(), &existing)?;
     }
@@ -234,22 +246,23 @@ fn exchange(_: &Path, _: &Path) -> Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// Writes to a pipe that is being read, or to a device.
-fn write_to_special(path: &Path, bytes: &[u8]) -> Result<()> {
+/// Opens a pipe that is being read, or a device.
+fn open_special(path: &Path) -> Result<File> {
     let file = without_waiting().write(true).open(path);
     #[cfg(unix)]
     let file = file.map_err(|e| {
         let is_unread = e.raw_os_error() == Some(rustix::io::Errno::NXIO.raw_os_error());
         if is_unread { Error::new(ErrorKind::BrokenPipe, "no program reads this pipe") } else { e }
     });
-    let mut file = file?;
+    let file = file?;
     // A reader that is slower than this command is waited for.
     #[cfg(unix)]
     rustix::fs::fcntl_setfl(&file, rustix::fs::OFlags::empty())?;
-    file.write_all(bytes)
+    Ok(file)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use super::*;
     use std::os::unix::fs::{MetadataExt, PermissionsExt};

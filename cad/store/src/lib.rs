@@ -5,7 +5,7 @@
 //! | [`FolderLock`] | one process writes into a folder at a time; [`LockPolicy`] decides whether others wait |
 //! | [`Staging`] | stages the files of a folder, then replaces and removes files in one step |
 //! | [`recover`] | completes that step, if a run was killed in it |
-//! | [`replace_file`] | replaces one file |
+//! | [`replace_file`], [`replace_file_with`] | replaces one file, from bytes or in steps |
 //! | [`rewrite_file`] | replaces a file that a person may be editing at the same time |
 //! | [`read_own`] | reads a file under a name that pinswitch gives, if it is an ordinary file |
 //! | [`read_at_most`] | reads an input, which may be a pipe |
@@ -32,7 +32,7 @@ mod lock;
 mod place;
 mod staging;
 
-pub use file::{RewriteError, SINGLE_FILE_TIME, replace_file, rewrite_file};
+pub use file::{RewriteError, SINGLE_FILE_TIME, replace_file, replace_file_with, rewrite_file};
 pub use lock::{Busy, FolderLock, LockPolicy};
 pub use place::{is_dangling_symlink, read_at_most, read_own, temporary_file, write_help};
 pub use staging::{CommitError, Staging, Step, is_plain, recover};

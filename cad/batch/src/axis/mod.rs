@@ -16,6 +16,7 @@ use crate::source::SweepSource;
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::config::parameter::Parameter;
 
+pub(crate) use rows::{Rows, cell_value, column_fields};
 pub use sample::{Method, unit_points};
 
 /// A parameter of the configuration.
@@ -226,7 +227,7 @@ pub(super) fn is_whole(field: ParameterRef) -> Option<bool> {
 ///
 /// # Errors
 /// A value that the field does not accept, with the accepted range.
-pub(super) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, Diagnostic> {
+pub(crate) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, Diagnostic> {
     let mut scratch = Configuration::default();
     (field.set)(&mut scratch, value).map_err(|error| {
         let value = value.clone().decorated("", "").to_string();

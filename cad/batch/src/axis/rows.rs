@@ -19,10 +19,11 @@ fn read(source: &SweepSource, _: &Item) -> Result<Vec<SweepAxis>, Diagnostic> {
 }
 
 /// The rows of a text.
-struct Rows {
+pub(crate) struct Rows {
     file: String,
     text: String,
-    fields: Vec<ParameterRef>,
+    /// The fields of the columns.
+    pub(crate) fields: Vec<ParameterRef>,
     /// Byte offset of each row, including the comments before it.
     starts: Vec<usize>,
 }
@@ -47,25 +48,18 @@ fn reader(text: &str, has_headers: bool) -> Reader<&[u8]> {
 }
 
 impl Rows {
-    fn new(text: &str, file: &str) -> Result<Self, Diagnostic> {
+    /// Reads the header and the places of the rows in `text`; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// A column that is not a field, a row of the wrong length, and a text without rows.
+    pub(crate) fn new(text: &str, file: &str) -> Result<Self, Diagnostic> {
         let mut reader = reader(text, true);
         let malformed = |e: csv::Error| {
             let offset = usize::try_from(e.position().map_or(0, Position::byte)).unwrap_or_default();
             at_row(malformed_row(e), file, text, offset)
         };
         let header = reader.headers().map_err(malformed)?.clone();
-        let at_column = |e: Diagnostic, column: usize| at_cell(e, file, text, 0, column);
-        let fields: Vec<ParameterRef> = header
-            .iter()
-            .enumerate()
-            .map(|(column, name)| super::field(name).map_err(|e| at_column(e, column)))
-            .collect::<Result<_, _>>()?;
-        let duplicate =
-            fields.iter().enumerate().find(|(i, f)| fields[..*i].iter().any(|g| g.path() == f.path()));
-        if let Some((column, field)) = duplicate {
-            let error = field_error(&field.path(), None, "two columns have this name", "remove one of them");
-            return Err(at_column(error, column));
-        }
+        let fields = column_fields(header.iter(), |e, column| at_cell(e, file, text, 0, column))?;
         let (mut record, mut starts) = (csv::ByteRecord::new(), Vec::new());
         loop {
             let start = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
@@ -76,31 +70,42 @@ impl Rows {
         }
         if starts.is_empty() {
             let error = Diagnostic::new("the table has no rows");
-            let error = error.with_help("write one variant a line below the header");
+            let error = error.with_help("write at least one row below the header");
             return Err(at_row(error, file, text, 0));
         }
         Ok(Self { file: file.to_owned(), text: text.to_owned(), fields, starts })
     }
 
+    /// Returns the number of rows.
+    pub(crate) fn count(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Returns the values in the cells of a row.
+    ///
+    /// # Errors
+    /// A malformed row.
+    pub(crate) fn cells(&self, index: usize) -> Result<Vec<Value>, Diagnostic> {
+        let start = self.starts.get(index).copied().unwrap_or_default();
+        let mut record = StringRecord::new();
+        reader(self.text.get(start..).unwrap_or_default(), false)
+            .read_record(&mut record)
+            .map_err(|e| at_row(malformed_row(e), &self.file, &self.text, start))?;
+        Ok(record.iter().map(cell_value).collect())
+    }
+
     /// Returns the values of a row.
     ///
     /// # Errors
-    /// A value that its field does not accept.
+    /// A malformed row, and a value that its field does not accept.
     fn row(&self, index: usize) -> Result<Vec<Value>, Diagnostic> {
         let start = self.starts.get(index).copied().unwrap_or_default();
-        let mut record = StringRecord::new();
-        let here = |e: Diagnostic| at_row(e, &self.file, &self.text, start);
-        reader(self.text.get(start..).unwrap_or_default(), false)
-            .read_record(&mut record)
-            .map_err(|e| here(malformed_row(e)))?;
-        let cells = self.fields.iter().zip(record.iter());
+        let cells = self.cells(index)?;
+        let cells = self.fields.iter().zip(&cells).enumerate();
         cells
-            .enumerate()
-            .map(|(column, (field, cell))| {
-                // A bare word is text, as with --set.
-                let value = cell.parse::<Value>().unwrap_or_else(|_| Value::from(cell));
+            .map(|(column, (field, value))| {
                 let refused = |e| at_cell(e, &self.file, &self.text, start, column);
-                super::accepted(field, &value).map_err(refused)
+                super::accepted(field, value).map_err(refused)
             })
             .collect()
     }
@@ -108,6 +113,31 @@ impl Rows {
     fn check(&self) -> Result<(), Diagnostic> {
         (0..self.starts.len()).try_for_each(|index| self.row(index).map(drop))
     }
+}
+
+/// Returns the fields of columns with these names; `locate` gives an error its place in the header.
+///
+/// # Errors
+/// A column that is not a field, and two columns of one field.
+pub(crate) fn column_fields<'a>(
+    names: impl Iterator<Item = &'a str>,
+    locate: impl Fn(Diagnostic, usize) -> Diagnostic,
+) -> Result<Vec<ParameterRef>, Diagnostic> {
+    let mut fields: Vec<ParameterRef> = Vec::new();
+    for (column, name) in names.enumerate() {
+        let field = super::field(name).map_err(|e| locate(e, column))?;
+        if fields.iter().any(|other| other.path() == field.path()) {
+            let error = field_error(&field.path(), None, "two columns have this name", "remove one of them");
+            return Err(locate(error, column));
+        }
+        fields.push(field);
+    }
+    Ok(fields)
+}
+
+/// Returns the value in a cell. A bare word is text, as with --set.
+pub(crate) fn cell_value(cell: &str) -> Value {
+    cell.parse::<Value>().unwrap_or_else(|_| Value::from(cell))
 }
 
 /// The error for a row that is not CSV, or does not have the header's number of cells.

@@ -113,7 +113,10 @@ fn reason(path: &Path, error: &std::io::Error) -> String {
 }
 
 /// Refuses, before anything changes, to replace a folder or an input.
-fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
+///
+/// # Errors
+/// [`WriteError`].
+pub(crate) fn check_file(path: &Path) -> Result<(), WriteError> {
     if std::fs::symlink_metadata(path).is_ok_and(|existing| existing.is_dir()) {
         return Err(WriteError::at(path)(ErrorKind::IsADirectory.into()));
     }
@@ -125,7 +128,7 @@ fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
 /// # Errors
 /// [`WriteError`]; the old file is unchanged.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    refuse_obstacle(path)?;
+    check_file(path)?;
     replace_file(path, bytes, lock_policy()).map_err(WriteError::at(path))
 }
 

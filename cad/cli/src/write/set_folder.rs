@@ -13,7 +13,7 @@ use pinswitch_switch::output::OutputFile;
 use pinswitch_store::{FolderLock, LockPolicy, SINGLE_FILE_TIME, Staging, Step, is_plain};
 
 use super::record::{Record, read_existing};
-use super::{WriteError, lock_policy, refuse_obstacle};
+use super::{WriteError, check_file, lock_policy};
 use crate::input::sources_from;
 use crate::provenance::{PROVENANCE, Provenance};
 
@@ -246,7 +246,7 @@ impl SetFolder {
             if !is_plain(&file.name) {
                 return Err(WriteError::at(&path)(ErrorKind::InvalidInput.into()));
             }
-            refuse_obstacle(&path)?;
+            check_file(&path)?;
         }
         Ok(())
     }

@@ -166,6 +166,14 @@ fn target(path: &Path) -> Result<PathBuf> {
     if path.is_symlink() { path.canonicalize() } else { Ok(path.to_owned()) }
 }
 
+/// Creates a temporary file in a locked folder, which [`remove_temporaries`](crate::remove_temporaries) recognises.
+///
+/// # Errors
+/// The error of the file system.
+pub fn temporary_in(folder: &Path) -> Result<tempfile::NamedTempFile> {
+    temporary_file().prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX).tempfile_in(folder)
+}
+
 /// Locks the folder of `path` and stages a file in it.
 fn staged_next_to(
     path: &Path,
@@ -178,8 +186,7 @@ fn staged_next_to(
     }
     let existing = replaceable(path)?;
     let lock = Staging::new(FolderLock::take(folder, policy.at_least(SINGLE_FILE_TIME))?)?;
-    let mut temporary =
-        temporary_file().prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX).tempfile_in(folder)?;
+    let mut temporary = temporary_in(folder)?;
     write(temporary.as_file_mut())?;
     if let Some(existing) = existing {
         keep_attributes(temporary.as_file(), &existing)?;

@@ -32,10 +32,10 @@ mod lock;
 mod place;
 mod staging;
 
-pub use file::{RewriteError, SINGLE_FILE_TIME, replace_file, replace_file_with, rewrite_file};
+pub use file::{RewriteError, SINGLE_FILE_TIME, replace_file, replace_file_with, rewrite_file, temporary_in};
 pub use lock::{Busy, FolderLock, LockPolicy};
 pub use place::{is_dangling_symlink, read_at_most, read_own, temporary_file, write_help};
-pub use staging::{CommitError, Staging, Step, is_plain, recover};
+pub use staging::{CommitError, Staging, Step, is_plain, recover, remove_temporaries};
 
 /// Begin of the names of temporary files.
 pub(crate) const TEMPORARY_PREFIX: &str = ".pinswitch-";

@@ -196,31 +196,47 @@ impl Staging {
 
     /// Removes the unfinished files of killed runs: temporary and staged ones. Other files stay, whatever their names.
     fn remove_unfinished(&self) -> Result<()> {
-        let remove = |path: PathBuf| match std::fs::remove_file(path) {
-            Err(e) if e.kind() != ErrorKind::NotFound => Err(e),
-            _ => Ok(()),
-        };
-        let is_file = |entry: &DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
-        for entry in std::fs::read_dir(self.folder())?.filter_map(Result::ok) {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            if is_file(&entry) && name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX) {
-                remove(entry.path())?;
-            }
-        }
+        remove_temporaries(self.folder())?;
         let staged = self.folder().join(STAGED);
         match std::fs::symlink_metadata(&staged) {
             Ok(facts) if facts.is_dir() => {
                 for entry in std::fs::read_dir(&staged)?.filter_map(Result::ok).filter(is_file) {
-                    remove(entry.path())?;
+                    remove(&entry.path())?;
                 }
                 // Fails for a folder with folders of a user, as intended; a later run that stages reports it.
                 let _ = std::fs::remove_dir(&staged);
                 Ok(())
             }
-            Ok(_) => remove(staged),
+            Ok(_) => remove(&staged),
             Err(_) => Ok(()),
         }
+    }
+}
+
+/// Removes the temporary files of killed runs from a locked folder.
+///
+/// # Errors
+/// The error of the file system.
+pub fn remove_temporaries(folder: &Path) -> Result<()> {
+    for entry in std::fs::read_dir(folder)?.filter_map(Result::ok).filter(is_file) {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+fn is_file(entry: &DirEntry) -> bool {
+    entry.file_type().is_ok_and(|kind| kind.is_file())
+}
+
+/// Removes a file, if it exists.
+fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
     }
 }
 

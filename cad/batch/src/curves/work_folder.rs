@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use pinswitch_store::{FolderLock, LockPolicy, TEMPORARY_PREFIX, read_own, temporary_file};
+use pinswitch_store::{FolderLock, LockPolicy, read_own, remove_temporaries, temporary_in};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -115,7 +115,7 @@ impl WorkFolder {
             self.lock.clear().map_err(file_error(self.folder()))?;
             self.write_record(None)?;
         }
-        self.lock.remove_unfinished().map_err(file_error(self.folder()))?;
+        remove_temporaries(self.folder()).map_err(file_error(self.folder()))?;
         let entries = std::fs::read_dir(self.folder()).map_err(file_error(self.folder()))?;
         let names = entries.filter_map(|e| e.ok()?.file_name().into_string().ok());
         let named: Vec<_> = names.filter_map(|name| FinishedBlock::from_name(&name)).collect();
@@ -178,7 +178,7 @@ impl WorkFolder {
     fn put(&self, name: &str, bytes: &[u8]) -> Result<(), CurveTableError> {
         let path = self.folder().join(name);
         let write = || {
-            let mut file = temporary_file().prefix(TEMPORARY_PREFIX).tempfile_in(self.folder())?;
+            let mut file = temporary_in(self.folder())?;
             file.write_all(bytes)?;
             file.persist(&path).map_err(|e| e.error).map(drop)
         };

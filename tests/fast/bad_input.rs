@@ -179,7 +179,10 @@ fn missing_files_suggest_a_starter() {
         ("segment --out x.csv", "tip: `pinswitch init run --out run.toml` writes one to start from"),
         ("segment", "pinswitch init run"),
         ("batch --out x", "pinswitch init sweep"),
-        ("init rigs", "the nearest is `pinswitch init rig`; the kinds are sweep, effects, plan, run, rig,"),
+        (
+            "init rigs",
+            "the nearest is `pinswitch init rig`; the kinds are sweep, configurations, effects, plan, run, rig,",
+        ),
         ("init power", "`power` needs `pinswitch init plan`"),
     ] {
         let (code, output) = ended(folder.path(), &arguments.split(' ').collect::<Vec<_>>());

@@ -15,8 +15,9 @@ const GAP_MM: f64 = 20.0;
 /// Writes all sheets as DXF.
 #[must_use]
 pub fn drawing_dxf(sheets: &[Sheet]) -> String {
-    let mut text =
-        String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n0\nENDSEC\n");
+    let mut text = String::from(
+        "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n0\nENDSEC\n",
+    );
     tables(&mut text);
     text += "0\nSECTION\n2\nBLOCKS\n";
     for sheet in sheets {

@@ -172,7 +172,8 @@ pub fn supervise(program: &Path, arguments: &[std::ffi::OsString]) -> Result<i32
     Ok(child.wait()?.code().unwrap_or(1))
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -48,10 +48,7 @@ pub(crate) fn with_uncertainty(known: FrictionWithSensitivities) -> UncertainFri
     let model = vec![quantile * fit.left_out_rms; friction_n.len()];
     UncertainFriction {
         friction_n,
-        sources: vec![
-            BandSource::symmetric("constants", constants),
-            BandSource::symmetric("model", model),
-        ],
+        sources: vec![BandSource::symmetric("constants", constants), BandSource::symmetric("model", model)],
     }
 }
 

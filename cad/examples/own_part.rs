@@ -8,6 +8,7 @@
 use std::path::PathBuf;
 
 use pinswitch::solid::files::{StepPart, step_part, stl_bytes};
+use pinswitch::solid::mesh::Vector3;
 use pinswitch::solid::profile::{ChordTolerance, Contour, Pen, Point2};
 use pinswitch::solid::solid::Solid;
 use pinswitch::solid::validity::{Expectation, examine};

@@ -16,6 +16,7 @@
 //!
 //! ```
 //! use pinswitch_solid::files::{StepPart, step_part, stl_bytes};
+//! use pinswitch_solid::mesh::Vector3;
 //! use pinswitch_solid::profile::{ChordTolerance, Contour, Point2};
 //! use pinswitch_solid::solid::Solid;
 //! use pinswitch_solid::validity::{Expectation, examine};

@@ -132,6 +132,8 @@ struct Builder<'a> {
     elements: usize,
     /// Bytes that the kept elements take.
     kept: usize,
+    /// The core namespace, once it is declared.
+    core: Option<NamespaceId>,
     /// The vertex or triangle that is being read.
     leaf: Option<&'static str>,
     document: Option<Element>,
@@ -159,6 +161,7 @@ pub(super) fn read_document(text: &str, part: &str) -> Result<Document, ThreeMfR
         open: Vec::new(),
         elements: 0,
         kept: 0,
+        core: None,
         leaf: None,
         document: None,
         unknown: BTreeMap::new(),
@@ -237,6 +240,7 @@ impl Builder<'_> {
 
     /// Handles the start of an element; returns whether it is kept.
     fn start(&mut self, namespace: Option<NamespaceId>, name: &str) -> Result<bool, XmlError> {
+        self.core = self.core.or_else(|| self.reader.id_of(CORE));
         let namespace = self.named(namespace);
         if namespace == Namespace::Core {
             self.check_core(name);
@@ -327,7 +331,7 @@ impl Builder<'_> {
 
     fn named(&self, id: Option<NamespaceId>) -> Namespace {
         let Some(id) = id else { return Namespace::None };
-        if self.reader.id_of(CORE) == Some(id) {
+        if self.core == Some(id) {
             return Namespace::Core;
         }
         Namespace::Other(self.reader.namespace(id))
@@ -380,7 +384,7 @@ impl Builder<'_> {
                 Some(id) if self.reader.id_of(XSI) == Some(id) => {
                     count(&mut self.forbidden, format!("xsi:{} of <{element}>", attribute.name));
                 }
-                Some(id) if self.reader.id_of(CORE) == Some(id) => {
+                Some(id) if self.core == Some(id) => {
                     count(&mut self.unknown, format!("{} of <{element}> with a namespace", attribute.name));
                 }
                 Some(_) => {}

@@ -411,6 +411,10 @@ impl ModelReader {
                 self.findings.error("metadata", "3MF core 3.4.1", &format!("{name} occurs twice"));
             }
             match name.split_once(':') {
+                Some((_, local)) if local.is_empty() || local.contains(':') => {
+                    let detail = format!("the metadata name {name} is not a qualified name");
+                    self.findings.error("metadata", "3MF core 3.4.1", &detail);
+                }
                 Some((prefix, _)) if element.prefixes.contains_key(prefix) => {}
                 Some((prefix, _)) => {
                     let detail = format!("the namespace {prefix} of {name} is not declared");

@@ -195,6 +195,7 @@ fn violations_of_the_schema_are_named() {
             "3MF core 2.3.2",
         ),
         (model_of(r#"xml:lang="12 34""#, "", &object(1), item), "value", "3MF core 3.4"),
+        (metadata("").replace(r#""Title""#, r#""p:b:c""#), "metadata", "3MF core 3.4.1"),
         (metadata(r#"preserve="maybe""#), "value", "3MF core 3.4.1"),
         (metadata(r#"type="xs:banana""#), "value", "3MF core 3.4.1"),
         (model_of(r#"requiredextensions="p""#, "", &object(1), ""), "identifier", "3MF production 4.2"),

@@ -6,8 +6,8 @@ const FREE_UNITS: usize = 6_000_000;
 /// Units of work for each facet; meshes without crowds of facets need fewer.
 const UNITS_PER_FACET: usize = 128;
 
-/// Units of work for facets of each byte of a file. Programs write a facet in at least 8 bytes, and
-/// meshes without crowds need some 20 units for each.
+/// Units of work for the facets in each byte of a file: with [`UNITS_PER_FACET`], those of a facet in
+/// every 16 bytes. Not derived from measurements of files.
 const UNITS_PER_BYTE: usize = 8;
 
 /// Work that a part of a search may still do. Each part has its own budget, so that the outcome

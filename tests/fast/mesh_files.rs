@@ -31,8 +31,8 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) {
 /// A 3MF with this model.
 fn package(model: &str) -> Vec<u8> {
     let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    let types = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
-    let rels = r#"<Relationships><Relationship Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/3D/3dmodel.model"/></Relationships>"#;
+    let types = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
+    let rels = r#"<Relationships><Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/3D/3dmodel.model"/></Relationships>"#;
     for (part, text) in [("[Content_Types].xml", types), ("_rels/.rels", rels), ("3D/3dmodel.model", model)] {
         archive.start_file(part, zip::write::SimpleFileOptions::default()).unwrap();
         std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
@@ -193,5 +193,48 @@ fn cases_have_the_right_answers() {
         let Some(file) = shared_file(&format!("data/cases/{case}")) else { return };
         let (ended_with, output) = ended(folder.path(), &["check", &file.display().to_string()]);
         assert!(ended_with == Some(code) && output.contains(words), "{case}: {output}");
+    }
+}
+
+/// A support alone conforms: it is a warning that nothing is printed as a solid.
+#[test]
+fn a_support_alone_is_valid() {
+    let folder = tempfile::tempdir().unwrap();
+    let item = r#"<item objectid="1"/>"#;
+    let support = model("", "", item).replace("<object", r#"<object type="support""#);
+    write(folder.path(), "support.3mf", package(&support));
+    let warning = vec![("empty".to_owned(), "warning".to_owned())];
+    assert_eq!(levels(folder.path(), &["support.3mf"]), (Some(0), warning));
+    let nothing =
+        model("", "", item).replace(TETRAHEDRON, "<components><component objectid='1'/></components>");
+    write(folder.path(), "nothing.3mf", package(&nothing));
+    assert_eq!(levels(folder.path(), &["nothing.3mf"]).0, Some(1));
+}
+
+/// A namespace of a megabyte, repeated by each element, bounds only its own file.
+#[test]
+fn a_repeated_namespace_hides_no_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let item = r#"<item objectid="1"/>"#;
+    let namespace = format!("xmlns:a='{}'", "u".repeat(1_000_000));
+    write(folder.path(), "long.3mf", package(&model(&namespace, "", &item.repeat(10_000))));
+    write(folder.path(), "good.3mf", package(&model("", "", item)));
+    let (code, output) = ended(folder.path(), &["check", "long.3mf", "good.3mf"]);
+    assert_eq!(code, Some(2), "{output}");
+    assert!(output.contains("long.3mf: cannot be judged") && output.contains("good.3mf: valid"), "{output}");
+}
+
+/// A transform with a word among its numbers is an error for every purpose; a number that all slicers
+/// read is one of the specification only.
+#[test]
+fn values_are_those_of_the_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let garbage = r#"<item objectid="1" transform="1 0 0 foo 0 1 0 0 0 1 0 0 0"/>"#;
+    write(folder.path(), "garbage.3mf", package(&model("", "", garbage)));
+    let point = model("", "", r#"<item objectid="1"/>"#).replacen(r#"x="9""#, r#"x="9.""#, 1);
+    write(folder.path(), "point.3mf", package(&point));
+    for (file, of_print, of_spec) in [("garbage.3mf", 1, 1), ("point.3mf", 0, 1)] {
+        assert_eq!(levels(folder.path(), &[file, "--for", "print"]).0, Some(of_print), "{file}");
+        assert_eq!(levels(folder.path(), &[file, "--for", "spec"]).0, Some(of_spec), "{file}");
     }
 }

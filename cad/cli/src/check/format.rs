@@ -4,7 +4,9 @@ use std::io::{BufRead, Read, Seek};
 
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_solid::files::{PlacedMesh, StlFile, read_stl, read_three_mf};
-use pinswitch_solid::validity::{Examination, Expectation, Fault, Incomplete, Level, examine, shared_place};
+use pinswitch_solid::validity::{
+    Allowance, Examination, Expectation, Fault, Incomplete, Level, examine, examine_within, shared_place,
+};
 
 use super::judgement::{Judgement, Status};
 use super::verdict::PartVerdict;
@@ -120,14 +122,16 @@ pub(super) fn three_mf(
 ) -> Result<(Examination, Vec<PartVerdict>), Diagnostic> {
     let mut bytes = Vec::new();
     reader.read_to_end(&mut bytes).map_err(unreadable)?;
-    let package = read_three_mf(&bytes)?;
+    let (length, package) = (bytes.len(), read_three_mf(&bytes)?);
     drop(bytes);
     let each = Expectation { bodies: None, ..*expected };
+    let mut allowance = Allowance::of_bytes(length);
+    let mut examine_part = |mesh| examine_within(mesh, &each, &mut allowance);
     let parts: Vec<PartVerdict> = package
         .meshes
         .iter()
         .filter(|object| object.is_solid)
-        .map(|object| PartVerdict::new(object.name.clone(), examine(&object.mesh, &each), judgement))
+        .map(|object| PartVerdict::new(object.name.clone(), examine_part(&object.mesh), judgement))
         .collect();
     let mut examination = Examination { faults: package.faults, ..Examination::default() };
     let incomplete = |bound| Incomplete { check: "overlap", level: Level::Error, bound };
@@ -142,8 +146,10 @@ pub(super) fn three_mf(
         }
     }
     if parts.is_empty() && !examination.faults.iter().any(|fault| fault.level == Level::Error) {
+        // Supports and surfaces alone conform, but should be next to what they support (4.1).
+        let level = if package.meshes.is_empty() { Level::Error } else { Level::Warning };
         let detail = "no object is a solid with a mesh".to_owned();
-        examination.faults.push(Fault::new("empty", Level::Error, 0, detail));
+        examination.faults.push(Fault::new("empty", level, 0, detail));
     }
     Ok((examination, parts))
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 
+use super::budget::Pool;
 use super::bvh::{Bounds, Bvh, boxes_overlap, corner_box};
 use super::examine::{Expectation, examine};
 use super::plane::Plane;
@@ -161,7 +162,7 @@ proptest! {
             .collect();
         let slivers = Slivers::of(&mesh, 1e-5);
         let crossing: Vec<_> = crossing.into_iter().filter(|(i, j)| slivers.accept(&corners(&mesh, *i), &corners(&mesh, *j))).collect();
-        let fault = self_intersection::search(&mesh, &Bvh::new(&mesh), 1e-5).fault;
+        let fault = self_intersection::search(&mesh, &Bvh::new(&mesh), 1e-5, Pool::UNSHARED).fault;
         prop_assert_eq!(fault.as_ref().map_or(0, |f| f.count), crossing.len());
         let first = crossing.first().map(|(i, _)| corners(&mesh, *i)[0].1.coords.into());
         prop_assert_eq!(fault.and_then(|f| f.at_mm), first);
@@ -178,7 +179,7 @@ proptest! {
         let crossing = crossing.filter(|(i, j)| slivers.accept(&corners(&mesh, *i), &corners(&mesh, *j)));
         let bvh = Bvh::new(&mesh);
         prop_assert!(!bvh.hub_slots().is_empty());
-        let fault = self_intersection::search(&mesh, &bvh, 1e-5).fault;
+        let fault = self_intersection::search(&mesh, &bvh, 1e-5, Pool::UNSHARED).fault;
         prop_assert_eq!(fault.map_or(0, |f| f.count), crossing.count());
     }
 
@@ -243,5 +244,5 @@ fn degenerate_facets_have_no_wall() {
     let (far, point) = (f64::from(f32::MAX) * 4.0, Point3::new(1.0, 2.0, 3.0));
     let positions = vec![point, point, point, Point3::new(-far, -far, -far), Point3::new(far, far, far)];
     let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 3, 4], [3, 4, 2]]);
-    assert_eq!(wall_thickness::search(&mesh, &Bvh::new(&mesh), 0.4).fault, None);
+    assert_eq!(wall_thickness::search(&mesh, &Bvh::new(&mesh), 0.4, Pool::UNSHARED).fault, None);
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::budget::Allowance;
 use super::bvh::Bvh;
 use super::connectivity::Connectivity;
 use super::fault::{Fault, Level};
@@ -145,6 +146,12 @@ impl Examination {
 /// assert_eq!((open.faults[0].check, open.faults[0].count), ("open edge", 3));
 /// ```
 pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
+    examine_within(mesh, expected, &mut Allowance::default())
+}
+
+/// Examines `mesh` as [`examine`] does, and subtracts the work of its searches from an allowance
+/// that several meshes share.
+pub fn examine_within(mesh: &Mesh, expected: &Expectation, allowance: &mut Allowance) -> Examination {
     let mut examination = Examination::default();
     examination.facts.triangles = mesh.triangles.len();
     examination.facts.vertices = mesh.positions.len();
@@ -160,13 +167,13 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
         // A crack is one finding: everything else is examined as if it were closed.
         let count = connectivity.open_edges();
         let connectivity = connectivity::check(&closed);
-        examine_connected(&closed, expected, connectivity, &mut examination);
+        examine_connected(&closed, expected, connectivity, &mut examination, allowance);
         let detail = format!(
             "{count} edges have only one facet; the surface closes when corners within {width_mm:.1e} mm are joined"
         );
         examination.faults.insert(0, Fault::new("crack", Level::Error, count, detail));
     } else {
-        examine_connected(mesh, expected, connectivity, &mut examination);
+        examine_connected(mesh, expected, connectivity, &mut examination, allowance);
     }
     if let Some(before) = collapsed.map(|after| examination.facts.triangles - after.triangles.len()) {
         let detail = format!("{before} facets have two corners at the same place");
@@ -192,6 +199,7 @@ fn examine_connected(
     expected: &Expectation,
     connectivity: Connectivity,
     examination: &mut Examination,
+    allowance: &mut Allowance,
 ) {
     let facts = &mut examination.facts;
     if let Some((low, high)) = mesh.bounds() {
@@ -209,7 +217,7 @@ fn examine_connected(
     parallel::both(
         mesh.triangles.len(),
         || examine_surface(mesh, expected, connectivity, examination),
-        || examine_space(mesh, expected, walls, &mut in_space),
+        || examine_space(mesh, expected, walls, &mut in_space, allowance),
     );
     examination.faults.append(&mut in_space.faults);
     examination.incomplete.append(&mut in_space.incomplete);
@@ -246,7 +254,13 @@ fn examine_surface(
 }
 
 /// Checks of facets that need not share a vertex.
-fn examine_space(mesh: &Mesh, expected: &Expectation, walls: bool, examination: &mut Examination) {
+fn examine_space(
+    mesh: &Mesh,
+    expected: &Expectation,
+    walls: bool,
+    examination: &mut Examination,
+    allowance: &mut Allowance,
+) {
     // Without any area there is nothing to intersect.
     let has_area = mesh.facets().any(|corners| facets::height_mm(corners) >= expected.min_height_mm);
     if !(expected.intersections || walls) || !has_area {
@@ -254,13 +268,15 @@ fn examine_space(mesh: &Mesh, expected: &Expectation, walls: bool, examination: 
     }
     let bvh = Bvh::new(mesh);
     if expected.intersections {
-        let search = self_intersection::search(mesh, &bvh, expected.min_height_mm);
+        let search = self_intersection::search(mesh, &bvh, expected.min_height_mm, allowance.intersections);
+        allowance.intersections = search.left;
         let bound = search.bound.filter(|_| search.fault.is_none());
         examination.faults.extend(search.fault);
         examination.add_bound("self-intersection", Level::Error, bound);
     }
     if walls {
-        let search = wall_thickness::search(mesh, &bvh, expected.min_wall_mm);
+        let search = wall_thickness::search(mesh, &bvh, expected.min_wall_mm, allowance.walls);
+        allowance.walls = search.left;
         let bound = search.bound.filter(|_| search.fault.is_none());
         examination.faults.extend(search.fault);
         examination.add_bound("thin wall", Level::Warning, bound);

@@ -24,9 +24,10 @@ mod triangle_intersection;
 mod vertex_manifold;
 mod wall_thickness;
 
+pub use budget::Allowance;
 pub(crate) use connectivity::is_closed;
 pub(crate) use distance::largest_distance;
-pub use examine::{Examination, Expectation, Incomplete, MeshFacts, examine};
+pub use examine::{Examination, Expectation, Incomplete, MeshFacts, examine, examine_within};
 pub use fault::{Fault, Level};
 pub use overlap::shared_place;
 

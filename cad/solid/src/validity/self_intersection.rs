@@ -1,6 +1,6 @@
 //! Facets that intersect.
 
-use super::budget::{Budget, bound};
+use super::budget::{Budget, Pool, bound};
 use super::bvh::{Bvh, boxes_overlap, corner_box};
 use super::fault::{Fault, Level};
 use super::hub::arc_boxes;
@@ -19,6 +19,8 @@ pub(super) struct Search {
     pub(super) fault: Option<Fault>,
     /// The bound that was exceeded before all pairs were compared.
     pub(super) bound: Option<String>,
+    /// The work that is left.
+    pub(super) left: Pool,
 }
 
 /// Intersections among a part of the pairs.
@@ -75,17 +77,18 @@ impl Intersections<'_> {
     }
 }
 
-/// Searches for pairs of facets that intersect anywhere but in shared corners and edges. Facets
-/// thinner than `min_height_mm` intersect nothing.
-pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_height_mm: f64) -> Search {
+/// Searches for pairs of facets that intersect anywhere but in shared corners and edges. Contact of
+/// facets thinner than `min_height_mm` with their neighbours does not count. The search does
+/// work up to that of `pool`.
+pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_height_mm: f64, pool: Pool) -> Search {
     let slivers = Slivers::of(mesh, min_height_mm);
     let part = |budget| Intersections { mesh, bvh, slivers: &slivers, budget, count: 0, first: usize::MAX };
-    let outcome = |part: Intersections<'_>| (part.count, part.first, part.budget.is_spent());
+    let outcome = |part: Intersections<'_>| (part.count, part.first, part.budget);
     let leaves = bvh.leaves();
     let chunks = parallel::chunks(leaves);
     let mut outcomes = parallel::in_chunks(leaves, |leaves| {
         let facets = bvh.slots(leaves.start).start..bvh.slots(leaves.end - 1).end;
-        let mut part = part(Budget::of_part(chunks, facets.len()));
+        let mut part = part(Budget::of_part(pool, chunks, facets.len(), mesh.triangles.len()));
         let mut near = Vec::new();
         for leaf in leaves {
             if part.is_over() {
@@ -97,7 +100,7 @@ pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_height_mm: f64) -> Search {
         outcome(part)
     });
     for (hub, slots) in bvh.hub_slots() {
-        let mut part = part(Budget::of_part(usize::MAX, slots.len()));
+        let mut part = part(Budget::of_hub(pool, slots.len(), mesh.triangles.len()));
         let arcs = Bvh::new(&arc_boxes(mesh, hub, slots.clone().map(|slot| bvh.facet(slot))));
         let mut near = Vec::new();
         let slot = |arc: usize| slots.start + arcs.facet(arc);
@@ -111,16 +114,19 @@ pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_height_mm: f64) -> Search {
         outcomes.push(outcome(part));
     }
     let count: usize = outcomes.iter().map(|(count, ..)| count).sum();
-    let is_partial = outcomes.iter().any(|(count, _, is_spent)| *is_spent || *count >= MAX_COUNTED);
+    let is_partial = outcomes.iter().any(|(count, _, budget)| budget.is_spent() || *count >= MAX_COUNTED);
     let first = outcomes.iter().map(|(_, first, _)| *first).min().filter(|_| count > 0);
     let at_least = if is_partial { "at least " } else { "" };
     let detail = format!("{at_least}{count} pairs of facets intersect");
+    let mut left = pool;
+    left.subtract(outcomes.iter().map(|(.., budget)| *budget));
     let corner = |f: usize| mesh.positions[mesh.triangles[f][0] as usize];
     Search {
         fault: first.map(|f| Fault::new("self-intersection", Level::Error, count, detail).at(corner(f))),
         bound: outcomes
             .iter()
-            .any(|(.., is_spent)| *is_spent)
-            .then(|| bound(mesh.triangles.len(), "pairs of facets are close to each other")),
+            .any(|(.., budget)| budget.is_spent())
+            .then(|| bound(pool, mesh.triangles.len(), "pairs of facets are close to each other")),
+        left,
     }
 }

@@ -2,7 +2,10 @@
 //!
 //! Such a facet touches its neighbours along a line, and brings the corners of its neighbours into
 //! contact with their edges. It is one finding (`degenerate facet`), not also an intersection of
-//! each of these pairs.
+//! each of these pairs. A thin facet that passes through another one far from its own corners is an
+//! intersection: the facets of a thin wire are all thin.
+
+use robust::{Coord, orient2d};
 
 use super::facets::height_mm;
 use super::triangle_intersection::{Corners, intersect};
@@ -36,13 +39,41 @@ impl Slivers {
         }
         let is_flat = |corners: &Corners| height_mm(corners.map(|(_, p)| p)) < self.min_height_mm;
         let is_next = |corners: &Corners| corners.iter().any(|(v, _)| self.vertices[*v as usize]);
-        if is_flat(s) || is_flat(t) {
-            return false;
-        }
         // Without common corners: a shrunk facet has other ones.
-        !(is_next(s) && is_next(t)) || intersect(&shrunk(s, 0), &shrunk(t, 3))
+        let is_away = || !(is_next(s) && is_next(t)) || intersect(&shrunk(s, 0), &shrunk(t, 3));
+        if is_flat(s) || is_flat(t) {
+            let is_shared = s.iter().any(|(v, _)| t.iter().any(|(w, _)| v == w));
+            let is_seam = is_flat(s) && is_flat(t) && are_parallel(s, t);
+            return !is_shared && !is_seam && !is_collinear(s) && !is_collinear(t) && is_away();
+        }
+        is_away()
     }
 }
+
+/// Whether the corners are on one line, exactly.
+fn is_collinear(corners: &Corners) -> bool {
+    (0..3).all(|axis| {
+        let flat = |i: usize| {
+            let p = corners[i].1;
+            Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] }
+        };
+        orient2d(flat(0), flat(1), flat(2)) == 0.0
+    })
+}
+
+/// Whether the longest edges of two facets have nearly the same direction, as along a seam.
+fn are_parallel(s: &Corners, t: &Corners) -> bool {
+    let longest = |corners: &Corners| {
+        let [a, b, c] = corners.map(|(_, p)| p);
+        let edges = [b - a, c - b, a - c];
+        edges.into_iter().fold(edges[0], |x, y| if y.norm_squared() > x.norm_squared() { y } else { x })
+    };
+    let (u, v) = (longest(s), longest(t));
+    u.cross(&v).norm() <= MAX_SEAM_SINE * u.norm() * v.norm()
+}
+
+/// Sine of the angle up to which two slivers may be of one seam.
+const MAX_SEAM_SINE: f64 = 0.1;
 
 /// The triangle, a little smaller and with other indices.
 fn shrunk(corners: &Corners, first: u32) -> Corners {

@@ -1,6 +1,7 @@
 //! Each defect is detected, named and located; valid bodies pass.
 
-use super::examine::{Expectation, examine};
+use super::budget::Allowance;
+use super::examine::{Expectation, examine, examine_within};
 use super::fault::Level;
 use crate::mesh::{Mesh, Point3, Vector3};
 
@@ -182,6 +183,64 @@ fn a_sliver_is_one_fault() {
     let apex = t.into_iter().find(|v| ![0, 1].contains(v)).unwrap();
     split.positions[apex as usize] = Point3::new(5.0, 5.0, 15.0);
     assert!(faults(&split).contains(&"self-intersection"));
+}
+
+/// A closed prism around the z axis from -5 to 5 mm, of `n` sides.
+fn wire(n: u32, radius: f64) -> Mesh {
+    let at = |i: u32, z: f64| {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+        Point3::new(radius * libm::cos(angle), radius * libm::sin(angle), z)
+    };
+    let mut positions: Vec<Point3> = (0..n).map(|i| at(i, -5.0)).chain((0..n).map(|i| at(i, 5.0))).collect();
+    positions.extend([Point3::new(0.0, 0.0, -5.0), Point3::new(0.0, 0.0, 5.0)]);
+    let side = |i: u32| {
+        let (a, b) = (i, (i + 1) % n);
+        [[a, b, n + b], [a, n + b, n + a], [2 * n, b, a], [2 * n + 1, n + a, n + b]]
+    };
+    Mesh::new(positions, (0..n).flat_map(side).collect())
+}
+
+/// All facets of a thin wire are thin, and it intersects what it passes through.
+#[test]
+fn a_wire_through_a_plate_intersects() {
+    let wire = wire(20, 2e-5);
+    assert!(!faults(&wire).contains(&"self-intersection"), "{:?}", faults(&wire));
+    let mut both = cube();
+    // Through the diagonal of two facets.
+    both.positions.iter_mut().for_each(|p| *p = Point3::new(p.x - 5.0, p.y - 5.0, (p.z - 5.0) / 5.0));
+    let first = both.positions.len() as u32;
+    both.positions.extend(&wire.positions);
+    both.triangles.extend(wire.triangles.iter().map(|t| t.map(|v| v + first)));
+    assert!(faults(&both).contains(&"self-intersection"), "{:?}", faults(&both));
+}
+
+/// Many small crowds are bounded as one large crowd is.
+#[test]
+fn meshes_of_a_file_share_their_allowance() {
+    let mut nested = Mesh::default();
+    for i in 0..60 {
+        let (first, scale) = (nested.positions.len() as u32, 1.0 + f64::from(i) * 1e-3);
+        let cube = cube();
+        // Oblique, so that the boxes of near facets overlap.
+        let place = |p: &Point3| {
+            let p = (p.coords - Vector3::new(5.0, 5.0, 5.0)) * scale;
+            Point3::new(p.x + 0.3 * p.y, p.y + 0.3 * p.z, p.z + 0.3 * p.x)
+        };
+        nested.positions.extend(cube.positions.iter().map(place));
+        nested.triangles.extend(cube.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    // Number of examinations before one is incomplete.
+    let complete = |mut allowance: Allowance| {
+        (0..200)
+            .take_while(|_| {
+                let examination = examine_within(&nested, &Expectation::default(), &mut allowance);
+                !examination.incomplete.iter().any(|one| one.check == "self-intersection")
+            })
+            .count()
+    };
+    let (unshared, short) = (complete(Allowance::default()), complete(Allowance::of_bytes(0)));
+    // A file of few bytes may unpack to many facets.
+    assert!(0 < short && short < unshared && unshared < 200, "{short} {unshared}");
 }
 
 #[test]

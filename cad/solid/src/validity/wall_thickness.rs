@@ -1,6 +1,6 @@
 //! Walls below the least thickness that a printer can produce.
 
-use super::budget::{Budget, bound};
+use super::budget::{Budget, Pool, bound};
 use super::bvh::{Bounds, Bvh, boxes_overlap, corner_box};
 use super::fault::{Fault, Level};
 use crate::mesh::{Mesh, Point3, Vector3};
@@ -14,7 +14,7 @@ struct ThinWalls {
     count: usize,
     /// The least thickness with the index of its facet; of equal ones, the least index.
     worst: Option<(f64, usize)>,
-    is_spent: bool,
+    budget: Budget,
 }
 
 /// The outcome of the search.
@@ -22,33 +22,35 @@ pub(super) struct Search {
     pub(super) fault: Option<Fault>,
     /// The bound that was exceeded before all walls were measured.
     pub(super) bound: Option<String>,
+    /// The work that is left.
+    pub(super) left: Pool,
 }
 
 /// Searches inward from the centroid of every facet for a facing facet closer than `min_wall_mm`.
-pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64) -> Search {
+/// The search does work up to that of `pool`.
+pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64, pool: Pool) -> Search {
     let chunks = parallel::chunks(bvh.leaves());
     let parts = parallel::in_chunks(bvh.leaves(), |leaves| {
-        let mut part = ThinWalls { count: 0, worst: None, is_spent: false };
         let facets = bvh.slots(leaves.start).start..bvh.slots(leaves.end - 1).end;
-        let mut budget = Budget::of_part(chunks, facets.len());
+        let budget = Budget::of_part(pool, chunks, facets.len(), mesh.triangles.len());
+        let mut part = ThinWalls { count: 0, worst: None, budget };
         let mut near = Vec::new();
         for leaf in leaves {
-            if budget.is_spent() {
+            if part.budget.is_spent() {
                 break;
             }
             let rays = || bvh.slots(leaf).filter_map(|slot| Ray::inward(mesh, bvh, slot, min_wall_mm));
             let Some(reach) = rays().map(|ray| ray.bounds).reduce(Bounds::joined) else { continue };
             bvh.leaves_overlapping(&reach, 0, &mut near);
-            budget.spend(near.len());
+            part.budget.spend(near.len());
             for ray in rays() {
-                let nearest = ray.nearest_mm(mesh, bvh, &near, &mut budget);
+                let nearest = ray.nearest_mm(mesh, bvh, &near, &mut part.budget);
                 if nearest < min_wall_mm * (1.0 - 1e-6) {
                     part.count += 1;
                     part.worst = thinner(part.worst, Some((nearest, ray.facet)));
                 }
             }
         }
-        part.is_spent = budget.is_spent();
         part
     });
     let count: usize = parts.iter().map(|part| part.count).sum();
@@ -59,9 +61,12 @@ pub(super) fn search(mesh: &Mesh, bvh: &Bvh, min_wall_mm: f64) -> Search {
         );
         Fault::new("thin wall", Level::Warning, count, detail).at(centroid(mesh, facet))
     });
-    let is_spent = parts.iter().any(|part| part.is_spent);
+    let is_spent = parts.iter().any(|part| part.budget.is_spent());
     let facets = mesh.triangles.len();
-    Search { fault, bound: is_spent.then(|| bound(facets, "facets are within reach of the walls")) }
+    let mut left = pool;
+    left.subtract(parts.iter().map(|part| part.budget));
+    let bound = is_spent.then(|| bound(pool, facets, "facets are within reach of the walls"));
+    Search { fault, bound, left }
 }
 
 fn thinner(a: Option<(f64, usize)>, b: Option<(f64, usize)>) -> Option<(f64, usize)> {

@@ -29,19 +29,23 @@ pub(super) fn read_ascii(source: &mut impl Read) -> Result<(Facets, Vec<&'static
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes)?;
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-    let mut words = Words { bytes: &bytes, at: start, last: start };
+    let mut words = Words { bytes: &bytes, at: start, last: start, line: None };
     let mut reader = Reader { facets: Facets::default(), deviations: Vec::new(), is_open: false };
     while let Some(word) = words.next() {
         if word.eq_ignore_ascii_case(b"facet") && reader.is_open {
             reader.facet(&mut words)?;
         } else if word.eq_ignore_ascii_case(b"solid") && !reader.is_open {
             reader.is_open = true;
-            words.skip_name();
+            words.skip_name(false);
         } else if word.eq_ignore_ascii_case(b"endsolid") && reader.is_open {
             reader.is_open = false;
-            words.skip_name();
+            words.skip_name(true);
         } else if reader.is_open {
-            return Err(words.unexpected("facet normal X Y Z"));
+            if is_keyword(word) {
+                return Err(words.unexpected("facet normal X Y Z"));
+            }
+            reader.deviate("text is between facets");
+            words.skip_remark();
         } else {
             reader.deviate("text follows endsolid");
             words.skip_line();
@@ -71,9 +75,14 @@ impl Reader {
     /// Reads a facet after its first word.
     fn facet(&mut self, words: &mut Words<'_>) -> Result<(), StlError> {
         let form = "facet normal X Y Z";
-        words.expect(b"normal", form)?;
         let mut normal = [0.0; 3];
-        for coordinate in &mut normal {
+        let has_normal = !words.is_next(b"outer");
+        if has_normal {
+            words.expect(b"normal", form)?;
+        } else {
+            self.deviate("facets have no normal");
+        }
+        for coordinate in normal.iter_mut().filter(|_| has_normal) {
             // Programs write `nan`, `-nan(ind)`, `1.#QNAN` or a word for facets without area, and
             // readers compute normals from the corners.
             let word = words.next().ok_or_else(|| words.missing(form))?;
@@ -91,8 +100,8 @@ impl Reader {
                 *coordinate = number.ok_or_else(|| words.unexpected(form))?;
             }
         }
-        words.expect(b"endloop", "endloop")?;
-        words.expect(b"endfacet", "endfacet")?;
+        words.expect_end(b"endloop", b"loop", "endloop")?;
+        words.expect_end(b"endfacet", b"facet", "endfacet")?;
         words.skip_remark();
         self.facets.add(normal, corners);
         Ok(())
@@ -100,7 +109,26 @@ impl Reader {
 }
 
 fn number(word: &[u8]) -> Option<f32> {
-    std::str::from_utf8(word).ok()?.parse().ok()
+    let word = std::str::from_utf8(word).ok()?;
+    // Programs in Fortran write the exponent of double precision with a D.
+    word.parse().or_else(|_| word.replace(['d', 'D'], "e").parse()).ok()
+}
+
+/// Whether a word belongs to the format.
+fn is_keyword(word: &[u8]) -> bool {
+    let keywords: [&[u8]; 9] =
+        [b"solid", b"endsolid", b"facet", b"endfacet", b"normal", b"outer", b"loop", b"endloop", b"vertex"];
+    keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
+}
+
+/// Whether a line that begins with this word has a colour or texture coordinates, which programs add.
+fn is_attribute(word: &[u8]) -> bool {
+    let attributes: [&[u8]; 4] = [b"vt", b"vn", b"color", b"colour"];
+    attributes.iter().any(|attribute| word.eq_ignore_ascii_case(attribute))
+}
+
+fn is_line_end(byte: &u8) -> bool {
+    matches!(byte, b'\r' | b'\n')
 }
 
 fn is_space(byte: &u8) -> bool {
@@ -108,16 +136,38 @@ fn is_space(byte: &u8) -> bool {
 }
 
 /// The words of a text.
+#[derive(Clone)]
 struct Words<'a> {
     bytes: &'a [u8],
     /// The byte after the last word.
     at: usize,
     /// The first byte of the last word.
     last: usize,
+    /// The line of the last name.
+    line: Option<Line>,
+}
+
+/// The end of a line.
+#[derive(Clone, Copy)]
+struct Line {
+    end: usize,
+    /// Whether the next word is `facet`.
+    is_before_facet: bool,
 }
 
 impl<'a> Words<'a> {
+    /// Returns the next word, after comments.
     fn next(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let word = self.next_with_comments()?;
+            if !(word.starts_with(b"#") || word.starts_with(b";") || word.starts_with(b"//")) {
+                return Some(word);
+            }
+            self.skip_line();
+        }
+    }
+
+    fn next_with_comments(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         let start = self.at + rest.iter().position(|byte| !is_space(byte))?;
         let length = self.bytes[start..].iter().position(is_space);
@@ -126,31 +176,60 @@ impl<'a> Words<'a> {
         Some(&self.bytes[start..end])
     }
 
-    fn expect(&mut self, expected: &[u8], form: &str) -> Result<(), StlError> {
-        match self.next() {
-            Some(word) if word.eq_ignore_ascii_case(expected) => Ok(()),
-            Some(_) => Err(self.unexpected(form)),
-            None => Err(self.missing(form)),
+    /// Returns the next word of the line.
+    fn next_on_line(&mut self) -> Option<&'a [u8]> {
+        let rest = &self.bytes[self.at..];
+        let start = rest.iter().position(|byte| !is_space(byte) || is_line_end(byte))?;
+        if is_line_end(&rest[start]) {
+            return None;
         }
+        self.next_with_comments()
+    }
+
+    /// Whether the next word is this one.
+    fn is_next(&self, expected: &[u8]) -> bool {
+        self.clone().next().is_some_and(|word| word.eq_ignore_ascii_case(expected))
+    }
+
+    fn expect(&mut self, expected: &[u8], form: &str) -> Result<(), StlError> {
+        loop {
+            match self.next() {
+                Some(word) if word.eq_ignore_ascii_case(expected) => return Ok(()),
+                Some(word) if is_attribute(word) => self.skip_line(),
+                Some(_) => return Err(self.unexpected(form)),
+                None => return Err(self.missing(form)),
+            }
+        }
+    }
+
+    /// Expects `endloop` or `endfacet`, which programs also write as two words.
+    fn expect_end(&mut self, expected: &[u8], second: &[u8], form: &str) -> Result<(), StlError> {
+        let mut ahead = self.clone();
+        let is_end = ahead.next().is_some_and(|word| word.eq_ignore_ascii_case(b"end"));
+        if is_end && ahead.is_next(second) {
+            self.expect(b"end", form)?;
+            return self.expect(second, form);
+        }
+        self.expect(expected, form)
     }
 
     /// The end of the line at the last word.
     fn end_of_line(&self) -> usize {
         let rest = &self.bytes[self.at..];
-        rest.iter()
-            .position(|byte| matches!(byte, b'\r' | b'\n'))
-            .map_or(self.bytes.len(), |end| self.at + end)
+        rest.iter().position(is_line_end).map_or(self.bytes.len(), |end| self.at + end)
     }
 
-    /// Skips text between `endfacet` and the end of its line, unless that continues the solid.
+    /// Skips text up to the end of the line, or to a word that continues the solid.
     fn skip_remark(&mut self) {
-        let end = self.end_of_line();
-        let mut ahead = Words { bytes: &self.bytes[..end], at: self.at, last: self.last };
-        let is_keyword = |word: &[u8]| {
-            [&b"facet"[..], b"endsolid"].iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
-        };
-        if ahead.next().is_some_and(|word| !is_keyword(word)) {
-            self.at = end;
+        let start = self.at;
+        loop {
+            let before = self.at;
+            let Some(word) = self.next_on_line() else { return };
+            let is_facet = word.eq_ignore_ascii_case(b"facet") && (before == start || self.is_facet());
+            if is_facet || word.eq_ignore_ascii_case(b"endsolid") {
+                self.at = before;
+                return;
+            }
         }
     }
 
@@ -158,30 +237,54 @@ impl<'a> Words<'a> {
         self.at = self.end_of_line();
     }
 
-    /// Skips the name of a solid: the rest of the line, or the words before the next keyword if the
-    /// whole file is on one line.
-    fn skip_name(&mut self) {
-        let end = self.end_of_line();
-        let mut ahead = Words { bytes: &self.bytes[..end], at: self.at, last: self.last };
-        while let Some(word) = ahead.next() {
-            let start = ahead.last;
-            let is_facet = word.eq_ignore_ascii_case(b"facet")
-                && ahead.next().is_some_and(|next| next.eq_ignore_ascii_case(b"normal"));
-            let is_solid = word.eq_ignore_ascii_case(b"solid") && self.has_facet(ahead.at, end);
-            if is_facet || is_solid || word.eq_ignore_ascii_case(b"endsolid") {
-                self.at = start;
+    /// Skips the name of a solid after `solid` or `endsolid`: the rest of the line, or the words before
+    /// the next keyword if the line contains facets or another solid. A name may contain keywords.
+    fn skip_name(&mut self, is_end: bool) {
+        let line = self.line_of_name();
+        loop {
+            let before = self.at;
+            let Some(word) = self.next_on_line() else { return };
+            let is = |keyword: &[u8]| word.eq_ignore_ascii_case(keyword);
+            let ends = match is_end {
+                false => (is(b"facet") && self.is_facet()) || (is(b"endsolid") && !line.is_before_facet),
+                true => is(b"solid") && (line.is_before_facet || self.has_facet()),
+            };
+            if ends {
+                self.at = before;
                 return;
             }
-            ahead.at = start + word.len();
         }
-        self.at = end;
+    }
+
+    /// The line at the last word, which is sought once for all names on it.
+    fn line_of_name(&mut self) -> Line {
+        if let Some(line) = self.line.filter(|line| self.at <= line.end) {
+            return line;
+        }
+        let end = self.end_of_line();
+        let after = Words { at: end, ..self.clone() };
+        let line = Line { end, is_before_facet: after.is_next(b"facet") };
+        self.line = Some(line);
+        line
+    }
+
+    /// Whether the words after `facet` are those of a facet, and not of a name.
+    fn is_facet(&self) -> bool {
+        let mut ahead = self.clone();
+        if ahead.is_next(b"normal") {
+            for _ in 0..4 {
+                ahead.next();
+            }
+        }
+        ahead.next().is_some_and(|word| word.eq_ignore_ascii_case(b"outer")) && ahead.is_next(b"loop")
     }
 
     /// Whether a facet follows on the same line.
-    fn has_facet(&self, from: usize, end: usize) -> bool {
-        let mut ahead = Words { bytes: &self.bytes[..end], at: from, last: from };
-        let mut words = std::iter::from_fn(|| ahead.next()).take(MAX_NAME_WORDS);
-        words.any(|word| word.eq_ignore_ascii_case(b"facet"))
+    fn has_facet(&self) -> bool {
+        let mut ahead = self.clone();
+        (0..MAX_NAME_WORDS).any(|_| {
+            ahead.next_on_line().is_some_and(|word| word.eq_ignore_ascii_case(b"facet")) && ahead.is_facet()
+        })
     }
 
     /// The line of a byte, from 1. A line ends with CR, LF or both.
@@ -195,8 +298,7 @@ impl<'a> Words<'a> {
 
     /// The error of the last word.
     fn unexpected(&self, form: &str) -> StlError {
-        let is_end = |byte: &u8| matches!(byte, b'\r' | b'\n');
-        let start = self.bytes[..self.last].iter().rposition(is_end).map_or(0, |end| end + 1);
+        let start = self.bytes[..self.last].iter().rposition(is_line_end).map_or(0, |end| end + 1);
         let line = String::from_utf8_lossy(&self.bytes[start..self.end_of_line()]);
         let problem = format!("expected '{form}', found {}", quoted(&line));
         StlError::Line { line: self.line(self.last), problem }
@@ -257,6 +359,25 @@ mod tests {
             (one_line, 2, None),
             (format!("solid a\n{}endsolid\n", ONE.replace("endfacet", "endfacet remark")), 1, None),
             (format!("solid facet of a thing\n{ONE}endsolid facet of a thing\n"), 1, None),
+            (format!("solid my facet normal part\n{ONE}endsolid my facet normal part\n"), 1, None),
+            (format!("solid solid facet tool\n{ONE}endsolid solid facet tool\n"), 1, None),
+            (format!("solid part of solid with facet holes\n{ONE}endsolid solid facet\n"), 1, None),
+            (format!("solid the endsolid\n{ONE}endsolid the endsolid\n"), 1, None),
+            (format!("solid empty endsolid empty\nsolid a\n{ONE}endsolid a\n"), 1, None),
+            (
+                format!("solid a\n# b\n{ONE}; c\n{}endsolid\n", ONE.replace("endloop", "// d\nendloop")),
+                2,
+                None,
+            ),
+            (format!("solid a\ncolor 0 1 0\n{ONE}endsolid\n"), 1, Some("text is between facets")),
+            (format!("solid a\n{}endsolid\n", ONE.replace("endloop", "vt 0 0\nvt 0 1\nendloop")), 1, None),
+            (format!("solid a\n{}endsolid\n", ONE.replace("endloop\nend", "end loop\nend ")), 1, None),
+            (
+                format!("solid a\n{}endsolid\n", ONE.replace(" normal 0 0 1", "")),
+                1,
+                Some("facets have no normal"),
+            ),
+            (format!("solid a\n{}endsolid\n", ONE.replace('5', "5.0D+00")), 1, None),
             (format!("solid a\n{ONE}"), 1, Some("endsolid is missing")),
             (format!("solid a\n{ONE}endsolid a\nmade by a program\n\n"), 1, Some("text follows endsolid")),
             (
@@ -283,6 +404,18 @@ mod tests {
             assert!(triangles(&text).is_err(), "{text}");
         }
         assert!(!is_ascii(b"solidity = 3") && !is_ascii(b"solid x\0\0"));
+    }
+
+    /// Names and remarks on one line are sought once, so that the time is linear.
+    #[test]
+    fn one_line_takes_linear_time() {
+        let solids = "solid x endsolid x ".repeat(100_000);
+        let facets =
+            format!("solid {}", ONE.replace('\n', " ").replace("endfacet", "endfacet r").repeat(20_000));
+        let start = std::time::Instant::now();
+        assert_eq!(triangles(&format!("{solids}solid {}", ONE.replace('\n', " "))).unwrap(), 1);
+        assert_eq!(triangles(&facets).unwrap(), 20_000);
+        assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
     }
 
     #[test]

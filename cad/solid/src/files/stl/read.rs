@@ -52,10 +52,15 @@ pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     facets.finish().map(|file| StlFile { trailing_bytes, deviations, ..file }).ok_or(StlError::NoTriangle)
 }
 
+/// Bytes of a normal: fewer at the end of a file are no facet that is cut short.
+const NORMAL: u64 = 12;
+
 /// The first bytes of a file, and its length.
 struct Head {
     bytes: Vec<u8>,
     length: u64,
+    /// Whether the bytes after the last whole facet are no part of a facet.
+    has_foreign_tail: bool,
 }
 
 impl Head {
@@ -65,8 +70,13 @@ impl Head {
         source.rewind()?;
         let mut bytes = Vec::with_capacity(HEADER);
         source.by_ref().take(HEADER as u64).read_to_end(&mut bytes)?;
+        let tail = length.saturating_sub(HEADER as u64) % RECORD as u64;
+        source.seek(std::io::SeekFrom::Start(length - tail))?;
+        let mut end = Vec::with_capacity(RECORD);
+        source.by_ref().take(tail).read_to_end(&mut end)?;
         source.rewind()?;
-        Ok(Self { bytes, length })
+        let has_foreign_tail = tail < NORMAL || end.iter().all(|byte| *byte == 0);
+        Ok(Self { bytes, length, has_foreign_tail })
     }
 
     /// Whether the file is an ASCII STL. A binary header may begin with `solid`, too; then the file
@@ -87,8 +97,8 @@ impl Head {
     fn uncounted(&self) -> Option<u64> {
         let (announced, _) = self.announced()?;
         let body = self.length.checked_sub(HEADER as u64).filter(|body| *body > 0)?;
-        let is_whole = body % RECORD as u64 == 0;
-        (matches!(announced, 0 | u32::MAX) && is_whole).then_some(body / RECORD as u64)
+        let facets = body / RECORD as u64;
+        (matches!(announced, 0 | u32::MAX) && facets > 0 && self.has_foreign_tail).then_some(facets)
     }
 
     /// Number of facets of a binary file.
@@ -170,6 +180,10 @@ mod tests {
             let stl = read_stl(&mut Cursor::new(bytes.clone())).unwrap();
             assert_eq!((stl.mesh.triangles.len(), stl.trailing_bytes, stl.deviations.len()), (4, 0, 1));
             assert!(read_stl(&mut Cursor::new(&bytes[..bytes.len() - 1])).is_err());
+            for tail in [&b"abc"[..], &[0; 40]] {
+                let stl = read_stl(&mut Cursor::new([&bytes, tail].concat())).unwrap();
+                assert_eq!((stl.mesh.triangles.len(), stl.trailing_bytes), (4, tail.len() as u64));
+            }
         }
     }
 

@@ -4,11 +4,13 @@ use std::collections::HashMap;
 use std::io::{Cursor, Read};
 
 use pinswitch_diagnostic::excerpt;
+use zip::CompressionMethod;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
 use super::error::ThreeMfReadError;
 use super::part_name::normalized;
+use super::xml::MAX_NAME_BYTES;
 
 /// Longest message of a library that an error repeats, in characters.
 const MAX_CHARACTERS: usize = 200;
@@ -19,6 +21,8 @@ const FREE_BYTES: u64 = 16 << 20;
 const BYTES_PER_BYTE: u64 = 32;
 /// Most bytes that an archive may unpack to.
 const MAX_BYTES: u64 = 1 << 30;
+/// Bytes by which the format of a picture is recognised.
+const BEGINNING: u64 = 16;
 /// Most entries of an archive.
 const MAX_ENTRIES: usize = 10_000;
 
@@ -27,6 +31,8 @@ pub(super) struct Archive<'a> {
     zip: ZipArchive<Cursor<&'a [u8]>>,
     /// Index of each part, by its normalized name.
     parts: HashMap<String, usize>,
+    /// Names of the parts, in the order of the archive.
+    names: Vec<String>,
     /// Names that are equivalent to an earlier one.
     repeated: Vec<String>,
     /// Bytes that may still be unpacked.
@@ -45,20 +51,56 @@ impl<'a> Archive<'a> {
                 "the ZIP archive has more than {MAX_ENTRIES} entries"
             )));
         }
-        let (mut parts, mut repeated) = (HashMap::new(), Vec::new());
+        let (mut parts, mut names, mut repeated) = (HashMap::new(), Vec::new(), Vec::new());
         for i in 0..zip.len() {
             let name = zip.name_for_index(i).transpose().map_err(|_| damaged())?.unwrap_or_default();
-            if !name.ends_with('/') && parts.insert(normalized(&name), i).is_some() {
-                repeated.push(name.into_owned());
+            if name.len() > MAX_NAME_BYTES {
+                return Err(ThreeMfReadError::Bound(format!(
+                    "the ZIP archive has a name of more than {MAX_NAME_BYTES} bytes"
+                )));
             }
+            if name.ends_with('/') {
+                continue;
+            }
+            if parts.insert(normalized(&name), i).is_some() {
+                repeated.push(name.clone().into_owned());
+            }
+            names.push(name.into_owned());
         }
         let most = MAX_BYTES.min(FREE_BYTES + BYTES_PER_BYTE * bytes.len() as u64);
-        Ok(Self { zip, parts, repeated, left: most, most })
+        Ok(Self { zip, parts, names, repeated, left: most, most })
     }
 
     /// Names of parts that are equivalent to an earlier one.
     pub(super) fn repeated(&self) -> &[String] {
         &self.repeated
+    }
+
+    /// Names of all parts, in the order of the archive.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
+    /// Names of parts that are compressed with another method than Deflate.
+    pub(super) fn unusual(&mut self) -> Vec<String> {
+        let usual = [CompressionMethod::Stored, CompressionMethod::Deflated];
+        let mut unusual = Vec::new();
+        for i in 0..self.zip.len() {
+            if let Ok(file) = self.zip.by_index_raw(i)
+                && !usual.contains(&file.compression())
+            {
+                unusual.push(String::from_utf8_lossy(file.name_raw()).into_owned());
+            }
+        }
+        unusual
+    }
+
+    /// The first bytes of a part; `None` if it cannot be read.
+    pub(super) fn beginning(&mut self, part: &str) -> Option<Vec<u8>> {
+        let index = self.parts.get(&normalized(part))?;
+        let mut bytes = Vec::new();
+        self.zip.by_index(*index).ok()?.take(BEGINNING).read_to_end(&mut bytes).ok()?;
+        Some(bytes)
     }
 
     /// Whether the package has a part of an equivalent name.

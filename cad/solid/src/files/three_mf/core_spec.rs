@@ -7,6 +7,8 @@ pub(super) const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core
 pub(super) const OWN: &str = "urn:pinswitch:configuration:1";
 /// Namespace of the production extension: objects in separate parts.
 pub(super) const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+/// Namespace of instances of schemas, which no element or attribute may have.
+pub(super) const XSI: &str = "http://www.w3.org/2001/XMLSchema-instance";
 /// Type of the relationship to the model.
 pub(super) const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 /// Part with the relationships of a package.
@@ -47,6 +49,22 @@ const ELEMENTS: [(&str, &[&str]); 16] = [
     ("build", &[]),
     ("item", &["objectid", "transform", "partnumber"]),
 ];
+/// Elements with the elements of the core namespace in them (schema, B.1.1).
+const CHILDREN: [(&str, &[&str]); 11] = [
+    ("model", &["metadata", "resources", "build"]),
+    ("resources", &["basematerials", "object"]),
+    ("basematerials", &["base"]),
+    ("metadatagroup", &["metadata"]),
+    ("object", &["metadatagroup", "mesh", "components"]),
+    ("mesh", &["vertices", "triangles"]),
+    ("vertices", &["vertex"]),
+    ("triangles", &["triangle"]),
+    ("components", &["component"]),
+    ("build", &["item"]),
+    ("item", &["metadatagroup"]),
+];
+/// Elements with a place for elements of other namespaces, in addition to unknown ones.
+const EXTENSIBLE: [&str; 6] = ["model", "resources", "object", "mesh", "component", "item"];
 /// Names of metadata without a namespace.
 const METADATA: [&str; 9] = [
     "Title",
@@ -79,6 +97,16 @@ const EXTENSIONS: [&str; 3] = [
 /// Returns the attributes of an element; `None` for an unknown element.
 pub(super) fn attributes(element: &str) -> Option<&'static [&'static str]> {
     ELEMENTS.iter().find(|(name, _)| *name == element).map(|(_, known)| *known)
+}
+
+/// Returns the elements of the core namespace that an element may contain.
+pub(super) fn children(element: &str) -> &'static [&'static str] {
+    CHILDREN.iter().find(|(name, _)| *name == element).map_or(&[], |(_, children)| *children)
+}
+
+/// Returns whether an element may contain elements of other namespaces.
+pub(super) fn accepts_foreign(element: &str) -> bool {
+    EXTENSIBLE.contains(&element) || attributes(element).is_none()
 }
 
 /// Returns whether metadata of this name may have no namespace.

@@ -1,16 +1,27 @@
 //! XML documents of a package: a small tree of elements, with meshes read as they come.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use pinswitch_diagnostic::excerpt;
 
 use super::archive::malformed;
-use super::core_spec::{CORE, attributes, required_attributes};
+use super::core_spec::{CORE, PRODUCTION, XSI, accepts_foreign, attributes, children, required_attributes};
 use super::error::ThreeMfReadError;
 use super::materials;
+use super::value::{index, is_number, number, problem};
 use super::xml::{Attribute, Event, NamespaceId, XmlError, XmlReader};
 use crate::mesh::Point3;
 
 /// Most elements that are kept: all but vertices, triangles and the content of extensions.
 const MAX_ELEMENTS: usize = 100_000;
+/// Most bytes that the kept elements may take.
+const MAX_KEPT_BYTES: usize = 48 << 20;
+/// Bytes that an element and an attribute take in addition to their texts, with those of allocation.
+const ELEMENT_BYTES: usize = 320;
+const ATTRIBUTE_BYTES: usize = 128;
+/// Longest value that a finding quotes, in characters.
+const MAX_QUOTED: usize = 60;
 /// Most names outside of the specification that are listed.
 const MAX_UNKNOWN: usize = 20;
 
@@ -19,7 +30,14 @@ const MAX_UNKNOWN: usize = 20;
 pub(super) enum Namespace {
     None,
     Core,
-    Other(String),
+    Other(Rc<str>),
+}
+
+impl Namespace {
+    /// Whether this is the namespace of an extension.
+    pub(super) fn is(&self, uri: &str) -> bool {
+        matches!(self, Self::Other(known) if &**known == uri)
+    }
 }
 
 /// An element with its attributes, children and text.
@@ -33,18 +51,20 @@ pub(super) struct Element {
     /// The content of a mesh of the core namespace.
     pub(super) mesh: Option<RawMesh>,
     /// Namespaces by the prefixes of the names in `name` and `requiredextensions`.
-    pub(super) prefixes: BTreeMap<String, String>,
+    pub(super) prefixes: BTreeMap<String, Rc<str>>,
 }
 
 impl Element {
     /// The value of an attribute without a namespace.
     pub(super) fn attribute(&self, name: &str) -> Option<&str> {
-        self.attribute_in(&Namespace::None, name)
+        let is_wanted = |(ns, known, _): &&(_, String, _)| *ns == Namespace::None && known == name;
+        self.attributes.iter().find(is_wanted).map(|(.., value)| &**value)
     }
 
-    /// The value of an attribute in a namespace.
-    pub(super) fn attribute_in(&self, namespace: &Namespace, name: &str) -> Option<&str> {
-        self.attributes.iter().find(|(ns, known, _)| ns == namespace && known == name).map(|(.., v)| &**v)
+    /// The value of an attribute in the namespace of an extension.
+    pub(super) fn attribute_in(&self, namespace: &str, name: &str) -> Option<&str> {
+        let is_wanted = |(ns, known, _): &&(Namespace, String, _)| ns.is(namespace) && known == name;
+        self.attributes.iter().find(is_wanted).map(|(.., value)| &**value)
     }
 
     /// Whether this is the element `name` of the core namespace.
@@ -68,10 +88,25 @@ pub(super) struct RawMesh {
     pub(super) without_indices: usize,
     /// Number of coordinates that are not numbers, and the first of them.
     pub(super) invalid: Option<(usize, String)>,
-    /// Whether a triangle has a property without `pid`.
+    /// Number of coordinates that readers accept and the schema does not, and the first of them.
+    pub(super) irregular: Option<(usize, String)>,
+    /// Whether a triangle has a property.
     pub(super) has_property: bool,
-    /// Property groups of triangles.
-    pub(super) groups: Vec<String>,
+    /// Properties of triangles, by their groups.
+    pub(super) properties: Vec<TriangleProperties>,
+    /// Number of `p1`, `p2` and `p3` that are not indices.
+    pub(super) invalid_properties: usize,
+}
+
+/// Properties of the triangles that refer to one group.
+#[derive(Clone, Debug)]
+pub(super) struct TriangleProperties {
+    /// The group, or none for that of the object.
+    pub(super) pid: Option<String>,
+    /// The greatest index.
+    pub(super) greatest: u32,
+    /// Number of triangles whose corners have different properties.
+    pub(super) gradients: usize,
 }
 
 /// A document, and what in it is outside of the core specification.
@@ -86,6 +121,8 @@ pub(super) struct Document {
     pub(super) materials: BTreeMap<String, usize>,
     /// Attributes of the namespaces `xml` and `xsi` that the specification forbids.
     pub(super) forbidden: BTreeMap<String, usize>,
+    /// Values of attributes that are not of their type.
+    pub(super) values: BTreeMap<String, usize>,
 }
 
 /// Builds a document from the events of the reader.
@@ -93,11 +130,18 @@ struct Builder<'a> {
     reader: XmlReader<'a>,
     open: Vec<Element>,
     elements: usize,
+    /// Bytes that the kept elements take.
+    kept: usize,
+    /// The core namespace, once it is declared.
+    core: Option<NamespaceId>,
+    /// The vertex or triangle that is being read.
+    leaf: Option<&'static str>,
     document: Option<Element>,
     unknown: BTreeMap<String, usize>,
     missing: BTreeMap<String, usize>,
     materials: BTreeMap<String, usize>,
     forbidden: BTreeMap<String, usize>,
+    values: BTreeMap<String, usize>,
 }
 
 /// Counts an occurrence of a name, of not too many names.
@@ -116,19 +160,23 @@ pub(super) fn read_document(text: &str, part: &str) -> Result<Document, ThreeMfR
         reader: XmlReader::new(text),
         open: Vec::new(),
         elements: 0,
+        kept: 0,
+        core: None,
+        leaf: None,
         document: None,
         unknown: BTreeMap::new(),
         missing: BTreeMap::new(),
         materials: BTreeMap::new(),
         forbidden: BTreeMap::new(),
+        values: BTreeMap::new(),
     };
     builder.run().map_err(|error| match error {
         XmlError::Malformed(line, problem) => malformed(part, &format!("line {line}: {problem}")),
         XmlError::Bound(bound) => ThreeMfReadError::Bound(format!("{part} has {bound}")),
     })?;
-    let Builder { document, unknown, missing, materials, forbidden, .. } = builder;
+    let Builder { document, unknown, missing, materials, forbidden, values, .. } = builder;
     let root = document.ok_or_else(|| malformed(part, "the document has no element"))?;
-    Ok(Document { root, unknown, missing, materials, forbidden })
+    Ok(Document { root, unknown, missing, materials, forbidden, values })
 }
 
 impl Builder<'_> {
@@ -138,45 +186,80 @@ impl Builder<'_> {
         loop {
             match self.reader.next()? {
                 Event::Start { namespace, name } => {
+                    if let Some(leaf) = self.leaf.filter(|_| skipped == 1) {
+                        count(&mut self.unknown, format!("<{name}> in <{leaf}>"));
+                    }
                     if skipped > 0 || !self.start(namespace, name)? {
                         skipped += 1;
                     }
                 }
-                Event::End if skipped > 0 => skipped -= 1,
-                Event::End => self.end(),
-                Event::Text(text) => {
-                    if skipped == 0
-                        && let Some(element) = self.open.last_mut()
-                        && element.mesh.is_none()
-                    {
-                        element.text.push_str(&text);
-                    }
+                Event::End if skipped > 0 => {
+                    skipped -= 1;
+                    self.leaf = self.leaf.filter(|_| skipped > 0);
                 }
+                Event::End => self.end(),
+                Event::Text(text) => self.text(&text, skipped)?,
                 Event::Eof => return Ok(()),
             }
         }
     }
 
+    /// Handles text in an element, or at a depth inside of one that is not kept.
+    fn text(&mut self, text: &str, skipped: usize) -> Result<(), XmlError> {
+        if text.bytes().all(|byte| byte.is_ascii_whitespace()) && !self.in_metadata() {
+            return Ok(());
+        }
+        if let Some(leaf) = self.leaf.filter(|_| skipped == 1) {
+            count(&mut self.unknown, format!("text in <{leaf}>"));
+        }
+        let Some(element) = self.open.last_mut().filter(|_| skipped == 0) else { return Ok(()) };
+        if element.is_core("metadata") {
+            element.text.push_str(text);
+            return self.keep(text.len());
+        }
+        if element.namespace == Namespace::Core {
+            count(&mut self.unknown, format!("text in <{}>", element.name));
+        }
+        Ok(())
+    }
+
+    fn in_metadata(&self) -> bool {
+        self.open.last().is_some_and(|element| element.is_core("metadata"))
+    }
+
+    /// Counts bytes that are kept.
+    fn keep(&mut self, bytes: usize) -> Result<(), XmlError> {
+        self.kept += bytes;
+        if self.kept > MAX_KEPT_BYTES {
+            return Err(XmlError::Bound(format!(
+                "attributes and metadata of more than {MAX_KEPT_BYTES} bytes"
+            )));
+        }
+        Ok(())
+    }
+
     /// Handles the start of an element; returns whether it is kept.
     fn start(&mut self, namespace: Option<NamespaceId>, name: &str) -> Result<bool, XmlError> {
+        self.core = self.core.or_else(|| self.reader.id_of(CORE));
         let namespace = self.named(namespace);
         if namespace == Namespace::Core {
             self.check_core(name);
         }
+        self.check_place(&namespace, name);
         let parent = self.open.last();
         let in_core = |parent_name| parent.is_some_and(|parent| parent.is_core(parent_name));
         if namespace == Namespace::Core {
             if name == "vertex" && in_core("vertices") {
                 self.vertex();
+                self.leaf = Some("vertex");
                 return Ok(false);
             }
             if name == "triangle" && in_core("triangles") {
                 self.triangle();
+                self.leaf = Some("triangle");
                 return Ok(false);
             }
-        } else if let Namespace::Other(uri) = &namespace
-            && uri == materials::NAMESPACE
-        {
+        } else if namespace.is(materials::NAMESPACE) {
             let values: Vec<_> = self.reader.attributes.iter().filter(|a| a.namespace.is_none()).collect();
             let problem = materials::problem(name, |wanted| {
                 values.iter().find(|a| a.name == wanted).map(|a| &*a.value)
@@ -201,10 +284,19 @@ impl Builder<'_> {
                 format!("more than {MAX_ELEMENTS} XML elements in addition to vertices and triangles");
             return Err(XmlError::Bound(bound));
         }
-        let attributes = self.reader.attributes.iter();
-        let attributes: Vec<_> = attributes
+        // Other attributes of core elements are only counted.
+        let production = self.reader.id_of(PRODUCTION);
+        let known = if namespace == Namespace::Core { self::attributes(name) } else { None };
+        let is_read = |a: &&Attribute<'_>| match a.namespace {
+            None => known.is_none_or(|known| known.contains(&a.name) || a.name == "printable"),
+            some => some == production,
+        };
+        let read = self.reader.attributes.iter().filter(is_read);
+        let attributes: Vec<_> = read
             .map(|a| (self.named(a.namespace), a.name.to_owned(), a.value.clone().into_owned()))
             .collect();
+        let bytes = attributes.iter().map(|(_, key, value)| ATTRIBUTE_BYTES + key.len() + value.len());
+        self.keep(ELEMENT_BYTES + name.len() + bytes.sum::<usize>())?;
         let mut prefixes = BTreeMap::new();
         for (_, key, value) in &attributes {
             let names = match key.as_str() {
@@ -214,7 +306,7 @@ impl Builder<'_> {
             };
             for prefix in names.into_iter().take(MAX_UNKNOWN) {
                 if let Some(id) = self.reader.lookup(prefix) {
-                    prefixes.insert(prefix.to_owned(), self.reader.namespace(id).to_owned());
+                    prefixes.insert(prefix.to_owned(), self.reader.namespace(id));
                 }
             }
         }
@@ -239,13 +331,29 @@ impl Builder<'_> {
 
     fn named(&self, id: Option<NamespaceId>) -> Namespace {
         let Some(id) = id else { return Namespace::None };
-        if self.reader.id_of(CORE) == Some(id) {
+        if self.core == Some(id) {
             return Namespace::Core;
         }
-        Namespace::Other(self.reader.namespace(id).to_owned())
+        Namespace::Other(self.reader.namespace(id))
     }
 
-    /// Records names outside of the specification, and required attributes that are missing.
+    /// Records an element in a place where the schema does not have it.
+    fn check_place(&mut self, namespace: &Namespace, name: &str) {
+        let is_known =
+            |parent: &&Element| parent.namespace == Namespace::Core && attributes(&parent.name).is_some();
+        let Some(parent) = self.open.last().filter(is_known) else { return };
+        let problem = match namespace {
+            Namespace::Core if attributes(name).is_none() || children(&parent.name).contains(&name) => return,
+            Namespace::Core => format!("<{name}> in <{}>", parent.name),
+            Namespace::None => format!("<{name}> without a namespace in <{}>", parent.name),
+            Namespace::Other(_) if accepts_foreign(&parent.name) => return,
+            Namespace::Other(_) => format!("<{name}> of another namespace in <{}>", parent.name),
+        };
+        count(&mut self.unknown, problem);
+    }
+
+    /// Records names outside of the specification, required attributes that are missing, and values
+    /// that are not of their type.
     fn check_core(&mut self, element: &str) {
         let Some(known) = attributes(element) else {
             count(&mut self.unknown, format!("<{element}>"));
@@ -256,10 +364,30 @@ impl Builder<'_> {
                 None if !known.contains(&attribute.name) => {
                     count(&mut self.unknown, format!("{} of <{element}>", attribute.name));
                 }
-                Some(0) if attribute.name == "space" => {
-                    count(&mut self.forbidden, format!("xml:space of <{element}>"));
+                None => {
+                    if let Some(problem) = problem(element, attribute.name, &attribute.value) {
+                        let value = excerpt(&attribute.value, MAX_QUOTED);
+                        let problem = format!("{}={value:?} of <{element}> {problem}", attribute.name);
+                        count(&mut self.values, problem);
+                    }
                 }
-                _ => {}
+                Some(0) if attribute.name == "lang" => {
+                    if !is_language(&attribute.value) {
+                        let value = excerpt(&attribute.value, MAX_QUOTED);
+                        count(
+                            &mut self.values,
+                            format!("xml:lang={value:?} of <{element}> is not a language"),
+                        );
+                    }
+                }
+                Some(0) => count(&mut self.forbidden, format!("xml:{} of <{element}>", attribute.name)),
+                Some(id) if self.reader.id_of(XSI) == Some(id) => {
+                    count(&mut self.forbidden, format!("xsi:{} of <{element}>", attribute.name));
+                }
+                Some(id) if self.core == Some(id) => {
+                    count(&mut self.unknown, format!("{} of <{element}> with a namespace", attribute.name));
+                }
+                Some(_) => {}
             }
         }
         for name in required_attributes(element) {
@@ -281,7 +409,13 @@ impl Builder<'_> {
         for (coordinate, name) in coordinates.iter_mut().zip(["x", "y", "z"]) {
             let value = value(attributes, name);
             match value.and_then(number) {
-                Some(number) => *coordinate = number,
+                Some(number) => {
+                    *coordinate = number;
+                    if let Some(text) = value.filter(|text| !is_number(text)) {
+                        let first = || format!("with {name}=\"{text}\"");
+                        mesh.irregular.get_or_insert_with(|| (0, first())).0 += 1;
+                    }
+                }
                 None => {
                     let first = || {
                         value.map_or_else(|| format!("without {name}"), |v| format!("with {name}=\"{v}\""))
@@ -296,27 +430,42 @@ impl Builder<'_> {
     fn triangle(&mut self) {
         let attributes = &self.reader.attributes;
         let Some(mesh) = Self::mesh(&mut self.open) else { return };
-        let corner = |name| value(attributes, name).and_then(|text| text.trim().parse::<u32>().ok());
+        let corner = |name| value(attributes, name).and_then(index);
         match (corner("v1"), corner("v2"), corner("v3")) {
             (Some(a), Some(b), Some(c)) => mesh.triangles.push([a, b, c]),
             _ => mesh.without_indices += 1,
         }
-        let has = |name| value(attributes, name).is_some();
-        mesh.has_property |= has("p1") || has("pid");
-        if let Some(group) = value(attributes, "pid")
-            && mesh.groups.len() < MAX_UNKNOWN
-            && !mesh.groups.iter().any(|known| known == group)
-        {
-            mesh.groups.push(group.to_owned());
+        let pid = value(attributes, "pid");
+        let indices = ["p1", "p2", "p3"].map(|name| value(attributes, name).map(index));
+        if pid.is_none() && indices == [None; 3] {
+            return;
         }
+        mesh.has_property = true;
+        mesh.invalid_properties += indices.iter().filter(|given| **given == Some(None)).count();
+        let given = || indices.iter().filter_map(|index| index.flatten());
+        let place = mesh.properties.iter().position(|known| known.pid.as_deref() == pid);
+        let place = place.unwrap_or_else(|| {
+            let pid = pid.map(str::to_owned);
+            mesh.properties.push(TriangleProperties { pid, greatest: 0, gradients: 0 });
+            mesh.properties.len() - 1
+        });
+        let all = &mut mesh.properties[place];
+        all.greatest = all.greatest.max(given().max().unwrap_or(0));
+        all.gradients += usize::from(given().min() != given().max());
+        // Other groups of an object with many are not compared.
+        mesh.properties.truncate(MAX_UNKNOWN);
     }
+}
+
+/// Whether a text is a language by its form, or empty (`xs:language` or an empty text).
+fn is_language(text: &str) -> bool {
+    let is_subtag = |(i, part): (usize, &str)| {
+        (1..=8).contains(&part.len())
+            && part.bytes().all(|byte| byte.is_ascii_alphabetic() || (i > 0 && byte.is_ascii_digit()))
+    };
+    text.trim().is_empty() || text.trim().split('-').enumerate().all(is_subtag)
 }
 
 fn value<'b>(attributes: &'b [Attribute<'_>], name: &str) -> Option<&'b str> {
     attributes.iter().find(|a| a.namespace.is_none() && a.name == name).map(|a| &*a.value)
-}
-
-/// A finite decimal number.
-pub(super) fn number(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|value: &f64| value.is_finite())
 }

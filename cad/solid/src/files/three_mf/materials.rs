@@ -47,12 +47,12 @@ pub(super) fn is_color(text: &str) -> bool {
 pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
     let kind = |element: &Element| match &element.namespace {
         Namespace::Core => element.name.clone(),
-        Namespace::Other(uri) if uri == NAMESPACE => element.name.clone(),
+        namespace if namespace.is(NAMESPACE) => element.name.clone(),
         _ => String::new(),
     };
     let kinds: HashMap<&str, String> =
         resources.children.iter().filter_map(|e| Some((e.attribute("id")?.trim(), kind(e)))).collect();
-    let is_extension = |e: &&Element| matches!(&e.namespace, Namespace::Other(uri) if uri == NAMESPACE);
+    let is_extension = |e: &&Element| e.namespace.is(NAMESPACE);
     for element in resources.children.iter().filter(is_extension) {
         let kind_of = |name: &str| element.attribute(name).map(|id| kinds.get(id.trim()).map(String::as_str));
         match element.name.as_str() {

@@ -6,12 +6,13 @@ use super::archive::malformed;
 use super::core_spec::{
     OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, is_metadata, is_supported, unit_mm,
 };
-use super::document::{Document, Element, Namespace, RawMesh, read_document};
+use super::document::{Document, Element, Namespace, RawMesh, TriangleProperties, read_document};
 use super::error::ThreeMfReadError;
 use super::findings::Findings;
 use super::materials;
 use super::part_name::normalized;
 use super::transform::Transform;
+use super::value::index;
 use crate::mesh::Mesh;
 use crate::validity::Level;
 
@@ -108,6 +109,8 @@ impl ModelReader {
         self.check_extensions(&document.root)?;
         self.check_names(&document);
         self.check_order(&document.root);
+        self.check_structure(&document.root);
+        self.check_identifiers(&document.root);
         self.check_metadata(&document.root);
         let root = &mut document.root;
         self.configuration = self.configuration.take().or_else(|| own_metadata(root, "configuration"));
@@ -218,13 +221,22 @@ impl ModelReader {
             let detail = format!("object {id} has {number} triangles, a solid has at least 4");
             findings.error("triangles", "3MF core 4.1.4", &detail);
         }
+        if let Some((count, first)) = &raw.irregular {
+            let detail = format!("object {id} has a vertex {first}, which the schema does not accept");
+            findings.add("value", Level::Error, *count, "3MF core B.1.1", &detail);
+        }
+        if raw.invalid_properties > 0 {
+            let (count, what) = (raw.invalid_properties, "properties p1, p2 or p3 of triangles");
+            let detail = format!("{count} {what} of object {id} are not indices");
+            findings.add("value", Level::Error, count, "3MF core B.1.1", &detail);
+        }
         let positions = raw.positions.into_iter().map(|p| p * unit_mm).collect();
         Mesh::new(positions, triangles)
     }
 
     /// The object and the transform of an item or a component.
     fn placement(&mut self, element: &Element, part: &str, unit_mm: f64) -> (ObjectRef, Transform) {
-        let path = element.attribute_in(&Namespace::Other(PRODUCTION.to_owned()), "path").map(normalized);
+        let path = element.attribute_in(PRODUCTION, "path").map(normalized);
         let id = element.attribute("objectid").unwrap_or_default().trim();
         let object = (path.unwrap_or_else(|| part.to_owned()), id.to_owned());
         let Some(text) = element.attribute("transform") else { return (object, Transform::IDENTITY) };
@@ -256,7 +268,7 @@ impl ModelReader {
             }
         }
         for prefix in prefixes("recommendedextensions") {
-            let namespace = root.prefixes.get(prefix).map_or(prefix, String::as_str);
+            let namespace = root.prefixes.get(prefix).map_or(prefix, |namespace| &**namespace);
             if !is_supported(namespace) {
                 let detail = format!("the recommended extension {namespace} is not supported");
                 self.findings.warning("extension", "3MF core 3.4", &detail);
@@ -275,7 +287,16 @@ impl ModelReader {
         }
         for (name, count) in &document.forbidden {
             let detail = format!("{name} is not allowed");
-            self.findings.add("vocabulary", Level::Error, *count, "3MF core 2.3.4", &detail);
+            let paragraph = if name.starts_with("xml:space") { "3MF core 2.3.4" } else { "3MF core 2.3.2" };
+            self.findings.add("vocabulary", Level::Error, *count, paragraph, &detail);
+        }
+        for (problem, count) in &document.values {
+            let paragraph = match problem.split_once('=') {
+                Some(("preserve" | "type", _)) => "3MF core 3.4.1",
+                Some(("xml:lang", _)) => "3MF core 3.4",
+                _ => "3MF core B.1.1",
+            };
+            self.findings.add("value", Level::Error, *count, paragraph, problem);
         }
         for (name, count) in &document.missing {
             self.findings.add("attribute", Level::Error, *count, "3MF core B.1.1", name);
@@ -304,6 +325,74 @@ impl ModelReader {
         }
     }
 
+    /// Reports core elements whose children the schema does not accept in their number or order.
+    fn check_structure(&mut self, element: &Element) {
+        let children: Vec<&str> = element
+            .children
+            .iter()
+            .filter(|child| child.namespace == Namespace::Core)
+            .map(|child| child.name.as_str())
+            .collect();
+        let count = |name: &str| children.iter().filter(|child| **child == name).count();
+        let problem = match element.name.as_str() {
+            "mesh" if children != ["vertices", "triangles"] => {
+                Some(("triangles", "a <mesh> does not consist of one <vertices> and one <triangles>"))
+            }
+            "basematerials" if count("base") == 0 => Some(("material", "a <basematerials> has no <base>")),
+            "components" if count("component") == 0 => Some(("object", "a <components> has no <component>")),
+            "metadatagroup" if count("metadata") == 0 => {
+                Some(("metadata", "a <metadatagroup> has no <metadata>"))
+            }
+            "resources" if !children.is_sorted_by_key(|child| *child == "object") => {
+                Some(("model", "a <basematerials> follows an <object>"))
+            }
+            "object" | "item"
+                if count("metadatagroup") > 1
+                    || children.iter().skip(1).any(|child| *child == "metadatagroup") =>
+            {
+                Some(("metadata", "a <metadatagroup> is not the only one, or not the first element"))
+            }
+            _ => None,
+        };
+        if let Some((check, detail)) = problem {
+            self.findings.error(check, "3MF core B.1.1", detail);
+        }
+        for child in element.children.iter().filter(|child| child.namespace == Namespace::Core) {
+            self.check_structure(child);
+        }
+    }
+
+    /// Reports elements without the unique identifier of the production extension, if the model
+    /// requires the extension.
+    fn check_identifiers(&mut self, root: &Element) {
+        let required = root.attribute("requiredextensions").unwrap_or_default().split_whitespace();
+        let mut namespaces = required.filter_map(|prefix| root.prefixes.get(prefix));
+        if !namespaces.any(|namespace| **namespace == *PRODUCTION) {
+            return;
+        }
+        let builds = || root.core("build").filter(|build| build.core("item").next().is_some());
+        let items = builds().flat_map(|build| build.core("item"));
+        let objects = || root.core("resources").flat_map(|resources| resources.core("object"));
+        let components =
+            objects().flat_map(|object| object.core("components")).flat_map(|all| all.core("component"));
+        let all = [
+            ("build", "3MF production 4.1", builds().collect::<Vec<_>>()),
+            ("item", "3MF production 4.1.1", items.collect()),
+            ("object", "3MF production 4.2", objects().collect()),
+            ("component", "3MF production 4.2.1", components.collect()),
+        ];
+        for (name, paragraph, elements) in all {
+            let has_none = |element: &&&Element| {
+                !element.attribute_in(PRODUCTION, "UUID").is_some_and(|text| is_uuid(text.trim()))
+            };
+            let count = elements.iter().filter(has_none).count();
+            if count > 0 {
+                let detail = format!("{count} elements <{name}> without a UUID");
+                self.findings.add("identifier", Level::Error, count, paragraph, &detail);
+            }
+        }
+    }
+
     fn check_metadata(&mut self, root: &Element) {
         self.check_metadata_of(root);
         let items = root.core("build").flat_map(|build| build.core("item"));
@@ -322,6 +411,10 @@ impl ModelReader {
                 self.findings.error("metadata", "3MF core 3.4.1", &format!("{name} occurs twice"));
             }
             match name.split_once(':') {
+                Some((_, local)) if local.is_empty() || local.contains(':') => {
+                    let detail = format!("the metadata name {name} is not a qualified name");
+                    self.findings.error("metadata", "3MF core 3.4.1", &detail);
+                }
                 Some((prefix, _)) if element.prefixes.contains_key(prefix) => {}
                 Some((prefix, _)) => {
                     let detail = format!("the namespace {prefix} of {name} is not declared");
@@ -381,7 +474,8 @@ impl ModelReader {
                 format!("triangles of object {id} have a property, but the object has no pid and pindex");
             self.findings.warning("property", "3MF core 4", &detail);
         }
-        let of_triangles = meshes().flat_map(|mesh| &mesh.groups).map(String::as_str);
+        let uses = || meshes().flat_map(|mesh| &mesh.properties);
+        let of_triangles = uses().filter_map(|properties| properties.pid.as_deref());
         for group in pid.into_iter().chain(of_triangles) {
             if !groups.contains_key(group.trim()) {
                 let detail = format!("object {id} has a property of the group {group}, which does not exist");
@@ -389,14 +483,35 @@ impl ModelReader {
             }
         }
         let bases = pid.and_then(|pid| groups.get(pid.trim())).filter(|bases| **bases > 0);
-        let index = pindex.and_then(|index| index.trim().parse::<usize>().ok());
+        let index = pindex.and_then(index).map(|index| index as usize);
         if let (Some(bases), Some(index)) = (bases, index)
             && index >= *bases
         {
             let detail = format!("object {id} has the material {index} of a group of {bases}");
             self.findings.error("property", "3MF core 4", &detail);
         }
+        for TriangleProperties { pid: of_triangle, greatest, gradients } in uses() {
+            let group = of_triangle.as_deref().or(pid).and_then(|pid| groups.get(pid.trim()));
+            // The sizes of groups of extensions are unknown.
+            let Some(bases) = group.filter(|bases| **bases > 0) else { continue };
+            if *greatest as usize >= *bases {
+                let detail =
+                    format!("a triangle of object {id} has the material {greatest} of a group of {bases}");
+                self.findings.error("property", "3MF core 4.1.4.1", &detail);
+            }
+            if *gradients > 0 {
+                let detail =
+                    format!("{gradients} triangles of object {id} have a gradient of base materials");
+                self.findings.add("property", Level::Error, *gradients, "3MF core 4.1.4.1", &detail);
+            }
+        }
     }
+}
+
+/// Whether a text is a UUID of 32 hexadecimal digits in five groups.
+fn is_uuid(text: &str) -> bool {
+    let lengths = text.split('-').map(str::len);
+    lengths.eq([8, 4, 4, 4, 12]) && text.bytes().all(|byte| byte == b'-' || byte.is_ascii_hexdigit())
 }
 
 /// The value of metadata in the namespace of pinswitch.
@@ -404,7 +519,7 @@ fn own_metadata(root: &Element, key: &str) -> Option<String> {
     let has_key = |element: &&Element| {
         let (prefix, name) =
             element.attribute("name").and_then(|name| name.split_once(':')).unwrap_or_default();
-        name == key && element.prefixes.get(prefix).is_some_and(|namespace| namespace == OWN)
+        name == key && element.prefixes.get(prefix).is_some_and(|namespace| **namespace == *OWN)
     };
     root.core("metadata").find(has_key).map(|element| element.text.clone())
 }

@@ -54,6 +54,33 @@ pub(super) fn extension(name: &str) -> String {
     file.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_ascii_lowercase())
 }
 
+/// Returns what is wrong with the name of a part, with the paragraph that it breaks.
+pub(super) fn problem(name: &str) -> Option<(&'static str, &'static str)> {
+    let name = name.strip_prefix('/').unwrap_or(name);
+    let (folder, file) = name.rsplit_once('/').unwrap_or(("", name));
+    let is_relationships = folder.rsplit('/').next().is_some_and(|last| last.eq_ignore_ascii_case("_rels"))
+        && extension(file) == "rels";
+    if name.split('/').any(str::is_empty) {
+        Some(("has an empty segment", "OPC M1.3"))
+    } else if name.split('/').any(|segment| segment.ends_with('.')) {
+        Some(("has a segment that ends with a dot", "OPC M1.9"))
+    } else if file.starts_with('.') && !is_relationships {
+        Some(("begins with a dot", "3MF core 2.2.3"))
+    } else {
+        None
+    }
+}
+
+/// Returns parts whose names are those of another part with more segments.
+pub(super) fn derived<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut names: Vec<String> = names.map(normalized).collect();
+    // By segments, so that a name is next to the first one with more segments.
+    names.sort_unstable_by(|a, b| a.split('/').cmp(b.split('/')));
+    let is_derived =
+        |pair: &&[String]| pair[1].strip_prefix(pair[0].as_str()).is_some_and(|rest| rest.starts_with('/'));
+    names.windows(2).filter(is_derived).map(|pair| pair[1].clone()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +98,25 @@ mod tests {
         assert_ne!(normalized("/a%2Fb"), normalized("/a/b"));
         assert_eq!(normalized("/a%"), "a%");
         assert_eq!(normalized("/a%FF"), "/a%ff");
+    }
+
+    #[test]
+    fn invalid_names_are_named() {
+        for (name, paragraph) in [
+            ("3D//a.png", "OPC M1.3"),
+            ("3D/a./b.png", "OPC M1.9"),
+            ("3D/.png", "3MF core 2.2.3"),
+            ("3D/.rels", "3MF core 2.2.3"),
+        ] {
+            assert_eq!(problem(name).map(|(_, paragraph)| paragraph), Some(paragraph), "{name}");
+        }
+        for name in ["/3D/3dmodel.model", "_rels/.rels", "3D/_rels/a.model.rels", "[Content_Types].xml"] {
+            assert_eq!(problem(name), None, "{name}");
+        }
+        assert_eq!(
+            derived(["3D/A.model/b", "3D/a.model-x", "3D/a.model", "3D/b"].into_iter()),
+            ["3d/a.model/b"]
+        );
     }
 
     #[test]

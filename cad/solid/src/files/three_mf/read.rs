@@ -1,13 +1,14 @@
 //! Reads a package: its meshes in millimetres, its faults, and the configuration in it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use super::archive::Archive;
 use super::build::{Build, PlacedMesh};
 use super::core_spec::{CONTENT_TYPES, MODEL_TYPE, RELATIONSHIPS, THUMBNAIL_TYPE, USUAL_MODEL};
 use super::error::ThreeMfReadError;
+use super::findings::Findings;
 use super::model::{Model, ModelReader, PackagedMesh};
-use super::part_name::normalized;
+use super::part_name::{derived, normalized, problem};
 use super::relationships::{self, ContentTypes, Relationship, relationships};
 use crate::validity::Fault;
 
@@ -41,14 +42,15 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
         let detail = format!("two parts have equivalent names: {name}");
         reader.findings.error("part name", "OPC M1.12", &detail);
     }
-    let types = ContentTypes::read(&mut archive)?;
+    check_archive(&mut archive, &mut reader.findings);
+    let types = ContentTypes::read(&mut archive, &mut reader.findings)?;
     if types.is_none() {
         reader.findings.error("content types", "OPC M2.4", &format!("{CONTENT_TYPES} is missing"));
     }
-    let related = relationships(&mut archive, "")?.unwrap_or_default();
-    relationships::check(&related, "", &archive, types.as_ref(), &mut reader.findings)?;
+    let related = relationships(&mut archive, "", &mut reader.findings)?.unwrap_or_default();
+    relationships::check(&related, "", &mut archive, types.as_ref(), &mut reader.findings)?;
     let models = related.into_iter().filter(|one| one.kind == MODEL_TYPE);
-    let targets: Vec<String> = models.map(|one| normalized(&one.target)).collect();
+    let targets: Vec<String> = models.map(|one| one.key).collect();
     if targets.is_empty() {
         let detail = format!("{RELATIONSHIPS} names no 3D model");
         reader.findings.error("relationships", "3MF core 2.1.1", &detail);
@@ -58,6 +60,7 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
     let text = archive.text(&main_part)?.ok_or(ThreeMfReadError::NoModel)?;
     if let Some(types) = &types {
         types.check_model(&archive.name(&main_part), &mut reader.findings);
+        types.check_parts(&archive, &main_part, &mut reader.findings);
     }
     let mut models = BTreeMap::new();
     let mut pending = BTreeMap::from([(main_part.clone(), Some(text))]);
@@ -90,6 +93,23 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
     Ok(ThreeMf { meshes, faults, built, bound, size_bound, configuration, law })
 }
 
+/// Reports names of parts that are not valid, and methods of compression that are not allowed.
+fn check_archive(archive: &mut Archive<'_>, findings: &mut Findings) {
+    for name in archive.names() {
+        if let Some((problem, paragraph)) = problem(name) {
+            findings.error("part name", paragraph, &format!("the part name {name} {problem}"));
+        }
+    }
+    for name in derived(archive.names()) {
+        let detail = format!("the part name {name} is that of another part with more segments");
+        findings.error("part name", "OPC M1.11", &detail);
+    }
+    for name in archive.unusual() {
+        let detail = format!("{name} is compressed with another method than Deflate");
+        findings.error("compression", "OPC ZIP", &detail);
+    }
+}
+
 /// Checks the relationships of the model in `part`, which was read last.
 fn check_relationships(
     archive: &mut Archive<'_>,
@@ -97,17 +117,12 @@ fn check_relationships(
     types: Option<&ContentTypes>,
     reader: &mut ModelReader,
 ) -> Result<(), ThreeMfReadError> {
-    let all = relationships(archive, part)?.unwrap_or_default();
+    let all = relationships(archive, part, &mut reader.findings)?.unwrap_or_default();
     relationships::check(&all, part, archive, types, &mut reader.findings)?;
-    let is_thumbnail = |target: &str| {
-        let is_target = |one: &&Relationship| normalized(&one.target) == *target;
-        all.iter()
-            .take(MAX_THUMBNAILS)
-            .find(is_target)
-            .is_some_and(|one| THUMBNAIL_TYPES.contains(&one.kind.as_str()))
-    };
-    for (id, target) in std::mem::take(&mut reader.thumbnails).into_iter().take(MAX_THUMBNAILS) {
-        if !is_thumbnail(&target) {
+    let is_thumbnail = |one: &&Relationship| THUMBNAIL_TYPES.contains(&one.kind.as_str());
+    let thumbnails: HashSet<&str> = all.iter().filter(is_thumbnail).map(|one| one.key.as_str()).collect();
+    for (id, target) in std::mem::take(&mut reader.thumbnails) {
+        if !thumbnails.contains(target.as_str()) {
             let detail = format!("the thumbnail of object {id} has no relationship of that type");
             reader.findings.warning("thumbnail", "3MF core 4", &detail);
         }
@@ -118,5 +133,3 @@ fn check_relationships(
 /// Types of relationships to the thumbnail of an object: the second is that of older files.
 const THUMBNAIL_TYPES: [&str; 2] =
     [THUMBNAIL_TYPE, "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"];
-/// Most thumbnails of objects, and most relationships that are compared with them.
-const MAX_THUMBNAILS: usize = 500;

@@ -15,11 +15,11 @@ use crate::files::plate::Placement;
 use crate::mesh::{Mesh, Point3, Vector3};
 use crate::validity::Level;
 
-const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="MODEL" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
+const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="MODEL" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"#;
 
 fn relationships() -> String {
     format!(
-        r#"<Relationships><Relationship Type="{MODEL_TYPE}" Target="/3D/3dmodel.model"/></Relationships>"#
+        r#"<Relationships><Relationship Id="rel0" Type="{MODEL_TYPE}" Target="/3D/3dmodel.model"/></Relationships>"#
     )
 }
 
@@ -136,6 +136,163 @@ fn each_fault_is_named() {
     assert_eq!(of(&[(RELATIONSHIPS, &relationships()), (USUAL_MODEL, &good)]), "content types");
 }
 
+/// Everything that the schema does not accept, with the paragraph that it breaks.
+#[test]
+fn violations_of_the_schema_are_named() {
+    let item = r#"<item objectid="1"/>"#;
+    let good = model_of("", "", &object(1), item);
+    let triangle = |attributes: &str| {
+        let first = format!("<triangle {attributes} v1=\"0\"");
+        let two = BASE.replace("</base", r##"<base name="b" displaycolor="#00FF00"/></base"##);
+        let object = object(1).replacen("<object", r#"<object pid="5" pindex="0""#, 1);
+        model_of("", "", &(two + &object.replacen("<triangle v1=\"0\"", &first, 1)), item)
+    };
+    let moved = |transform: &str| {
+        model_of("", "", &object(1), &format!(r#"<item objectid="1" transform="{transform}"/>"#))
+    };
+    let metadata = |attributes: &str| {
+        model_of("", &format!(r#"<metadata name="Title" {attributes}>x</metadata>"#), &object(1), item)
+    };
+    let (start, end) = (TETRAHEDRON.find("<triangles").unwrap(), TETRAHEDRON.find("</mesh").unwrap());
+    let reordered = format!("<mesh>{}{}</mesh>", &TETRAHEDRON[start..end], &TETRAHEDRON[6..start]);
+    let foreign = r#"xmlns:a="urn:a""#;
+    for (model, check, paragraph) in [
+        (moved("1 0 0 foo 0 1 0 0 0 1 0 0 0"), "transform", "3MF core 3.3"),
+        (moved("1 0 0 0 1 0 0 0 1 0 0 0 0"), "transform", "3MF core 3.3"),
+        (moved("1 0 0 0 1 0 0 0 1 0 0 0."), "transform", "3MF core 3.3"),
+        (good.replacen(r#"x="9""#, r#"x="9.""#, 1), "value", "3MF core B.1.1"),
+        (good.replacen("<triangles>", "<vertices/><triangles>", 1), "triangles", "3MF core B.1.1"),
+        (good.replace(TETRAHEDRON, &reordered), "triangles", "3MF core B.1.1"),
+        (model_of("", "", &object(1), &(item.to_owned() + &object(3))), "vocabulary", "3MF core 2.3.2"),
+        (model_of(foreign, "", &object(1), &(item.to_owned() + "<a:x/>")), "vocabulary", "3MF core 2.3.2"),
+        (model_of("", "", &object(1), &(item.to_owned() + "hello")), "vocabulary", "3MF core 2.3.2"),
+        (good.replacen(r#"v3="1"/>"#, r#"v3="1">x</triangle>"#, 1), "vocabulary", "3MF core 2.3.2"),
+        (good.replacen(r#"v3="1"/>"#, r#"v3="1"><x/></triangle>"#, 1), "vocabulary", "3MF core 2.3.2"),
+        (
+            model_of("", "", &(r#"<basematerials id="5"/>"#.to_owned() + &object(1)), item),
+            "material",
+            "3MF core B.1.1",
+        ),
+        (model_of("", "", &(object(1) + BASE), item), "model", "3MF core B.1.1"),
+        (
+            model_of("", "", &(object(1) + r#"<object id="2"><components/></object>"#), item),
+            "object",
+            "3MF core B.1.1",
+        ),
+        (triangle(r#"p1="0" p2="1" p3="1""#), "property", "3MF core 4.1.4.1"),
+        (triangle(r#"p1="0" p3="1""#), "property", "3MF core 4.1.4.1"),
+        (triangle(r#"pid="5" p1="2""#), "property", "3MF core 4.1.4.1"),
+        (triangle(r#"p1="x""#), "value", "3MF core B.1.1"),
+        (good.replacen("<object", r#"<object xml:id="a""#, 1), "vocabulary", "3MF core 2.3.2"),
+        (
+            model_of(
+                r#"xmlns:i="http://www.w3.org/2001/XMLSchema-instance" i:schemaLocation="a b""#,
+                "",
+                &object(1),
+                item,
+            ),
+            "vocabulary",
+            "3MF core 2.3.2",
+        ),
+        (model_of(r#"xml:lang="12 34""#, "", &object(1), item), "value", "3MF core 3.4"),
+        (metadata("").replace(r#""Title""#, r#""p:b:c""#), "metadata", "3MF core 3.4.1"),
+        (metadata(r#"preserve="maybe""#), "value", "3MF core 3.4.1"),
+        (metadata(r#"type="xs:banana""#), "value", "3MF core 3.4.1"),
+        (model_of(r#"requiredextensions="p""#, "", &object(1), ""), "identifier", "3MF production 4.2"),
+    ] {
+        let found = read(&model);
+        let found: Vec<_> = found.faults.iter().filter(|fault| fault.check != "build").collect();
+        assert_eq!(found.len(), 1, "{found:?}\n{model}");
+        assert_eq!((found[0].check, found[0].paragraph), (check, Some(paragraph)), "{model}");
+        assert_eq!(found[0].level, Level::Error, "{model}");
+    }
+    for model in [
+        moved("\n1 0 0\n0 1 0 0 0 1\t10e0 +1 .5 "),
+        metadata(r#"preserve="1" type="xs:string" xml:lang="de""#),
+        model_of(r#"xml:lang="en-US""#, "", &object(1), item),
+        triangle(r#"p1="1" p2="1""#),
+        good.replacen(r#"v1="0""#, r#"v1=" 0 ""#, 1),
+        model_of(foreign, "", &object(1).replace("</mesh>", "<a:x><a:y>t</a:y></a:x></mesh>"), item),
+    ] {
+        assert_eq!(checks(&read(&model)), [""; 0], "{model}");
+    }
+}
+
+#[test]
+fn violations_of_the_package_are_named() {
+    let model = model_of("", "", &object(1), r#"<item objectid="1"/>"#);
+    let picture = TYPES.replace("</Types>", r#"<Default Extension="png" ContentType="image/png"/></Types>"#);
+    let rels = relationships();
+    let related = |more: &str| rels.replace("</Relationships>", &format!("{more}</Relationships>"));
+    let relation = |id: &str, kind: &str, target: &str| {
+        related(&format!(r#"<Relationship {id} Type="{kind}" Target="{target}"/>"#))
+    };
+    let repeated =
+        TYPES.replace("</Types>", r#"<Default Extension="model" ContentType="a/b"/></Types>"#).replace(
+            r#"Extension="model" ContentType="a/b""#,
+            r#"Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml""#,
+        );
+    for (types, rels, part, paragraph) in [
+        (&picture, rels.replace(r#"Id="rel0""#, ""), "a.png", "OPC M1.26"),
+        (&picture, relation(r#"Id="rel0""#, THUMBNAIL_TYPE, "/a.png"), "a.png", "OPC M1.26"),
+        (&picture, relation(r#"Id="1""#, THUMBNAIL_TYPE, "/a.png"), "a.png", "OPC M1.26"),
+        (&picture, relation(r#"Id="a""#, "urn:a", "/a.png#x"), "a.png", "OPC O1.6"),
+        (&picture, relation(r#"Id="a""#, THUMBNAIL_TYPE, "/b.png"), "b.png", "3MF core 2.1.3"),
+        (&picture, rels.clone(), "3D/.png", "3MF core 2.2.3"),
+        (&picture, rels.clone(), "3D/a./b.png", "OPC M1.9"),
+        (&picture, rels.clone(), "3D/3dmodel.model/a.png", "OPC M1.11"),
+        (&picture, rels.clone(), "a.config", "OPC M2.4"),
+        (&picture, relation(r#"Id="a""#, "urn:a", "/a.config"), "a.config", "OPC M2.4"),
+        (&repeated, rels.clone(), "a.rels", "OPC M2.5"),
+    ] {
+        let content = if part == "b.png" { "no picture" } else { "\u{89}PNG\r\n\x1a\n" };
+        // A PNG begins with a byte that no text has.
+        let content: Vec<u8> = content.chars().map(|c| c as u8).collect();
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        let texts = [(CONTENT_TYPES, types.as_bytes()), (RELATIONSHIPS, rels.as_bytes())];
+        for (name, bytes) in texts.into_iter().chain([(USUAL_MODEL, model.as_bytes()), (part, &content)]) {
+            archive.start_file(name, SimpleFileOptions::default()).unwrap();
+            archive.write_all(bytes).unwrap();
+        }
+        let found = read_three_mf(&archive.finish().unwrap().into_inner()).unwrap();
+        let paragraphs: std::collections::BTreeSet<_> =
+            found.faults.iter().filter_map(|fault| fault.paragraph).collect();
+        assert_eq!(
+            paragraphs.into_iter().collect::<Vec<_>>(),
+            [paragraph],
+            "{part} {rels} {:?}",
+            found.faults
+        );
+    }
+}
+
+/// Texts of a megabyte in a small file are not kept once for each element.
+#[test]
+fn repeated_texts_take_no_memory() {
+    let bound = |model: &str| {
+        let rels = relationships();
+        let parts = [(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, model)];
+        matches!(read_three_mf(&packed(&parts)), Err(ThreeMfReadError::Bound(_)))
+    };
+    let item = r#"<item objectid="1"/>"#;
+    let namespace = format!(r#"xmlns:a="{}""#, "u".repeat(100_000));
+    assert!(bound(&model_of(&namespace, "", &object(1), item)));
+    let named = format!(r#"<item objectid="1" partnumber="{}"/>"#, "x".repeat(100_000));
+    assert!(bound(&model_of("", "", &object(1), &named.repeat(600))));
+    // Attributes that are unknown are counted, and not kept.
+    let unknown: String = (0..31).map(|i| format!(r#" a{i}="{}""#, "x".repeat(20))).collect();
+    let found =
+        read(&model_of("", "", &object(1), &format!(r#"<item objectid="1"{unknown}/>"#).repeat(20_000)));
+    assert!(checks(&found).contains(&"vocabulary"));
+    let rels = relationships().replace(
+        "</Relationships>",
+        &format!(r#"<Relationship Id="a" Type="urn:a" Target="/{}"/></Relationships>"#, "A".repeat(34_000)),
+    );
+    let model = model_of("", "", &object(1), item);
+    let parts = [(CONTENT_TYPES, TYPES), (RELATIONSHIPS, rels.as_str()), (USUAL_MODEL, model.as_str())];
+    assert!(matches!(read_three_mf(&packed(&parts)), Err(ThreeMfReadError::Bound(_))));
+}
+
 #[test]
 fn scaled_items_are_returned_in_both_sizes() {
     let flat = r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 0.01 0 0 0"/>"#;
@@ -241,7 +398,8 @@ fn faults_of_relationships_are_named() {
         let parts = [(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, &model)];
         read_three_mf(&packed(&parts)).unwrap()
     };
-    let relation = |kind: &str, target: &str| format!(r#"<Relationship Type="{kind}" Target="{target}"/>"#);
+    let relation =
+        |kind: &str, target: &str| format!(r#"<Relationship Id="rel1" Type="{kind}" Target="{target}"/>"#);
     assert_eq!(checks(&with(&relation(THUMBNAIL_TYPE, "/Metadata/missing.png"))), ["relationships"]);
     assert_eq!(checks(&with(&relation("urn:a", "http://a.example/b"))), ["relationships"]);
     assert_eq!(checks(&with(&relation("urn:a", "c:/b"))), ["relationships"]);
@@ -292,14 +450,20 @@ fn excessive_archives_meet_a_bound() {
     assert!(bound(&[(CONTENT_TYPES, TYPES), (RELATIONSHIPS, &rels), (USUAL_MODEL, &many)]));
 }
 
+/// An identifier of the production extension.
+const UUID: &str = r#"p:UUID="01cbb956-1d24-062d-fbe6-7362e5727594""#;
+
 #[test]
 fn separate_parts_and_other_units_are_read() {
     let main = model_of(
         r#"unit="inch" requiredextensions="p""#,
         "",
-        r#"<object id="2"><components><component objectid="1" p:path="/3D/Objects/a.model"/></components></object>"#,
-        r#"<item objectid="2"/>"#,
-    );
+        &format!(
+            r#"<object id="2" {UUID}><components><component objectid="1" {UUID} p:path="/3D/Objects/a.model"/></components></object>"#
+        ),
+        &format!(r#"<item objectid="2" {UUID}/>"#),
+    )
+    .replace("<build>", &format!("<build {UUID}>"));
     let other = model_of(r#"unit="centimeter""#, "", &object(1), "");
     let relationships = relationships();
     let parts = [

@@ -1,5 +1,6 @@
 //! Affine transforms of items and components.
 
+use super::value::{is_number, number};
 use crate::mesh::{Mesh, Point3};
 
 /// Largest deviation of a rotation matrix from orthogonality that counts as rounding.
@@ -14,11 +15,15 @@ impl Transform {
     pub(super) const IDENTITY: Self =
         Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
 
-    /// Parses twelve finite numbers, the translation in units of `unit_mm`; `None` for any other
-    /// text.
+    /// Parses exactly twelve finite numbers (`ST_Matrix3D`), the translation in units of `unit_mm`;
+    /// `None` for any other text.
     pub(super) fn parse(text: &str, unit_mm: f64) -> Option<Self> {
-        let numbers: Vec<f64> = text.split_whitespace().filter_map(|v| v.parse().ok()).collect();
-        if numbers.len() != 12 || !numbers.iter().all(|v| v.is_finite()) {
+        let mut words = text.split_ascii_whitespace();
+        let mut numbers = [0.0; 12];
+        for value in &mut numbers {
+            *value = words.next().filter(|word| is_number(word)).and_then(number)?;
+        }
+        if words.next().is_some() {
             return None;
         }
         let scale = |row: usize| if row == 3 { unit_mm } else { 1.0 };

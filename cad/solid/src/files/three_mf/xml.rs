@@ -5,6 +5,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// Deepest nesting of elements. The core specification needs eight.
 const MAX_DEPTH: usize = 64;
@@ -14,6 +15,8 @@ const MAX_ATTRIBUTES: usize = 32;
 const MAX_DECLARATIONS: usize = 64;
 /// Most different namespaces of a document.
 const MAX_NAMESPACES: usize = 256;
+/// Longest namespace, and longest name of an element or an attribute, in bytes.
+pub(super) const MAX_NAME_BYTES: usize = 2048;
 /// Namespace that the prefix `xml` denotes without a declaration.
 const XML: &str = "http://www.w3.org/XML/1998/namespace";
 
@@ -58,7 +61,9 @@ pub(super) struct XmlReader<'a> {
     pub(super) attributes: Vec<Attribute<'a>>,
     /// Prefixes in scope, the innermost last.
     scope: Vec<(&'a str, Option<NamespaceId>)>,
-    namespaces: HashMap<String, NamespaceId>,
+    /// Namespaces in the order of their declarations.
+    namespaces: Vec<Rc<str>>,
+    ids: HashMap<Rc<str>, NamespaceId>,
     /// Open elements: the name as written, and the length of the scope outside.
     open: Vec<(&'a str, usize)>,
     /// Whether the last start tag was empty, so that its end is the next event.
@@ -75,25 +80,33 @@ impl<'a> XmlReader<'a> {
             at: 0,
             attributes: Vec::new(),
             scope: Vec::new(),
-            namespaces: HashMap::new(),
+            namespaces: Vec::new(),
+            ids: HashMap::new(),
             open: Vec::new(),
             is_empty_tag: false,
             has_root: false,
             raw: Vec::new(),
         };
-        reader.namespaces.insert(XML.to_owned(), 0);
-        reader.scope.push(("xml", Some(0)));
+        let id = reader.add_namespace(XML);
+        reader.scope.push(("xml", Some(id)));
         reader
     }
 
     /// The index of a namespace that the document has declared.
     pub(super) fn id_of(&self, namespace: &str) -> Option<NamespaceId> {
-        self.namespaces.get(namespace).copied()
+        self.ids.get(namespace).copied()
     }
 
     /// The namespace of an index.
-    pub(super) fn namespace(&self, id: NamespaceId) -> &str {
-        self.namespaces.iter().find(|(_, known)| **known == id).map_or("", |(name, _)| name)
+    pub(super) fn namespace(&self, id: NamespaceId) -> Rc<str> {
+        self.namespaces.get(id as usize).map_or_else(|| Rc::from(""), Rc::clone)
+    }
+
+    fn add_namespace(&mut self, namespace: &str) -> NamespaceId {
+        let (id, shared) = (self.namespaces.len() as NamespaceId, Rc::<str>::from(namespace));
+        self.namespaces.push(Rc::clone(&shared));
+        self.ids.insert(shared, id);
+        id
     }
 
     /// The namespace of a prefix in scope, the default namespace for an empty prefix.
@@ -139,6 +152,9 @@ impl<'a> XmlReader<'a> {
         let ends = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | b'/' | b'>' | b'=');
         let length = rest.as_bytes().iter().position(ends).unwrap_or(rest.len());
         let name = &rest[..length];
+        if length > MAX_NAME_BYTES {
+            return Err(XmlError::Bound(format!("an XML name of more than {MAX_NAME_BYTES} bytes")));
+        }
         let starts = |c: char| c.is_alphabetic() || c == '_';
         let is_part = |part: &str| {
             part.starts_with(starts)
@@ -324,17 +340,16 @@ impl<'a> XmlReader<'a> {
         if self.scope.len() > MAX_DECLARATIONS {
             return Err(XmlError::Bound(format!("more than {MAX_DECLARATIONS} XML namespaces in scope")));
         }
+        if namespace.len() > MAX_NAME_BYTES {
+            return Err(XmlError::Bound(format!("an XML namespace of more than {MAX_NAME_BYTES} bytes")));
+        }
         let id = match self.id_of(namespace) {
             _ if namespace.is_empty() => None,
             Some(id) => Some(id),
             None if self.namespaces.len() == MAX_NAMESPACES => {
                 return Err(XmlError::Bound(format!("more than {MAX_NAMESPACES} XML namespaces")));
             }
-            None => {
-                let id = self.namespaces.len() as NamespaceId;
-                self.namespaces.insert(namespace.to_owned(), id);
-                Some(id)
-            }
+            None => Some(self.add_namespace(namespace)),
         };
         self.scope.push((prefix, id));
         Ok(())
@@ -395,7 +410,7 @@ mod tests {
         loop {
             match reader.next()? {
                 Event::Start { namespace, name } => {
-                    let namespace = namespace.map_or("", |id| reader.namespace(id));
+                    let namespace = namespace.map(|id| reader.namespace(id)).unwrap_or_else(|| "".into());
                     let attributes: String =
                         reader.attributes.iter().map(|a| format!(" {}={}", a.name, a.value)).collect();
                     all.push(format!("<{{{namespace}}}{name}{attributes}>"));
@@ -456,7 +471,9 @@ mod tests {
         let attributes = format!("<a {}/>", (0..1000).map(|i| format!("b{i}='' ")).collect::<String>());
         let declared = format!("<a {}/>", (0..1000).map(|i| format!("xmlns:b{i}='u' ")).collect::<String>());
         let many: String = (0..1000).map(|i| format!("<a xmlns='u{i}'/>")).collect();
-        for text in [deep, attributes, declared, format!("<a>{many}</a>")] {
+        let (name, namespace) =
+            (format!("<{}/>", "a".repeat(3000)), format!("<a xmlns='{}'/>", "u".repeat(3000)));
+        for text in [deep, attributes, declared, format!("<a>{many}</a>"), name, namespace] {
             assert!(matches!(read(&text), Err(XmlError::Bound(_))), "{text:.60}");
         }
     }

@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn unfinished_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join(".pinswitch-gone"), "half").unwrap();
+        std::fs::write(folder.path().join(".pinswitch-gone.part"), "half").unwrap();
         write_file(&folder.path().join("a"), b"one").unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }

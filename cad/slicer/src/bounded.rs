@@ -20,7 +20,7 @@ pub struct RunLimits {
 }
 
 impl Default for RunLimits {
-    /// Ten minutes, of which slicing a part takes seconds; 16 MB of messages; a G-code of 1 GB.
+    /// Ten minutes (slicing a part takes seconds), 16 MB of messages, and a G-code of 1 GB.
     fn default() -> Self {
         Self { time: Duration::from_secs(600), printed_bytes: 16 << 20, written_bytes: 1 << 30 }
     }
@@ -168,7 +168,7 @@ pub fn supervise(program: &Path, arguments: &[std::ffi::OsString]) -> Result<i32
         let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);
         std::process::exit(1);
     });
-    // A program that a signal ended has no code.
+    // A signal ends a program without a code.
     Ok(child.wait()?.code().unwrap_or(1))
 }
 
@@ -202,9 +202,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for (script, reason) in [
             ("sleep 60", "longer than 0.5 s"),
-            // What it has started holds the pipes.
+            // Its child keeps the pipes open.
             ("sleep 60 & sleep 60", "longer than 0.5 s"),
-            // A child that has left the group holds the pipes.
+            // The same in another process group.
             ("setsid sleep 20 & sleep 60", "longer than 0.5 s"),
             ("yes", "printed more than 1048576"),
             ("yes > written", "more than 1048576 bytes"),

@@ -4,11 +4,11 @@
 /// all optimisations and 80 ns with those of development.
 const FREE_UNITS: usize = 6_000_000;
 /// Units of work for each facet; meshes without crowds of facets need fewer.
-const UNITS_PER_FACET: usize = 128;
+const UNITS_PER_FACET: usize = 512;
 
 /// Units of work for the facets in each byte of a file: with [`UNITS_PER_FACET`], those of a facet in
-/// every 16 bytes. Not derived from measurements of files.
-const UNITS_PER_BYTE: usize = 8;
+/// every 43 bytes. Not derived from measurements of files.
+const UNITS_PER_BYTE: usize = 12;
 
 /// Work that a part of a search may still do. Each part has its own budget, so that the outcome
 /// does not depend on the number of threads.

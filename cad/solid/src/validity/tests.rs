@@ -218,7 +218,7 @@ fn a_wire_through_a_plate_intersects() {
 #[test]
 fn meshes_of_a_file_share_their_allowance() {
     let mut nested = Mesh::default();
-    for i in 0..60 {
+    for i in 0..240 {
         let (first, scale) = (nested.positions.len() as u32, 1.0 + f64::from(i) * 1e-3);
         let cube = cube();
         // Oblique, so that the boxes of near facets overlap.

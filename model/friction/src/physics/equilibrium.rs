@@ -18,6 +18,7 @@
 use super::banded::BandedMatrix;
 use super::error::PhysicsError;
 use super::grid::Grid;
+use super::line_search::share_of_step;
 use crate::bed::Bed;
 
 /// Largest number of Newton steps; 3 to 10 are usual.
@@ -31,8 +32,6 @@ const MAX_CUTS: usize = 30;
 /// Largest multiple of the string's negative stiffness that is added to the matrix of a Newton
 /// step.
 const MAX_SHIFT: f64 = 1e4;
-/// The line search ends when the slope of the energy is below this share of its initial value.
-const FLAT: f64 = 0.5;
 
 /// Equilibrium shape with the forces of its supports.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,32 +183,18 @@ impl Supports<'_> {
             let state = self.evaluate(a, load, &moved);
             (moved, state)
         };
-        let falling = slope(here);
-        let (mut low, mut high) = ((0.0, falling), None);
-        let mut share = 1.0;
-        let mut trial = at(share);
-        for _ in 0..MAX_CUTS {
+        // The trial at the share that was evaluated last.
+        let mut last = None;
+        let share = share_of_step(slope(here), MAX_CUTS, |share| {
+            let trial = at(share);
             let now = slope(&trial.1);
-            if now.abs() <= FLAT * falling.abs() {
-                break;
-            }
-            if now > 0.0 {
-                high = Some((share, now));
-            } else {
-                low = (share, now);
-            }
-            share = match high {
-                // A full step along which the energy still falls is accepted.
-                None => break,
-                // Regula falsi, limited to the inner part of the interval.
-                Some((end, rising)) => {
-                    let cut = low.0 + (end - low.0) * low.1.abs() / (low.1.abs() + rising);
-                    cut.clamp(low.0 + 0.1 * (end - low.0), end - 0.1 * (end - low.0))
-                }
-            };
-            trial = at(share);
+            last = Some((share, trial));
+            now
+        });
+        match last {
+            Some((evaluated, trial)) if evaluated == share => trial,
+            _ => at(share),
         }
-        trial
     }
 
     /// Returns the equilibrium with this gap.

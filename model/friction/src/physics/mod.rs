@@ -15,6 +15,7 @@ mod error;
 mod fit;
 mod grid;
 pub mod hypotheses;
+mod line_search;
 mod march;
 mod pair;
 mod profile;

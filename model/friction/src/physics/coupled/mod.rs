@@ -10,13 +10,20 @@
 //! function theorem): the factors of the stiffness matrix are computed once, and every pass of the
 //! fixed point over shape and tension is a back-substitution.
 
-// A constant is the index into several arrays at once.
-#![allow(clippy::needless_range_loop)]
+mod derivatives;
+mod elimination;
+mod extrapolation;
 
 use super::constants::Constants;
 use super::equilibrium::{BALANCE, Supports};
+use super::line_search::share_of_step;
 use super::pair::Pair;
 use crate::bed::Bed;
+use derivatives::Derivatives;
+use elimination::{Elimination, middle_row, substitute_back};
+use extrapolation::{HISTORY, State};
+
+pub(super) use derivatives::MAX_PASSES;
 
 /// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
 const MAX_SWEEPS: usize = 24;
@@ -34,21 +41,10 @@ const MAX_SECANT: f64 = 0.5;
 const PROGRESS: f64 = 0.1;
 /// Number of sweeps after which every step is searched.
 const MAX_PLAIN_SWEEPS: usize = 4;
-/// The line search ends when the slope of the energy is below this share of its initial value.
-const FLAT: f64 = 0.5;
 /// Largest number of cuts of a step.
 const MAX_CUTS: usize = 12;
-/// Largest sum of the magnitudes of the weights of an extrapolation.
-const MAX_WEIGHT: f64 = 16.0;
-/// Number of states from which the next one is extrapolated.
-const HISTORY: usize = 3;
 /// Largest exponent of the Taylor series in [`exp_of_small`].
 const TINY: f64 = 2e-3;
-/// Largest change of a derivative of the log tension in the last pass, relative to the largest
-/// derivative.
-const DERIVATIVE_TOLERANCE: f64 = 1e-8;
-/// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
-pub(super) const MAX_PASSES: usize = 60;
 /// Number of material constants.
 pub(super) const CONSTANTS: usize = 3;
 
@@ -81,16 +77,6 @@ impl Node {
     fn load(&self, bending: Pair, tension: Pair) -> Pair {
         bending * self.bending_load + tension * self.string_load
     }
-}
-
-/// State of the tendon at one load, in both directions.
-#[derive(Clone, Debug, Default)]
-struct State {
-    load_n: f64,
-    /// Gap at each node, mm.
-    gap_mm: Vec<Pair>,
-    /// Tension over load at each node.
-    ratio: Vec<Pair>,
 }
 
 /// Friction exponents of both directions, `|ln(T/F)|`, by material.
@@ -139,15 +125,6 @@ pub(super) struct Workspace {
     /// Nodes that meet or leave the silicone in a step.
     crossing: Vec<usize>,
     derivatives: Derivatives,
-}
-
-/// Arrays of derivatives with respect to the logarithms of the constants.
-#[derive(Clone, Debug, Default)]
-struct Derivatives {
-    right: Vec<[Pair; CONSTANTS]>,
-    turn: Vec<[Pair; CONSTANTS]>,
-    pin_turn: Vec<[Pair; CONSTANTS]>,
-    log_tension: Vec<[Pair; CONSTANTS]>,
 }
 
 impl Workspace {
@@ -292,53 +269,6 @@ impl Workspace {
         self.remember(load_n);
     }
 
-    /// Sets gap and tension to those expected at `load_n`, by a polynomial through the last states.
-    fn extrapolate(&mut self, supports: &Supports<'_>, wrap_rad: f64, load_n: f64) {
-        let known = self.known;
-        let Some(weights) = (1..=known).rev().find_map(|order| weights(&self.history[..order], load_n))
-        else {
-            let gap_mm = self.guessed_gap_mm(supports, wrap_rad, load_n);
-            self.gap_mm.fill(Pair::both(gap_mm));
-            self.tension_n.fill(Pair::both(load_n));
-            return;
-        };
-        let [a, b, c] = &self.history;
-        for i in 0..self.nodes.len() {
-            let sum = |x: Pair, y: Pair, z: Pair| x * weights[0] + y * weights[1] + z * weights[2];
-            self.gap_mm[i] = sum(a.gap_mm[i], b.gap_mm[i], c.gap_mm[i]);
-            self.tension_n[i] = sum(a.ratio[i], b.ratio[i], c.ratio[i]) * load_n;
-        }
-        if self.tension_n.iter().any(|t| !t.all(|t| t > 0.0)) {
-            let last = &self.history[0];
-            self.gap_mm.copy_from_slice(&last.gap_mm);
-            self.tension_n.iter_mut().zip(&last.ratio).for_each(|(t, ratio)| *t = *ratio * load_n);
-        }
-    }
-
-    /// Returns a gap without a similar state: that of pins that carry the whole load, or of the
-    /// tendon on silicone without pins if they sink flush.
-    fn guessed_gap_mm(&self, supports: &Supports<'_>, wrap_rad: f64, load_n: f64) -> f64 {
-        let bed = supports.bed;
-        let flush_n = supports.flush_force_n * self.pins.len() as f64;
-        // Of N = N0 (1 + b) x/(1 + b x).
-        let share = load_n * wrap_rad / flush_n;
-        let sunk = share / (1.0 + bed.softening * (1.0 - share));
-        if share < 1.0 {
-            bed.protrusion_mm() * (1.0 - sunk)
-        } else {
-            -load_n / (bed.stiffness_n_mm2() * bed.axis_radius_mm())
-        }
-    }
-
-    fn remember(&mut self, load_n: f64) {
-        self.history.rotate_right(1);
-        let state = &mut self.history[0];
-        state.load_n = load_n;
-        state.gap_mm.copy_from_slice(&self.gap_mm);
-        state.ratio.iter_mut().zip(&self.tension_n).for_each(|(ratio, t)| *ratio = *t * (1.0 / load_n));
-        self.known = (self.known + 1).min(HISTORY);
-    }
-
     fn bending_n_mm2(&self, bed: &Bed) -> Pair {
         let least = self.tension_n.iter().fold(Pair::both(f64::INFINITY), |least, t| least.min(*t));
         least.map(|t| bed.tendon_bending_n_mm2(t))
@@ -478,28 +408,7 @@ impl Workspace {
             }
             (1.0 - share) * falling + missed
         };
-        let (mut low, mut high) = ((0.0, falling), None);
-        let mut share = 1.0;
-        for _ in 0..MAX_CUTS {
-            let now = slope(share);
-            if now.abs() <= FLAT * falling.abs() {
-                break;
-            }
-            if now > 0.0 {
-                high = Some((share, now));
-            } else {
-                low = (share, now);
-            }
-            share = match high {
-                None => break,
-                // Regula falsi, limited to the inner part of the interval.
-                Some((end, rising)) => {
-                    let cut = low.0 + (end - low.0) * low.1.abs() / (low.1.abs() + rising);
-                    cut.clamp(low.0 + 0.1 * (end - low.0), end - 0.1 * (end - low.0))
-                }
-            };
-        }
-        share
+        share_of_step(falling, MAX_CUTS, slope)
     }
 
     /// Moves to the next gap, with a search along the step if `is_far`, and computes the forces
@@ -566,243 +475,6 @@ impl Workspace {
         let is_finite = change.all(f64::is_finite) && tension.all(f64::is_finite);
         (exponents, if is_finite { worst } else { f64::INFINITY })
     }
-
-    /// Computes the derivatives of the friction exponents of both directions with respect to the
-    /// logarithms of `kappa`, `mu_s` and `N0`, at the last load. `None` if a derivative does not
-    /// converge.
-    ///
-    /// Touching nodes and pins stay those of the solution; where one is about to touch, the
-    /// derivatives are one-sided.
-    pub(super) fn derivatives(
-        &mut self,
-        supports: &Supports<'_>,
-        constants: &Constants,
-        wrap_rad: f64,
-    ) -> Option<[Pair; CONSTANTS]> {
-        let (n, mu) = (self.nodes.len(), constants.mu_silicone);
-        let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
-        let bending = self.bending_n_mm2(supports.bed);
-        self.supports_at_gap(supports);
-        if !self.solve(bending) {
-            return None;
-        }
-        for i in 0..n {
-            let stiffness = self.nodes[i].silicone_n_mm;
-            let force = self.gap_mm[i].where_negative(self.gap_mm[i] * -stiffness);
-            self.silicone_turn[i] = force / self.tension_n[i];
-        }
-        let turned = self.turned();
-        let closure = Pair::both(wrap_rad) / turned;
-        let lowest = self.lowest_tension();
-        let bending_slope = self.bending_slope(supports.bed, bending);
-        let mut d = std::mem::take(&mut self.derivatives);
-        let zero = [Pair::both(0.0); CONSTANTS];
-        d.right.resize(n, zero);
-        d.turn.resize(n, zero);
-        d.pin_turn.resize(self.pins.len(), zero);
-        d.log_tension.resize(n, zero);
-        d.log_tension.fill(zero);
-        let mut result = None;
-        for _ in 0..MAX_PASSES {
-            self.derivative_of_gap(&mut d, lowest, bending_slope);
-            self.derivative_of_turns(&mut d, closure, turned);
-            let (exponents, change) = self.derivative_of_tension(&mut d, mu, kappa, closure);
-            if change <= DERIVATIVE_TOLERANCE {
-                result = Some(exponents);
-                break;
-            }
-        }
-        self.derivatives = d;
-        result
-    }
-
-    /// Returns the node of the lowest tension of each direction, which limits the bending
-    /// stiffness.
-    fn lowest_tension(&self) -> [usize; 2] {
-        [0, 1].map(|lane| {
-            let tension = |i: usize| self.tension_n[i].lane(lane);
-            (1..self.nodes.len()).fold(0, |least, i| if tension(i) < tension(least) { i } else { least })
-        })
-    }
-
-    /// Returns the derivative of the bending stiffness with respect to the logarithm of the lowest
-    /// tension.
-    fn bending_slope(&self, bed: &Bed, bending: Pair) -> Pair {
-        let least = self.tension_n.iter().fold(Pair::both(f64::INFINITY), |least, t| least.min(*t));
-        Pair::new([0, 1].map(|i| bed.tendon_bending_slope_n_mm2(bending.lane(i), least.lane(i))))
-    }
-
-    /// Solves the linearised balance of forces for the derivatives of the gap, into `d.right`.
-    fn derivative_of_gap(&self, d: &mut Derivatives, lowest: [usize; 2], bending_slope: Pair) {
-        let n = self.nodes.len();
-        let u = &self.gap_mm;
-        let bent: [Pair; CONSTANTS] = std::array::from_fn(|k| {
-            bending_slope * Pair::new([0, 1].map(|lane| d.log_tension[lowest[lane]][k].lane(lane)))
-        });
-        // Derivative of the string's pull across the element before.
-        let mut pull_before = [Pair::both(0.0); CONSTANTS];
-        for i in 0..n {
-            let node = &self.nodes[i];
-            let next = (i + 1).min(n - 1);
-            let stretch = (u[i] - u[next]) * (0.5 * node.per_element_mm);
-            let string = self.tension_n[i] * (u[i] * node.string - Pair::both(node.string_load));
-            let mut bend = u[i] * node.bending[0] - Pair::both(node.bending_load);
-            if i + 1 < n {
-                bend = bend + u[i + 1] * node.bending[1];
-            }
-            if i + 2 < n {
-                bend = bend + u[i + 2] * node.bending[2];
-            }
-            if i >= 1 {
-                bend = bend + u[i - 1] * self.nodes[i - 1].bending[1];
-            }
-            if i >= 2 {
-                bend = bend + u[i - 2] * self.nodes[i - 2].bending[2];
-            }
-            for k in 0..CONSTANTS {
-                let (here, there) = (d.log_tension[i][k], d.log_tension[next][k]);
-                let pull = stretch * (self.tension_n[i] * here + self.tension_n[next] * there);
-                let force = pull - pull_before[k] + string * here + bend * bent[k];
-                pull_before[k] = pull;
-                d.right[i][k] = Pair::both(0.0) - force;
-            }
-        }
-        for (node, force) in self.pins.iter().zip(&self.pin_n) {
-            d.right[*node][2] = d.right[*node][2] + *force;
-        }
-        self.substitute(&mut d.right);
-    }
-
-    /// Solves for right sides of the constants, with the factors of [`Workspace::solve`].
-    fn substitute(&self, right: &mut [[Pair; CONSTANTS]]) {
-        let (n, factors) = (right.len(), &self.factors[..right.len()]);
-        let middle = middle_row(n);
-        let mut top = [[Pair::both(0.0); 2]; CONSTANTS];
-        let mut bottom = top;
-        let reduce = |[inverse, one, two]: [Pair; 3],
-                      b: &mut [Pair; CONSTANTS],
-                      carry: &mut [[Pair; 2]; CONSTANTS]| {
-            for (b, carry) in b.iter_mut().zip(carry) {
-                let reduced = *b - carry[0];
-                *carry = [one * reduced + carry[1], two * reduced];
-                *b = reduced * inverse;
-            }
-        };
-        for k in 0..n - 2 - middle {
-            if k < middle {
-                reduce(factors[k], &mut right[k], &mut top);
-            }
-            reduce(factors[n - 1 - k], &mut right[n - 1 - k], &mut bottom);
-        }
-        for (top, bottom) in top.iter_mut().zip(&bottom) {
-            top[0] = top[0] + bottom[1];
-        }
-        reduce(factors[middle], &mut right[middle], &mut top);
-        for (top, bottom) in top.iter_mut().zip(&bottom) {
-            top[0] = top[0] + bottom[0];
-        }
-        reduce(factors[middle + 1], &mut right[middle + 1], &mut top);
-        let zero = [Pair::both(0.0); CONSTANTS];
-        let (mut x, mut y) = ((right[middle + 1], zero), (zero, zero));
-        let back = |[_, one, two]: [Pair; 3],
-                    b: &mut [Pair; CONSTANTS],
-                    near: &mut ([Pair; CONSTANTS], [Pair; CONSTANTS])| {
-            for k in 0..CONSTANTS {
-                let x = b[k] - two * near.1[k] - one * near.0[k];
-                b[k] = x;
-                (near.1[k], near.0[k]) = (near.0[k], x);
-            }
-        };
-        back(factors[middle], &mut right[middle], &mut x);
-        y.0 = right[middle + 1];
-        y.1 = right[middle];
-        for k in 0..n - 2 - middle {
-            if k < middle {
-                back(factors[middle - 1 - k], &mut right[middle - 1 - k], &mut x);
-            }
-            back(factors[middle + 2 + k], &mut right[middle + 2 + k], &mut y);
-        }
-    }
-
-    /// Computes the derivatives of the turns from those of gap and tension. They sum to zero.
-    fn derivative_of_turns(&self, d: &mut Derivatives, closure: Pair, turned: Pair) {
-        let mut sum = [Pair::both(0.0); CONSTANTS];
-        for i in 0..self.nodes.len() {
-            let (t, turn) = (self.tension_n[i], self.silicone_turn[i]);
-            let stiffness =
-                self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
-            for k in 0..CONSTANTS {
-                let by = Pair::both(0.0) - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
-                d.turn[i][k] = by;
-                sum[k] = sum[k] + by;
-            }
-        }
-        for (p, &node) in self.pins.iter().enumerate() {
-            let t = self.tension_n[node];
-            let (turn, stiffness) = (self.pin_n[p] / t, self.pin_n_mm[p] / t);
-            for k in 0..CONSTANTS {
-                let own = if k == 2 { turn } else { Pair::both(0.0) };
-                let by = own - stiffness * d.right[node][k] - turn * d.log_tension[node][k];
-                d.pin_turn[p][k] = by;
-                sum[k] = sum[k] + by;
-            }
-        }
-        let closing = sum.map(|sum| sum / turned);
-        for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
-            for k in 0..CONSTANTS {
-                by[k] = (by[k] - *turn * closing[k]) * closure;
-            }
-        }
-        for (p, &node) in self.pins.iter().enumerate() {
-            let turn = self.pin_n[p] / self.tension_n[node];
-            for k in 0..CONSTANTS {
-                d.pin_turn[p][k] = (d.pin_turn[p][k] - turn * closing[k]) * closure;
-            }
-        }
-    }
-
-    /// Integrates the derivatives of the log tension from those of the turns. Returns the
-    /// derivatives of the exponents, and the largest change relative to the largest derivative.
-    fn derivative_of_tension(
-        &self,
-        d: &mut Derivatives,
-        mu: f64,
-        kappa: f64,
-        closure: Pair,
-    ) -> ([Pair; CONSTANTS], f64) {
-        for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
-            by[1] = by[1] + *turn * closure;
-            for by in by.iter_mut() {
-                *by = *by * mu;
-            }
-        }
-        for (p, &node) in self.pins.iter().enumerate() {
-            let t = self.tension_n[node];
-            let theta = closure * self.pin_n[p] / t;
-            let root = (t * theta).sqrt() * kappa;
-            let ploughing = root * theta;
-            for k in 0..CONSTANTS {
-                let own = if k == 0 { ploughing } else { Pair::both(0.0) };
-                d.turn[node][k] = d.turn[node][k]
-                    + own
-                    + ploughing * d.log_tension[node][k] * 0.5
-                    + root * d.pin_turn[p][k] * 1.5;
-            }
-        }
-        let mut sum = [Pair::both(0.0); CONSTANTS];
-        let (mut change, mut largest) = (0.0f64, 0.0f64);
-        for (rise, log) in d.turn.iter().zip(&mut d.log_tension) {
-            for k in 0..CONSTANTS {
-                let here = (sum[k] + rise[k] * 0.5) * Pair::new([-1.0, 1.0]);
-                sum[k] = sum[k] + rise[k];
-                let moved = (here - log[k]).abs();
-                change = change.max(moved.lane(0)).max(moved.lane(1));
-                largest = largest.max(here.lane(0).abs()).max(here.lane(1).abs());
-                log[k] = here;
-            }
-        }
-        (sum, if largest > 0.0 { change / largest } else { change })
-    }
 }
 
 /// Returns force and stiffness of a pin at this gap.
@@ -810,75 +482,6 @@ impl Workspace {
 fn pin_support(supports: &Supports<'_>, gap_mm: Pair) -> (Pair, Pair) {
     let (a, b) = (supports.pin(gap_mm.lane(0)), supports.pin(gap_mm.lane(1)));
     (Pair::new([a.force_n, b.force_n]), Pair::new([a.stiffness_n_mm, b.stiffness_n_mm]))
-}
-
-/// Returns the first of both rows at which the eliminations from both ends meet.
-fn middle_row(rows: usize) -> usize {
-    (rows - 2) / 2
-}
-
-/// Solves for the unknowns from the middle to both ends.
-#[inline(always)]
-fn substitute_back(factors: &[[Pair; 3]], right: &[Pair], x: &mut [Pair]) {
-    let n = x.len();
-    let (factors, right) = (&factors[..n], &right[..n]);
-    let middle = middle_row(n);
-    let at = |i: usize, near: Pair, far: Pair| right[i] - factors[i][2] * far - factors[i][1] * near;
-    x[middle + 1] = right[middle + 1];
-    x[middle] = at(middle, x[middle + 1], Pair::both(0.0));
-    let (mut up, mut down) = ((x[middle], x[middle + 1]), (x[middle + 1], x[middle]));
-    for k in 0..n - 2 - middle {
-        if k < middle {
-            let i = middle - 1 - k;
-            x[i] = at(i, up.0, up.1);
-            up = (x[i], up.0);
-        }
-        let i = middle + 2 + k;
-        x[i] = at(i, down.0, down.1);
-        down = (x[i], down.0);
-    }
-}
-
-/// Elimination of rows of a symmetric matrix of half-bandwidth 2 from one end: what remains to be
-/// subtracted from the next row and from the one after it.
-#[derive(Clone, Copy, Default)]
-struct Elimination {
-    diagonal: [Pair; 2],
-    /// Of the entry that couples both rows.
-    first: Pair,
-    right: [Pair; 2],
-}
-
-impl Elimination {
-    /// Eliminates a row with its couplings to the next rows. Returns the inverse pivot, the factors
-    /// of both couplings, and the right side over the pivot.
-    #[inline(always)]
-    fn eliminate(&mut self, diagonal: Pair, first: Pair, second: Pair, b: Pair) -> ([Pair; 3], Pair) {
-        let inverse = Pair::both(1.0) / (diagonal - self.diagonal[0]);
-        let (first, b) = (first - self.first, b - self.right[0]);
-        let (one, two) = (first * inverse, second * inverse);
-        self.diagonal = [one * first + self.diagonal[1], two * second];
-        self.first = one * second;
-        self.right = [one * b + self.right[1], two * b];
-        ([inverse, one, two], b * inverse)
-    }
-}
-
-/// Returns the weights of the states in the polynomial through them at `load_n`; `None` if they are
-/// too large, because the loads are too close together.
-fn weights(states: &[State], load_n: f64) -> Option<[f64; HISTORY]> {
-    let mut weights = [0.0; HISTORY];
-    for (i, state) in states.iter().enumerate() {
-        let mut weight = 1.0;
-        for (j, other) in states.iter().enumerate() {
-            if i != j {
-                weight *= (load_n - other.load_n) / (state.load_n - other.load_n);
-            }
-        }
-        weights[i] = weight;
-    }
-    let sum: f64 = weights.iter().map(|w| w.abs()).sum();
-    (sum <= MAX_WEIGHT).then_some(weights)
 }
 
 /// Returns `exp(x)`, by its Taylor series for small `x`, which is exact to the last digit or two.

@@ -2,7 +2,7 @@
 //! semidefinite.
 
 use nalgebra::DMatrix;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, short_number};
 
 use crate::model::{Model, Noise};
 use crate::table::Frame;
@@ -31,8 +31,12 @@ fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), Diagnostic
         return Ok(());
     }
     // The smallest positive number has over three hundred digits.
-    let bound = if low == f64::MIN_POSITIVE { "above 0".to_owned() } else { format!("at least {low}") };
-    Err(invalid(field, value, format!("must be {bound} and at most {high}")))
+    let bound = if low == f64::MIN_POSITIVE {
+        "above 0".to_owned()
+    } else {
+        format!("at least {}", short_number(low))
+    };
+    Err(invalid(field, short_number(value), format!("must be {bound} and at most {}", short_number(high))))
 }
 
 /// Checks that all numbers of `value` are finite.
@@ -201,14 +205,15 @@ pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), D
             let (a, b) = (matrix[(i, j)], matrix[(j, i)]);
             let apart = (a - b).abs();
             if apart.is_nan() || apart > ROUNDING * largest {
-                let problem = format!("not symmetric: covariance[{j}][{i}] is {b}");
-                return Err(invalid(format!("covariance[{i}][{j}]"), a, problem));
+                let problem = format!("not symmetric: covariance[{j}][{i}] is {}", short_number(b));
+                return Err(invalid(format!("covariance[{i}][{j}]"), short_number(a), problem));
             }
         }
     }
     let least = matrix.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min);
     if needed > 0 && (least.is_nan() || least < -ROUNDING * largest) {
-        let problem = format!("not positive semidefinite: its smallest eigenvalue is {least}");
+        let problem =
+            format!("not positive semidefinite: its smallest eigenvalue is {}", short_number(least));
         return Err(Diagnostic::new(problem)
             .with_location(Location { field: Some("covariance".to_owned()), ..Location::default() })
             .with_help(HELP));

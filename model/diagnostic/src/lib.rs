@@ -28,8 +28,10 @@ mod diagnostic;
 mod excerpt;
 mod location;
 mod neutral;
+mod number;
 
 pub use diagnostic::{Change, Diagnostic};
 pub use excerpt::excerpt;
 pub use location::{Location, Snippet};
 pub use neutral::{neutral, neutral_line};
+pub use number::short_number;

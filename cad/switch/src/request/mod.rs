@@ -11,7 +11,7 @@ mod target;
 mod tolerance;
 
 use crate::config::{Diagnostic, Location};
-use phrase::short;
+use pinswitch_diagnostic::short_number;
 use pinswitch_friction::sort_by_number;
 use serde::{Deserialize, Serialize};
 
@@ -153,7 +153,7 @@ impl Request {
         if let Some((low, high)) = self.load_range_n
             && !(low >= 0.0 && low < high && high <= HEAVIEST_N)
         {
-            let value = format!("{}..{}", short(low), short(high));
+            let value = format!("{}..{}", short_number(low), short_number(high));
             let problem = format!("not a range within 0 to {HEAVIEST_N} N");
             return Err(invalid("ask.load_range_n", value, &problem, "give the lightest load first"));
         }
@@ -164,7 +164,7 @@ impl Request {
         match Tolerances::FIELDS.iter().zip(deviations).find(|(_, sd)| !is_valid(*sd)) {
             Some((field, sd)) => Err(invalid(
                 format!("tolerances.{field}"),
-                short(sd),
+                short_number(sd),
                 "not a standard deviation",
                 &format!("give a number from 0 to {LARGEST_DEVIATION}"),
             )),
@@ -222,7 +222,7 @@ impl Request {
             if let Some(value) = value.filter(|v| !(least..=most).contains(v)) {
                 return Err(invalid(
                     format!("limits.{field}"),
-                    short(value),
+                    short_number(value),
                     &format!("outside {least} to {most} mm"),
                     "give the size of a switch",
                 ));
@@ -246,13 +246,13 @@ impl Request {
                 return Ok(());
             }
             let problem = format!("outside {least} to {most}, the range of {}", parameter.field());
-            Err(invalid(field, short(value), &problem, "give a value in the range"))
+            Err(invalid(field, short_number(value), &problem, "give a value in the range"))
         };
         for (i, v) in self.vary.parameters.iter().enumerate() {
             let name = v.parameter.name();
             within(format!("vary.{name}"), v.parameter, v.from)?;
             within(format!("vary.{name}"), v.parameter, v.to)?;
-            let value = || format!("{}..{}", short(v.from), short(v.to));
+            let value = || format!("{}..{}", short_number(v.from), short_number(v.to));
             if v.from > v.to {
                 let help = "give the smaller value first";
                 return Err(invalid(format!("vary.{name}"), value(), "the range is reversed", help));
@@ -280,8 +280,8 @@ impl Request {
             if !((0.1..=6.0).contains(&tendon.rope_diameter_mm) && (0.0..=2.0).contains(&tendon.coating_mm)) {
                 let value = format!(
                     "{} mm with {} mm of coating",
-                    short(tendon.rope_diameter_mm),
-                    short(tendon.coating_mm)
+                    short_number(tendon.rope_diameter_mm),
+                    short_number(tendon.coating_mm)
                 );
                 let help = "give 0.1 to 6 mm of rope and 0 to 2 mm of coating";
                 return Err(invalid("materials.tendon", value, "not a tendon that a switch can have", help));

@@ -2,6 +2,7 @@
 
 use super::target::Requirement;
 use crate::config::ValueError;
+use pinswitch_diagnostic::short_number;
 
 /// Accepted phrases, as the help of errors.
 pub const FORMS: &str =
@@ -41,7 +42,8 @@ pub fn parse_requirement(text: &str, within: f64) -> Result<(Requirement, Option
         ["between", low, "and", high] => {
             let (low, high) = (number(low)?, number(high)?);
             if low > high {
-                let problem = format!("the range {} to {} is reversed", short(low), short(high));
+                let problem =
+                    format!("the range {} to {} is reversed", short_number(low), short_number(high));
                 return Err(ValueError::new(problem, "give the smaller number first"));
             }
             Requirement::Between(low, high)
@@ -77,18 +79,15 @@ pub(super) fn not_a_share(value: &str) -> ValueError {
     )
 }
 
-/// A number as messages show it: 1e300 would take hundreds of digits.
-pub(super) fn short(value: f64) -> String {
-    let is_plain = value == 0.0 || !value.is_finite() || (1e-6..1e9).contains(&value.abs());
-    if is_plain { value.to_string() } else { format!("{value:e}") }
-}
-
 /// Returns a number that is above zero and finite.
 pub(super) fn positive(value: f64) -> Result<f64, ValueError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(ValueError::new(format!("{} is not a number above 0", short(value)), "give a number above 0"))
+        Err(ValueError::new(
+            format!("{} is not a number above 0", short_number(value)),
+            "give a number above 0",
+        ))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::phrase::short;
 use crate::config::Diagnostic;
+use pinswitch_diagnostic::short_number;
 
 /// A quantity of a friction curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -58,7 +58,7 @@ impl std::fmt::Display for Quantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Threshold => f.write_str("threshold"),
-            Self::Friction { load_n } => write!(f, "friction at {} N", short(*load_n)),
+            Self::Friction { load_n } => write!(f, "friction at {} N", short_number(*load_n)),
             Self::LowLoadFriction => f.write_str("friction at the lightest load"),
             Self::MaxFriction => f.write_str("friction at the heaviest load"),
             Self::Stiffness => f.write_str("stiffness of switching"),
@@ -134,12 +134,14 @@ impl Requirement {
 impl std::fmt::Display for Requirement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::AtMost(high) => write!(f, "at most {}", short(*high)),
-            Self::AtLeast(low) => write!(f, "at least {}", short(*low)),
-            Self::Between(low, high) => write!(f, "between {} and {}", short(*low), short(*high)),
+            Self::AtMost(high) => write!(f, "at most {}", short_number(*high)),
+            Self::AtLeast(low) => write!(f, "at least {}", short_number(*low)),
+            Self::Between(low, high) => {
+                write!(f, "between {} and {}", short_number(*low), short_number(*high))
+            }
             // Rounded: shares such as 0.15 are not exact.
             Self::About { value, within } => {
-                write!(f, "about {} (within {} %)", short(*value), (within * 1e5).round() / 1e3)
+                write!(f, "about {} (within {} %)", short_number(*value), (within * 1e5).round() / 1e3)
             }
         }
     }
@@ -175,7 +177,7 @@ impl Target {
     /// Checks that load and values have a magnitude that is possible for a switch.
     pub(super) fn check_magnitude(&self) -> Result<(), Diagnostic> {
         let invalid = |what: &str, value: f64, (least, most): (f64, f64)| {
-            Diagnostic::new(format!("'{self}': {what}{} is outside {least} to {most}", short(value)))
+            Diagnostic::new(format!("'{self}': {what}{} is outside {least} to {most}", short_number(value)))
                 .with_help("give a value in the range")
         };
         let outside = |value: f64, (least, most): (f64, f64)| !(least..=most).contains(&value);

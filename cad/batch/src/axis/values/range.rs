@@ -1,6 +1,6 @@
 //! Ranges in every notation: their ends, and the keys between them.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, short_number};
 use toml_edit::{Item, TableLike, Value};
 
 use crate::axis::{ParameterRef, accepted, is_whole};
@@ -57,7 +57,8 @@ impl Range {
         if let Some((key, _)) = table.iter().find(|(key, _)| !KEYS.contains(key)) {
             return Err(field_error(&format!("{path}.{key}"), None, "unknown key of a range", FORM));
         }
-        let (Some(from), Some(to)) = (number(table, &path, "from")?, number(table, &path, "to")?) else {
+        let (Some(from), Some(to)) = (number(table, &path, "from")?, number(table, &path, "to")?)
+        else {
             return Err(field_error(&path, None, "range without from or to", FORM));
         };
         let range = Self {
@@ -79,13 +80,13 @@ impl Range {
     fn check(&self, path: &str) -> Result<(), Diagnostic> {
         let Self { from, to, step, count, is_logarithmic, .. } = *self;
         if from > to {
-            let value = format!("{from} to {to}");
-            let help = format!("write from = {to}, to = {from}");
+            let value = format!("{} to {}", short_number(from), short_number(to));
+            let help = format!("write from = {}, to = {}", short_number(to), short_number(from));
             return Err(field_error(path, Some(&value), "from is above to", help));
         }
         if let Some(step) = step.filter(|s| *s <= 0.0) {
             let field = format!("{path}.step");
-            return Err(field_error(&field, Some(&step.to_string()), "not above 0", "give a step above 0"));
+            return Err(field_error(&field, Some(&short_number(step)), "not above 0", "give a step above 0"));
         }
         if is_logarithmic && (from <= 0.0 || step.is_some()) {
             let problem = "logarithmic range with a step, or not above 0";

@@ -351,6 +351,29 @@ fn the_server_answers_while_a_folder_is_busy() {
 }
 
 #[test]
+fn stalled_requests_leave_room_for_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let preview = Preview::start(folder.path(), "three-double");
+    let head = format!(
+        "POST /save HTTP/1.1\r\n{}Origin: http://{}\r\nContent-Length: 100\r\n\r\n",
+        preview.host(),
+        preview.address
+    );
+    // As many as there are connections.
+    let stalled: Vec<_> = (0..64)
+        .map(|_| {
+            let mut connection = preview.connect();
+            connection.write_all(head.as_bytes()).unwrap();
+            connection
+        })
+        .collect();
+    let start = Instant::now();
+    assert!(preview.get("/").contains("<html"));
+    assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
+    drop(stalled);
+}
+
+#[test]
 fn bodies_are_bounded_together() {
     let folder = tempfile::tempdir().unwrap();
     let preview = Preview::start(folder.path(), "three-double");

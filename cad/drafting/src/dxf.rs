@@ -1,8 +1,8 @@
 //! DXF (R12), in millimetres of the part.
 //!
 //! Every view is a block at 1:1, so that measurements in it are those of the part. In model space the sheets are side by
-//! side, each scaled so that its main views are 1:1; details are inserted at the scale in their title. R12 has no unit; the
-//! variable of later versions for it, millimetres, is written all the same. The file has no time stamp.
+//! side, each scaled so that its main views are 1:1; details are inserted at the scale in their title. The header
+//! names the unit in `$INSUNITS`, which later versions define. No time stamp is written.
 
 use std::fmt::Write as _;
 

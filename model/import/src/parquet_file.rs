@@ -37,17 +37,11 @@ mod reader {
                 .with_source(error)
         };
         let reader = SerializedFileReader::new(Bytes::copy_from_slice(bytes)).map_err(damaged)?;
-        let too_large = || {
-            Diagnostic::new("the Parquet file is too large")
-                .with_help(format!("write at most {MAX_CELLS} cells with {} MB of text", MAX_TEXT >> 20))
-        };
         // Before the work: a few bytes may repeat one value many times.
         let file = reader.metadata().file_metadata();
         let columns = file.schema().get_fields().len() as u64;
         let rows = u64::try_from(file.num_rows()).unwrap_or(u64::MAX);
-        if rows.saturating_mul(columns) > MAX_CELLS {
-            return Err(too_large());
-        }
+        require_bounded(rows.saturating_mul(columns), 0)?;
         let (mut cells, mut text_bytes) = (0_u64, 0_usize);
         let mut sheet = Sheet::default();
         for field in reader.metadata().file_metadata().schema().get_fields() {
@@ -58,9 +52,7 @@ mod reader {
             for (_, field) in row.map_err(damaged)?.get_column_iter() {
                 let text = text(field);
                 (cells, text_bytes) = (cells + 1, text_bytes + text.len());
-                if cells > MAX_CELLS || text_bytes > MAX_TEXT {
-                    return Err(too_large());
-                }
+                require_bounded(cells, text_bytes)?;
                 sheet.push(&text);
             }
             sheet.end_row(i + 2)?;
@@ -88,6 +80,15 @@ mod reader {
         }
     }
 
+    /// Refuses more than [`MAX_CELLS`] cells, or more than [`MAX_TEXT`] bytes of text.
+    fn require_bounded(cells: u64, text_bytes: usize) -> Result<(), Diagnostic> {
+        if cells <= MAX_CELLS && text_bytes <= MAX_TEXT {
+            return Ok(());
+        }
+        Err(Diagnostic::new("the Parquet file is too large")
+            .with_help(format!("write at most {MAX_CELLS} cells with {} MB of text", MAX_TEXT >> 20)))
+    }
+
     #[cfg(test)]
     mod tests {
         use std::sync::Arc;
@@ -97,6 +98,30 @@ mod reader {
         use parquet::schema::parser::parse_message_type;
 
         use super::*;
+
+        #[test]
+        fn repeated_values_are_refused_unread() {
+            let schema = Arc::new(parse_message_type("message m { REQUIRED BINARY a (UTF8); }").unwrap());
+            let file = |count: usize, length: usize| {
+                let mut bytes = Vec::new();
+                let mut file = SerializedFileWriter::new(&mut bytes, schema.clone(), Arc::default()).unwrap();
+                let mut group = file.next_row_group().unwrap();
+                let mut column = group.next_column().unwrap().unwrap();
+                let texts = vec![ByteArray::from("x".repeat(length).as_str()); count];
+                column.typed::<ByteArrayType>().write_batch(&texts, None, None).unwrap();
+                column.close().unwrap();
+                group.close().unwrap();
+                file.close().unwrap();
+                bytes
+            };
+            assert!(read(&file(10, 10)).is_ok());
+            // A long text is stored once.
+            let long = file(10_000, 15_000);
+            assert!(long.len() < 1 << 20, "{}", long.len());
+            for bytes in [long, file(4_000_001, 1)] {
+                assert!(read(&bytes).unwrap_err().to_string().contains("too large"));
+            }
+        }
 
         #[test]
         fn plain_columns_are_read() {

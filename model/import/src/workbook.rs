@@ -221,6 +221,77 @@ mod reader {
     mod tests {
         use super::*;
 
+        /// A workbook with one sheet of these cells, as XML, and one shared text.
+        fn workbook(cells: &str, shared: &str) -> Vec<u8> {
+            use std::io::Write;
+            use zip::write::SimpleFileOptions;
+            const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+            const OF: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+            let sheet = format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{cells}</sheetData></worksheet>");
+            let texts = format!("<sst xmlns=\"{MAIN}\"><si><t>{shared}</t></si></sst>");
+            let book = format!(
+                "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OF}\"><sheets>\
+                 <sheet name=\"a\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+            );
+            let link = |id: &str, kind: &str, target: &str| {
+                format!("<Relationship Id=\"{id}\" Type=\"{OF}/{kind}\" Target=\"{target}\"/>")
+            };
+            let links_of = |links: &str| {
+                format!(
+                    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">{links}</Relationships>"
+                )
+            };
+            let links = links_of(
+                &(link("rId1", "worksheet", "worksheets/sheet1.xml")
+                    + &link("rId2", "sharedStrings", "sharedStrings.xml")),
+            );
+            let root = links_of(&link("rId1", "officeDocument", "xl/workbook.xml"));
+            let types = "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\
+                         <Default Extension=\"xml\" ContentType=\"application/xml\"/></Types>"
+                .to_owned();
+            let mut file = zip::ZipWriter::new(Cursor::new(Vec::new()));
+            for (name, text) in [
+                ("[Content_Types].xml", &types),
+                ("_rels/.rels", &root),
+                ("xl/workbook.xml", &book),
+                ("xl/_rels/workbook.xml.rels", &links),
+                ("xl/worksheets/sheet1.xml", &sheet),
+                ("xl/sharedStrings.xml", &texts),
+            ] {
+                file.start_file(name, SimpleFileOptions::default()).unwrap();
+                file.write_all(text.as_bytes()).unwrap();
+            }
+            file.finish().unwrap().into_inner()
+        }
+
+        #[test]
+        fn large_sheets_are_refused_unread() {
+            let cell = |at: &str| {
+                format!(
+                    "<row r=\"{}\"><c r=\"{at}\"><v>1</v></c></row>",
+                    at.trim_matches(char::is_alphabetic)
+                )
+            };
+            let near = read(&workbook(&(cell("A1") + &cell("B2")), "x"), None).unwrap();
+            assert_eq!(near.sheet.cell(0, 0), "1");
+            // Two cells at the ends of a sheet would take 400 GB.
+            let error = read(&workbook(&(cell("A1") + &cell("XFD1048576")), "x"), None).unwrap_err();
+            assert!(error.to_string().contains("cell 16384 of row 1048576"), "{error}");
+            // One text in many cells.
+            let texts: String = (1..=2_000)
+                .map(|row| format!("<row r=\"{row}\"><c r=\"A{row}\" t=\"s\"><v>0</v></c></row>"))
+                .collect();
+            let error = read(&workbook(&texts, &"x".repeat(100_000)), None).unwrap_err();
+            assert!(error.to_string().contains("too large"), "{error}");
+        }
+
+        #[test]
+        fn elapsed_times_have_any_hours() {
+            assert_eq!(elapsed(0.5 + 1.0 / 86_400.0), "12:00:01.000");
+            assert_eq!(elapsed(1.0 + 1.5 / 86_400.0), "24:00:01.500");
+            assert_eq!(elapsed(0.999_999_999_9), "24:00:00.000");
+        }
+
         #[test]
         fn damaged_workbooks_are_refused() {
             for bytes in [

@@ -200,8 +200,8 @@ impl Site {
         self.response(status, "text/plain", reason)
     }
 
-    /// Collects the body of a request, with permits for its bytes if it is long. A byte that has no permit
-    /// is not kept.
+    /// Collects the body of a request, with permits for its bytes if it is long. Bytes without a
+    /// permit are dropped.
     async fn body(&self, mut body: Incoming) -> Result<(Bytes, Option<SemaphorePermit<'_>>), BodyError> {
         let (mut bytes, mut permits) = (Vec::new(), None::<SemaphorePermit<'_>>);
         while let Some(frame) = body.frame().await {

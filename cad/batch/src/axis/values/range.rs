@@ -57,8 +57,7 @@ impl Range {
         if let Some((key, _)) = table.iter().find(|(key, _)| !KEYS.contains(key)) {
             return Err(field_error(&format!("{path}.{key}"), None, "unknown key of a range", FORM));
         }
-        let (Some(from), Some(to)) = (number(table, &path, "from")?, number(table, &path, "to")?)
-        else {
+        let (Some(from), Some(to)) = (number(table, &path, "from")?, number(table, &path, "to")?) else {
             return Err(field_error(&path, None, "range without from or to", FORM));
         };
         let range = Self {

@@ -13,6 +13,7 @@ use crate::band_source::{BandSource, NORMAL_95};
 use crate::contact::Contact;
 use crate::deviation::Deviation;
 use crate::law::{self, Law, LawError, UncertainFriction};
+use crate::physics::Sensitivities;
 use crate::published;
 use crate::status::{is_measured, layout_distance};
 use crate::substrate::Substrate;
@@ -96,6 +97,9 @@ impl Band {
                 "layout beyond the measured range",
                 vec![NORMAL_95 * BEYOND_LAYOUTS * beyond; load_n.len()],
             ));
+        }
+        if let (Ok(here), true) = (&physics.here, contact.modulus_scatter() > 0.0) {
+            sources.push(casting_source(contact.modulus_scatter(), &here.sensitivities));
         }
         if let Some(source) = beyond_loads(&load_n) {
             sources.push(source);
@@ -186,6 +190,13 @@ fn deviation_source(deviation: &Deviation, loads: usize) -> BandSource {
         })
         .collect();
     BandSource::symmetric(deviation.parameter, half)
+}
+
+/// Scatter of the modulus between castings, to which the force that sinks a pin and the foundation
+/// stiffness are proportional.
+fn casting_source(modulus_scatter: f64, sensitivities: &[Sensitivities]) -> BandSource {
+    let half = sensitivities.iter().map(|s| NORMAL_95 * modulus_scatter * (s[2] + s[3]).abs()).collect();
+    BandSource::symmetric("scatter of the hardness between castings", half)
 }
 
 fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {

@@ -1,12 +1,10 @@
 //! The physics that the bands of all laws use, computed once for a contact.
 
-use nalgebra::Vector3;
-
 use crate::band::spaced;
 use crate::bed::{Bed, OutsidePins};
 use crate::contact::Contact;
 use crate::deviation::{Deviation, deviations_from, published_rig};
-use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
+use crate::physics::{Constants, PhysicsError, PhysicsSwitch, Sensitivities};
 use crate::reference::reference_friction_n;
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
@@ -30,12 +28,11 @@ pub struct BandPhysics {
     pub(crate) rig: Option<RigPhysics>,
 }
 
-/// Friction at the loads of a band, and the derivatives of its logarithm with respect to the
-/// logarithms of the constants.
+/// Friction at the loads of a band, with its sensitivities.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionWithSensitivities {
     pub(crate) friction_n: Vec<f64>,
-    pub(crate) sensitivities: Vec<Vector3<f64>>,
+    pub(crate) sensitivities: Vec<Sensitivities>,
 }
 
 /// Physics of the published rig with the pins of a contact.

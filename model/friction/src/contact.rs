@@ -70,6 +70,7 @@ pub struct Contact {
     unmodelled: Vec<String>,
     six_single_threshold: f64,
     bed: Bed,
+    modulus_scatter: f64,
 }
 
 impl Contact {
@@ -96,6 +97,7 @@ impl Contact {
             unmodelled: Vec::new(),
             six_single_threshold: published::LAYOUTS[0].threshold,
             bed: Bed::published(),
+            modulus_scatter: 0.0,
         })
     }
 
@@ -125,6 +127,7 @@ impl Contact {
             unmodelled: self.unmodelled.clone(),
             six_single_threshold: self.six_single_threshold,
             bed: self.bed,
+            modulus_scatter: self.modulus_scatter,
             ..other
         })
     }
@@ -134,6 +137,19 @@ impl Contact {
     pub fn with_bed(mut self, bed: Bed) -> Self {
         self.bed = bed;
         self
+    }
+
+    /// Sets the relative standard deviation of the silicone's modulus between castings; 0 for a layer
+    /// whose modulus is known. The band of a prediction contains it.
+    #[must_use]
+    pub fn with_modulus_scatter(mut self, relative: f64) -> Self {
+        self.modulus_scatter = relative;
+        self
+    }
+
+    /// Returns the relative standard deviation of the silicone's modulus between castings.
+    pub fn modulus_scatter(&self) -> f64 {
+        self.modulus_scatter
     }
 
     /// Returns the dimensions and stiffness of the support.

@@ -195,3 +195,37 @@ proptest! {
         }
     }
 }
+
+/// The band of a layer whose modulus scatters is as wide as the change of friction for another modulus, to first order: where
+/// the tendon begins to touch silicone, at 15 N, a change of 6 % is not small.
+#[test]
+fn scatter_of_the_modulus_widens_the_band() {
+    use crate::band::Band;
+    use crate::physics::{Bed, Constants, PhysicsSwitch};
+    let loads = [5.0, 20.0, 30.0, HEAVIEST_N];
+    let (scatter, step) = (0.06, 0.005);
+    for layout in &published::LAYOUTS {
+        let known = contact(Substrate::Silicone, PinPattern::even(layout.pins, layout.pitch_rad()));
+        let scattered = known.clone().with_modulus_scatter(scatter);
+        let band = Band::new(Law::Physics, &scattered, &loads).unwrap();
+        let source = band.sources.iter().find(|s| s.name.starts_with("scatter of the hardness")).unwrap();
+        for (i, load) in loads.iter().enumerate() {
+            let log_friction = |factor: f64| {
+                let bed = Bed { modulus_mpa: factor * known.bed().modulus_mpa, ..*known.bed() };
+                let switch = PhysicsSwitch::new(&known.clone().with_bed(bed), Constants::published());
+                libm::log(switch.friction_n(*load).unwrap())
+            };
+            let by_difference =
+                1.96 * scatter * (log_friction(1.0 + step) - log_friction(1.0 - step)).abs() / (2.0 * step);
+            let here = source.up[i];
+            assert!(
+                (here - by_difference).abs() <= 0.1 * by_difference + 1e-3,
+                "{} at {load} N: {here} for {by_difference}",
+                layout.name
+            );
+        }
+        let without = Band::new(Law::Physics, &known, &loads).unwrap();
+        assert!(without.sources.iter().all(|s| !s.name.starts_with("scatter")));
+        assert!(band.half_width(2).0 > without.half_width(2).0);
+    }
+}

@@ -32,4 +32,4 @@ pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
 };
 pub use profile::{ContactProfile, contact_profile, contact_profiles};
-pub use switch::PhysicsSwitch;
+pub use switch::{PhysicsSwitch, Sensitivities};

@@ -1,6 +1,6 @@
 //! States of a switch with any layout, by the physics, and their sensitivities to the constants.
 
-use nalgebra::Vector3;
+use nalgebra::Vector4;
 
 use super::constants::Constants;
 use super::coupled::{Exponents, MAX_PASSES, Workspace};
@@ -14,6 +14,10 @@ use crate::capstan::{Direction, capstan_tension_n};
 use crate::contact::Contact;
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
+
+/// Derivatives of `ln D` with respect to the logarithms of `kappa`, `mu_s`, `N0` and the foundation stiffness. The last two
+/// are proportional to the modulus of the silicone.
+pub type Sensitivities = Vector4<f64>;
 
 /// Switch whose friction follows from its contact, bed and material constants.
 ///
@@ -173,8 +177,7 @@ impl PhysicsSwitch {
         Ok((state, exponents))
     }
 
-    /// Computes the states at `loads_n` newtons, and the derivatives of `ln D` with respect to the
-    /// logarithms of the constants at the loads for which `is_needed` is true; the others are zero.
+    /// Computes the states at `loads_n` newtons, and the [`Sensitivities`] at the loads for which `is_needed` is true; the others are zero.
     /// Ascending loads are fastest.
     ///
     /// A derivative is zero without friction.
@@ -185,7 +188,7 @@ impl PhysicsSwitch {
         &self,
         loads_n: &[f64],
         is_needed: impl Fn(usize) -> bool,
-    ) -> Result<(Vec<SwitchState>, Vec<Vector3<f64>>), PhysicsError> {
+    ) -> Result<(Vec<SwitchState>, Vec<Sensitivities>), PhysicsError> {
         let mut workspace = self.workspace();
         let mut states = Vec::with_capacity(loads_n.len());
         let mut sensitivities = Vec::with_capacity(loads_n.len());
@@ -195,7 +198,7 @@ impl PhysicsSwitch {
             sensitivities.push(if is_needed(i) && state.friction_n > 0.0 {
                 self.sensitivities(&state, &exponents, workspace.as_mut())?
             } else {
-                Vector3::zeros()
+                Sensitivities::zeros()
             });
         }
         Ok((states, sensitivities))
@@ -207,7 +210,7 @@ impl PhysicsSwitch {
         state: &SwitchState,
         exponents: &Exponents,
         workspace: Option<&mut Workspace>,
-    ) -> Result<Vector3<f64>, PhysicsError> {
+    ) -> Result<Sensitivities, PhysicsError> {
         let wrap_rad = self.contact.wrap_rad();
         let of_exponents = match workspace.filter(|_| state.load_n > 0.0) {
             Some(workspace) => workspace
@@ -217,16 +220,16 @@ impl PhysicsSwitch {
                 let turns = polygon_turns_rad(self.contact.all_pins().angles_rad(), wrap_rad);
                 let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
                 let slope = |direction| pins_alone_slope(&turns, kappa, state.load_n, direction);
-                [Pair::new(DIRECTIONS.map(slope)), Pair::both(0.0), Pair::both(0.0)]
+                [Pair::new(DIRECTIONS.map(slope)), Pair::both(0.0), Pair::both(0.0), Pair::both(0.0)]
             }
-            None => [Pair::both(0.0), exponents.silicone, Pair::both(0.0)],
+            None => [Pair::both(0.0), exponents.silicone, Pair::both(0.0), Pair::both(0.0)],
         };
         let tension = Pair::new([state.eccentric_n, state.concentric_n]);
         let of_friction = of_exponents.map(|by| {
             let [eccentric, concentric] = (tension * by).numbers();
             (eccentric + concentric) / 2.0 / state.friction_n
         });
-        Ok(Vector3::from(of_friction))
+        Ok(Sensitivities::from(of_friction))
     }
 }
 

@@ -110,11 +110,17 @@ fn sensitivities_match_differences() {
             let constants = Constants::published();
             let switch = PhysicsSwitch::new(contact, constants);
             let (_, slopes) = switch.states_and_sensitivities(&[load], |_| true).unwrap();
-            for k in 0..3 {
+            for k in 0..4 {
                 let log_friction = |by: f64| {
                     let mut at = constants.logarithms();
-                    at[k] += by;
-                    let moved = switch.with_constants(Constants::from_logarithms(&at));
+                    let mut bed = *contact.bed();
+                    match k {
+                        3 => bed.foundation_n_mm2 *= libm::exp(by),
+                        _ => at[k] += by,
+                    }
+                    let elements = super::grid::elements(contact.wrap_rad(), contact.bed());
+                    let constants = Constants::from_logarithms(&at);
+                    let moved = PhysicsSwitch::with_elements(contact, bed, constants, elements);
                     libm::log(moved.precise_friction_n(load, 1e-10).unwrap())
                 };
                 let here = log_friction(0.0);

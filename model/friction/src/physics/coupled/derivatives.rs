@@ -28,7 +28,7 @@ pub(super) struct Derivatives {
 
 impl Workspace {
     /// Computes the derivatives of the friction exponents of both directions with respect to the
-    /// logarithms of `kappa`, `mu_s` and `N0`, at the last load. `None` if a derivative does not
+    /// logarithms of `kappa`, `mu_s`, `N0` and the foundation stiffness, at the last load. `None` if a derivative does not
     /// converge.
     ///
     /// Touching nodes and pins stay those of the solution; where one is about to touch, the
@@ -130,6 +130,9 @@ impl Workspace {
         for (node, force) in self.pins.iter().zip(&self.pin_n) {
             d.right[*node][2] = d.right[*node][2] + *force;
         }
+        for (i, turn) in self.silicone_turn.iter().enumerate() {
+            d.right[i][3] = d.right[i][3] + *turn * self.tension_n[i];
+        }
         self.substitute(&mut d.right);
     }
 
@@ -192,7 +195,8 @@ impl Workspace {
             let stiffness =
                 self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
             for k in 0..CONSTANTS {
-                let by = Pair::both(0.0) - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
+                let own = if k == 3 { turn } else { Pair::both(0.0) };
+                let by = own - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
                 d.turn[i][k] = by;
                 sum[k] = sum[k] + by;
             }

@@ -46,7 +46,7 @@ const MAX_CUTS: usize = 12;
 /// Largest exponent of the Taylor series in [`exp_of_small`].
 const TINY: f64 = 2e-3;
 /// Number of material constants.
-pub(super) const CONSTANTS: usize = 3;
+pub(super) const CONSTANTS: usize = 4;
 
 /// Coefficients of the equations at each node, which do not depend on the load.
 #[derive(Clone, Debug)]

@@ -8,7 +8,8 @@ function materialRows(bill, parts) {
   if (bill.pins?.number) rows.push([TEXT.steelPins, `${TEXT.spare(bill.pins.number, bill.pins.spares)}, ${formatNumber(bill.pins.diameter_mm)} x ${formatNumber(bill.pins.length_mm)} mm`]);
   if (bill.silicone) {
     rows.push([TEXT.mix, `${bill.silicone.mix_g.toFixed(1)} g: ${TEXT.mixed(formatNumber(bill.silicone.base_g, 1), formatNumber(bill.silicone.agent_g, 1))}`]);
-    rows.push([TEXT.pour, `${bill.silicone.pour_ml.toFixed(2)} ml`]);
+    rows.push([TEXT.pour, `${bill.silicone.pour_ml.toFixed(2)} ml${bill.silicone.product ? `, ${bill.silicone.product}` : ''}`]);
+    if (bill.silicone.mould_cure) rows.push([TEXT.cure, TEXT.cured(bill.silicone.mould_cure, bill.silicone.post_cure)]);
   }
   if (bill.tendon) rows.push([TEXT.tendon, `${formatNumber(bill.tendon.length_mm)} mm, ${TEXT.coated(formatNumber(bill.tendon.rope_diameter_mm), bill.tendon.outer_diameter_mm.toFixed(2))}`]);
   if (bill.fasteners) {

@@ -26,15 +26,16 @@ const TEXT = {
 
   groups: {
     switch: 'Switch', layout: 'Layout', segment: 'Segment', shell: 'Shell', fasteners: 'Fasteners', silicone: 'Silicone layer', pins: 'Pins', tendon: 'Tendon',
-    support: 'Side supports', mould: 'Casting mould', mount: 'Mount', parts: 'Parts', label: 'Label', print: 'Printer', mesh: 'Mesh', drawing: 'Drawing', friction: 'Friction curve',
+    support: 'Side supports', mould: 'Casting mould', mount: 'Mount', parts: 'Parts', label: 'Label', print: 'Printer', process: 'Materials and cure', mesh: 'Mesh', drawing: 'Drawing', friction: 'Friction curve',
   },
   // Names of fields whose key without its unit does not read well.
   fields: {
     'layout.pins': 'pins in', 'layout.wrap_angle_deg': 'wrap angle', 'segment.span_deg': 'span', 'silicone.hardness_shore_a': 'hardness',
     'silicone.density_g_cm3': 'density', 'print.abs_density_g_cm3': 'density of the plastic', 'silicone.least_mix_g': 'smallest mix', 'mould.shrinkage_pct': 'shrinkage',
+    'process.material': 'material of the parts', 'process.cure_c': 'cure in the mould', 'process.oven_c': 'hottest oven', 'process.pins': 'steel of the pins', 'process.coating': 'coating of the tendon',
     'print.bed_mm': 'side of the bed', 'friction.six_single_threshold': 'threshold of six-single', 'parts.proxy': 'rigid proxy', 'parts.coupon': 'fit coupon', 'label.engrave': 'engrave a label',
   },
-  units: { deg: '°', shore_a: 'Shore A', 'g/cm3': 'g/cm³', g_cm3: 'g/cm³', pct: '%', n: 'N' },
+  units: { deg: '°', shore_a: 'Shore A', 'g/cm3': 'g/cm³', g_cm3: 'g/cm³', pct: '%', n: 'N', c: '°C', C: '°C' },
   groupChanged: (n) => `${n} changed`,
   reset: (name) => `Reset ${name}`,
   about: (name) => `About ${name}`,
@@ -72,6 +73,7 @@ const TEXT = {
 
   checkPassed: 'passed', checkReview: 'to review', checkWarning: 'warning', checksSummary: (passed, all) => `${passed} of ${all} passed`, showPassed: (n) => `${n} passed`,
   steelPins: 'steel pins', spare: (n, s) => `${n} + ${s} spare`, pour: 'silicone, to pour', mix: 'silicone, to mix', mixed: (b, a) => `${b} g base, ${a} g agent`,
+  cure: 'cure', cured: (mould, post) => `${TEXT.hoursAt(mould)} in the mould${post ? `, then ${TEXT.hoursAt(post)} outside` : ''}`, hoursAt: ({ temperature_c, hours }) => `${formatNumber(hours, 2)} h at ${formatNumber(temperature_c)} °C`,
   tendon: 'tendon', coated: (d, o) => `${d} mm, ${o} mm coated`, screws: 'screws', nuts: 'nuts', inserts: 'heat-set inserts', dowels: 'dowels', forMount: 'for the mount',
   rightSide: (l, r) => `${l} left, ${r} right`,
   plastic: 'plastic, all printed parts', part: 'part', size: 'size (mm)', mass: 'mass (g)', volume: 'volume (mm³)', triangles: 'triangles',

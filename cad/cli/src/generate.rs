@@ -6,6 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use pinswitch_diagnostic::{Diagnostic, Location};
 
+use super::as_measured::{self, AsMeasured};
 use super::calibrated_curve::calibrated_curve;
 use super::law::LawChoice;
 use super::second_kernel::requested_kernel;
@@ -36,6 +37,7 @@ use pinswitch_switch::set::Set;
   pinswitch generate three-double --format stl,step
   pinswitch generate three-double --slice
   pinswitch generate three-double --verify
+  pinswitch generate my-switch.toml --measured measured.toml
   pinswitch generate three-double --set layout.pins=[4,8,12] --set support.slots=occupied")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -46,6 +48,8 @@ pub(super) struct Arguments {
     /// A model.toml written by `calibrate`: the curve comes from it, without the effects of the rig.
     #[arg(long, value_name = "TOML", conflicts_with = "law")]
     model: Option<PathBuf>,
+    #[command(flatten)]
+    measured: AsMeasured,
     /// Kinds of files to write, in addition to the curve and the manifest.
     #[arg(long, value_parser = formats(), value_name = "FORMAT", value_delimiter = ',', default_values = default_formats())]
     format: Vec<String>,
@@ -103,7 +107,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         (arguments.source.load()?, None)
     };
+    let made = arguments.measured.of(&design)?;
     let prediction = match &arguments.model {
+        _ if made.is_some() => Prediction::of(made.as_ref().map_or(&design, |(made, _)| made)),
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.or_of_set(law.as_deref()).prediction(&design)?,
     };
@@ -137,6 +143,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         set =
             set.with_file(OutputFile::new(FIXED, fix.text.clone().into_bytes())).map_err(Failure::failed)?;
     }
+    if let Some((_, comparison)) = &made {
+        set = set.measured(comparison.clone()).map_err(Failure::failed)?;
+    }
     if let Some(hash) = arguments.model.as_deref().and_then(sha256_read) {
         set = set.predicted_from(hash).map_err(Failure::failed)?;
     }
@@ -149,6 +158,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         report_fix(fix, &folder);
     }
     report(arguments, &set, &folder, &prediction);
+    if let Some((_, comparison)) = &made {
+        as_measured::report(comparison);
+    }
     if let (Some((slicing, _)), false) = (sliced?, arguments.json) {
         print_text(&slicing.table())?;
     }

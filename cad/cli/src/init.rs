@@ -20,7 +20,7 @@ use crate::write::write_file;
 pub(super) struct Arguments {
     /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
     /// of other kinds: `sweep` for a batch, `configurations` for a table to predict, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
-    /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file.
+    /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file, `measured` for the readings of a made switch.
     name: String,
     /// Kind of rig, with the name `rig` [default: the paper's].
     #[arg(long, value_name = "KIND", value_parser = RIGS.map(|(kind, _)| kind))]
@@ -121,7 +121,9 @@ mod tests {
             let help = diagnostic.help().unwrap();
             assert!(help.starts_with(suggestion), "{help}");
             assert!(
-                help.contains("the kinds are sweep, configurations, effects, plan, run, rig, import,"),
+                help.contains(
+                    "the kinds are sweep, configurations, effects, plan, run, rig, import, measured,"
+                ),
                 "{help}"
             );
         }

@@ -13,6 +13,7 @@ use std::process::ExitCode;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod as_measured;
 mod calibrated_curve;
 mod failure;
 mod finger_text;

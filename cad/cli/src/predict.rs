@@ -7,6 +7,7 @@ use pinswitch_switch::documents::friction_csv;
 use pinswitch_switch::prediction::Prediction;
 use serde::Serialize;
 
+use super::as_measured::{self, AsMeasured};
 use super::calibrated_curve::calibrated_curve;
 use super::law::{LawChoice, compare_laws};
 use super::predict_rows::{Rows, SourceUnlessRows};
@@ -30,6 +31,8 @@ pub(super) struct Arguments {
     rows: Rows,
     #[command(flatten)]
     law: LawChoice,
+    #[command(flatten)]
+    measured: AsMeasured,
     /// Print JSON instead of CSV, with the curves of the other laws under other_laws.
     #[arg(long)]
     json: bool,
@@ -54,7 +57,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
     let design = source.design()?;
+    let made = arguments.measured.of(&design)?;
+    if let Some((_, comparison)) = &made {
+        as_measured::report(comparison);
+    }
     let Prediction { curve, others } = match &arguments.rows.model {
+        _ if made.is_some() => Prediction::of(made.as_ref().map_or(&design, |(made, _)| made)),
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.prediction(&design)?,
     };

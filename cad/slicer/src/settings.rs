@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use pinswitch_switch::config::Configuration;
+use pinswitch_switch::process::part_density_g_cm3;
 
 /// Perimeters of every outline, as in PRINTING.md.
 const WALLS: u32 = 4;
@@ -24,6 +25,8 @@ pub struct PrintSettings {
     pub bed_mm: f64,
     /// Density of the filament, g/cm³.
     pub density_g_cm3: f64,
+    /// Name of the filament.
+    pub filament: &'static str,
     /// Perimeters of every outline.
     pub walls: u32,
     /// Infill, percent.
@@ -41,7 +44,8 @@ impl PrintSettings {
             layer_mm: print.layer_mm,
             line_mm: print.line_mm,
             bed_mm: print.bed_mm,
-            density_g_cm3: print.abs_density_g_cm3,
+            density_g_cm3: part_density_g_cm3(configuration),
+            filament: configuration.process.material.data().filament.unwrap_or("ABS"),
             walls: WALLS,
             infill_pct: INFILL_PCT,
             elephant_foot_mm: if print.elephant_foot_mm > 0.0 { 0.0 } else { ELEPHANT_FOOT_MM },
@@ -58,7 +62,7 @@ impl PrintSettings {
             ("extrusion-width", self.line_mm.to_string()),
             ("bed-shape", format!("0x0,{bed}x0,{bed}x{bed},0x{bed}")),
             ("filament-density", self.density_g_cm3.to_string()),
-            ("filament-type", "ABS".to_owned()),
+            ("filament-type", self.filament.to_owned()),
             ("perimeters", self.walls.to_string()),
             ("fill-density", format!("{}%", self.infill_pct)),
             // The default pattern is not suitable for solid parts.

@@ -3,6 +3,7 @@
 use crate::built::Built;
 use crate::documents::{FileEntry, Manifest, PrintEntry, SourceEntry, plate_entries};
 use crate::formats::Format;
+use crate::measured::Comparison;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use pinswitch_solid::verification::Verification;
@@ -69,6 +70,16 @@ impl Set {
     pub fn predicted_from(mut self, model_sha256: String) -> Result<Self, SetError> {
         self.manifest.friction.model_sha256 = Some(model_sha256);
         self.with_manifest()
+    }
+
+    /// The same set, whose curve is that of the made switch: with the comparison in the manifest and in MEASURED.md.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn measured(mut self, comparison: Comparison) -> Result<Self, SetError> {
+        let text = comparison.text();
+        self.manifest.measured = Some(comparison);
+        self.with_file(OutputFile::new("MEASURED.md", text.into_bytes()))
     }
 
     /// The same set with print time, filament and files of a slicer.

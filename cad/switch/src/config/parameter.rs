@@ -57,7 +57,7 @@ impl<C> Parameter<C> {
 
     /// Returns the unit that the key ends in; empty for dimensionless numbers, texts, choices and lists.
     pub fn unit(&self) -> &'static str {
-        const UNITS: [(&str, &str); 7] = [
+        const UNITS: [(&str, &str); 8] = [
             ("_g_cm3", "g/cm3"),
             ("_mm", "mm"),
             ("_deg", "deg"),
@@ -65,6 +65,7 @@ impl<C> Parameter<C> {
             ("_n", "N"),
             ("_g", "g"),
             ("_a", "Shore A"),
+            ("_c", "C"),
         ];
         UNITS.iter().find(|(ending, _)| self.key.ends_with(ending)).map_or("", |(_, unit)| unit)
     }

@@ -2,6 +2,7 @@
 
 use super::name::Name;
 use super::parameter::{choice, choice_values, configuration};
+use crate::process::{Coating, Material, PinStock, SiliconeProduct};
 use pinswitch_friction::{Substrate, published};
 
 choice_values! { Substrate { Silicone = "silicone", Abs = "abs" } }
@@ -169,7 +170,7 @@ configuration! {
             overfill_mm: f64 = 1.0, 0.0..=10.0, Chosen, "one-piece: height of the basin above the layer; cut the layer along its ledge";
             layers: usize = 1, 1..=12, Chosen, "one-piece: layers cast at once; 11 g are mixed, and one layer takes 1 g";
             draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: draft of the basin's walls, whose silicone is cut off; the walls that shape the layer are vertical";
-            shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone: 0 when cured at 25 C, about 1 at 60 to 80 C";
+            shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone that the cavity compensates, and with it the temperature of the cure: 0 for 25 C, 0.9 for 60 C in ABS";
             clearance_mm: f64 = 0.2, 0.05..=0.5, Chosen, "print clearance between parts of the split mould, per side";
             key_diameter_mm: f64 = 3.0, 1.5..=10.0, Chosen, "diameter at the foot of the keys that register the parts";
             key_height_mm: f64 = 2.5, 0.5..=10.0, Chosen, "height of the keys";
@@ -210,6 +211,15 @@ configuration! {
             elephant_foot_mm: f64 = 0.0, 0.0..=1.0, Chosen, "45 degree chamfer on bottom edges; slicers compensate 0.2 by default: use one of the two";
             bed_mm: f64 = 250.0, 50.0..=2000.0, Chosen, "side of the print bed";
             abs_density_g_cm3: f64 = 1.04, 0.5..=3.0, Assumed, "for the mass of the printed parts";
+        }
+        /// Materials as bought, and the cure of the layer.
+        process: ProcessTable {
+            material: Material = Material::Abs, (), Published, "material of the printed parts; the hottest cure in the mould, the inhibition of the cure, and the mass follow from it";
+            silicone: SiliconeProduct = SiliconeProduct::Sylgard184, (), Published, "silicone of the layer; mixing ratio, cure and the scatter of the hardness follow from it; other for one whose data are on its package";
+            cure_c: f64 = 0.0, 0.0..=200.0, Chosen, "cure in the mould; 0 for the temperature at which the silicone shrinks by mould.shrinkage_pct";
+            oven_c: f64 = 150.0, 20.0..=250.0, Chosen, "hottest oven for a post-cure of the layer outside the mould, with which Sylgard 184 reaches the published 50 Shore A; 25 without an oven";
+            pins: PinStock = PinStock::TinPlated, (), Published, "steel of the pins, for the shopping list; the friction of other surfaces is not measured";
+            coating: Coating = Coating::Polyamide, (), Published, "coating of the tendon, for the shopping list; the friction of other coatings is not measured";
         }
         /// The mesh.
         mesh: MeshTable {

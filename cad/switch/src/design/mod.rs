@@ -10,9 +10,10 @@ pub mod rules;
 mod tendon_ends;
 
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
-use pinswitch_friction::{Contact, ContactError, PinPattern};
+use pinswitch_friction::{Contact, ContactError, PinPattern, Substrate};
 
-use crate::config::{Configuration, Diagnostic, Location};
+use crate::config::{Choice, Configuration, Diagnostic, Location};
+use crate::process::Process;
 use pinswitch_solid::profile::ChordTolerance;
 
 pub(crate) use clearance::{clearance, clearance_grade};
@@ -84,6 +85,12 @@ impl Design {
         rules::warnings(&self.dimensions)
     }
 
+    /// Returns the same design with another contact: that of the parts as made.
+    #[must_use]
+    pub(crate) fn with_contact(&self, contact: Contact) -> Self {
+        Self { contact, ..self.clone() }
+    }
+
     /// Returns the contact of the tendon, the input of the friction model.
     pub const fn contact(&self) -> &Contact {
         &self.contact
@@ -111,6 +118,7 @@ fn contact(dimensions: &Dimensions) -> Result<Contact, Diagnostic> {
                 .with_unmodelled(unmodelled(c))
                 .with_six_single_threshold(c.friction.six_single_threshold)
                 .with_bed(bed(dimensions))
+                .with_modulus_scatter(Process::of(c).modulus_scatter())
         })
         .map_err(|e| {
             let error = match e {
@@ -141,16 +149,33 @@ fn bed(dimensions: &Dimensions) -> Bed {
 /// Describes departures from the measured part that the friction model does not cover. The model finds all others in the
 /// dimensions of the bed.
 fn unmodelled(c: &Configuration) -> Vec<String> {
-    let published = Configuration::default().silicone.mix_ratio;
-    let ours = c.silicone.mix_ratio;
-    (ours != published)
-        .then(|| {
-            format!(
-                "silicone.mix_ratio is {ours}, the measured one is {published}; no law models its effect beyond the given hardness"
-            )
-        })
-        .into_iter()
-        .collect()
+    let default = Configuration::default();
+    let no_law = |field: &str, ours: &str, measured: &str, effect: &str| {
+        format!("{field} is {ours}, the measured one is {measured}; no law models {effect}")
+    };
+    let mut all = Vec::new();
+    let is_cast = c.layout.substrate == Substrate::Silicone;
+    let product = c.process.silicone;
+    if is_cast && product.data().is_none_or(|silicone| silicone.mix_ratio.is_none()) {
+        let (ours, published) = (c.silicone.mix_ratio, default.silicone.mix_ratio);
+        let effect = "its effect beyond the given hardness";
+        if ours != published {
+            all.push(no_law("silicone.mix_ratio", &ours.to_string(), &published.to_string(), effect));
+        }
+    }
+    let effect = "the coefficient of friction of another one";
+    if is_cast && product != default.process.silicone {
+        all.push(no_law("process.silicone", product.as_str(), default.process.silicone.as_str(), effect));
+    }
+    let (pins, coating) = (c.process.pins, c.process.coating);
+    if pins != default.process.pins && !c.layout.pins.is_empty() {
+        all.push(no_law("process.pins", pins.as_str(), default.process.pins.as_str(), effect));
+    }
+    if coating != default.process.coating {
+        all.push(no_law("process.coating", coating.as_str(), default.process.coating.as_str(), effect));
+    }
+    all.extend(Process::of(c).conflicts.into_iter().map(|conflict| conflict.problem));
+    all
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::config::{MouldKind, MountKind};
 use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
+use crate::process::{Cure, Process, mix_ratio, silicone_density_g_cm3};
 use pinswitch_friction::Substrate;
 
 /// Lengths of fully threaded hexagon bolts M8, mm (ISO 4017).
@@ -50,6 +51,17 @@ pub struct Silicone {
     pub base_g: f64,
     /// Curing agent in the mix, g.
     pub agent_g: f64,
+    /// Product, as on its package; absent for a user-defined silicone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub product: Option<&'static str>,
+    /// Base to curing agent by mass.
+    pub mix_ratio: f64,
+    /// Cure in the mould; absent where no cure gives the configured layer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mould_cure: Option<Cure>,
+    /// Post-cure of the layer outside the mould, if it needs one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub post_cure: Option<Cure>,
 }
 
 /// The tendon.
@@ -147,11 +159,16 @@ pub fn bill_of_materials(design: &Design) -> Bill {
     let silicone =
         (c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None).then(|| {
             let pour_ml = (layers_mm3 + overfill_mm3) / 1000.0;
-            let pour_g = pour_ml * c.silicone.density_g_cm3;
+            let pour_g = pour_ml * silicone_density_g_cm3(c);
             let mix_g = (pour_g * c.silicone.waste_factor).max(c.silicone.least_mix_g);
-            let agent_g = mix_g / (c.silicone.mix_ratio + 1.0);
+            let agent_g = mix_g / (mix_ratio(c) + 1.0);
+            let process = Process::of(c);
             Silicone {
                 layers,
+                product: process.silicone.map(|s| s.name),
+                mix_ratio: mix_ratio(c),
+                mould_cure: process.mould_cure,
+                post_cure: process.post_cure,
                 layer_mm3: layers_mm3 / layers as f64,
                 pour_ml,
                 pour_g,

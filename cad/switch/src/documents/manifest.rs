@@ -8,9 +8,11 @@ use sha2::{Digest, Sha256};
 use super::{Bill, PlateEntry, PrintEntry, bill_of_materials};
 use crate::config::{Configuration, Origin};
 use crate::design::Design;
+use crate::measured::Comparison;
 use crate::output::{OutputFile, SetError};
 use crate::parts::{Material, Part, Touch, touches};
 use crate::prediction::Prediction;
+use crate::process::part_density_g_cm3;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_solid::verification::Verification;
 
@@ -201,6 +203,9 @@ pub struct Manifest {
     pub bill_of_materials: Bill,
     /// Prediction.
     pub friction: FrictionEntry,
+    /// The made switch next to its plan, if it was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Comparison>,
     /// Warnings, each with the parameter to change.
     pub warnings: Vec<String>,
     /// All other files of the set.
@@ -256,6 +261,7 @@ impl Manifest {
                 threshold_n: Transition::of(curve).map(|t| t.threshold_n),
                 curve_file: "friction.csv",
             },
+            measured: None,
             warnings,
             files: Vec::new(),
         }
@@ -300,7 +306,7 @@ fn part_entry(part: &Part, facts: &MeshFacts, design: &Design) -> PartEntry {
         material: part.material(),
         volume_mm3,
         surface_mm2: part.solid.surface_mm2(),
-        mass_g: volume_mm3 / 1000.0 * design.configuration().print.abs_density_g_cm3,
+        mass_g: volume_mm3 / 1000.0 * part_density_g_cm3(design.configuration()),
         widest_bridge_mm: part.widest_bridge_mm(),
         mesh: facts.clone(),
         verification: None,

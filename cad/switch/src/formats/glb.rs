@@ -29,7 +29,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
         .filter_map(|body| {
             let mesh = body.part.pose?.apply(body.mesh.clone());
             let (name, opacity) = match body.part.material() {
-                Material::Abs => ("ABS", 1.0),
+                Material::Abs => (built.design().configuration().process.material.data().name, 1.0),
                 Material::Silicone => ("silicone", SILICONE_OPACITY),
                 Material::Steel => ("steel", 1.0),
             };

@@ -20,6 +20,7 @@ use crate::output::{OutputFile, SetError};
 use crate::parallel::map_each;
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
+use crate::process::{Process, instructions};
 use crate::scene::{Stage, exploded_png, plate, stage_scene, stage_view};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
@@ -99,9 +100,12 @@ fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {
     let infill = if has_mould { "100 % infill for the mould, " } else { "" };
     let _ = write!(
         text,
-        "## 1. Print\n\nMaterial: ABS. Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports. Every file is in print \
-         orientation. Compensate the shrinkage of ABS in the slicer (0.7 % is usual).\n\n| part | file | mass | widest bridge |\n|---|---|---|---|\n",
-        c.print.layer_mm, c.print.line_mm, c.print.nozzle_mm
+        "## 1. Print\n\n{} Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports. Every file is in print \
+         orientation.\n\n| part | file | mass | widest bridge |\n|---|---|---|---|\n",
+        instructions::print_material(c),
+        c.print.layer_mm,
+        c.print.line_mm,
+        c.print.nozzle_mm
     );
     for part in &manifest.parts {
         let _ = writeln!(
@@ -188,26 +192,33 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     } else {
         "some remains in the cup"
     };
+    let process = Process::of(c);
+    let preparation = instructions::preparation(c);
+    let product = s.product.unwrap_or("Your silicone");
     let _ = write!(
         text,
         "## 2. Cast the silicone\n\n\
-         1. Weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.\n\
+         1. {product}: weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.\n\
          2. Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.\n\
-         3. {close} Do not use a release agent on ABS. Sulphur clay and latex gloves inhibit the cure.\n\
+         3. {close} {preparation}\n\
          4. {pour}\n\
-         5. Cure for 48 h at 25 \u{b0}C, or for 4 h at 60 \u{b0}C. Above 70 \u{b0}C the mould softens. The mould compensates a shrinkage of {} % (0 at 25 \u{b0}C, about 1 at 60 \u{b0}C: `mould.shrinkage_pct`).\n\
-         6. {release} Trim the flash with a blade. {} {:.1} mm wide and {:.1} mm thick.\n\n",
+         5. {}\n\
+         6. {release} Trim the flash with a blade. {} {:.1} mm wide and {:.1} mm thick.\n",
         s.base_g,
         s.agent_g,
-        c.silicone.mix_ratio,
+        s.mix_ratio,
         s.mix_g,
         s.pour_ml,
         s.pour_g,
-        c.mould.shrinkage_pct,
+        instructions::cure(c, &process),
         if s.layers > 1 { format!("The {} layers are", s.layers) } else { "The layer is".to_owned() },
         design.layer_width_mm(),
         c.silicone.thickness_mm
     );
+    if let Some(step) = instructions::post_cure(&process) {
+        let _ = writeln!(text, "7. {step}");
+    }
+    text.push('\n');
 }
 
 #[cfg(test)]

@@ -35,7 +35,8 @@ fn make(built: &Built, prediction: &Prediction, _: &Manifest) -> Result<Vec<Outp
 fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> Result<Vec<u8>, SetError> {
     let c = built.design().configuration();
     let name = &c.switch.name;
-    let materials = materials(plate);
+    let plastic = c.process.material.data().name;
+    let materials = materials(plate, plastic);
     let objects: Vec<Object<'_>> = plate
         .parts
         .iter()
@@ -43,7 +44,10 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
             name: &p.part().name,
             part_number: format!("{name}/{}", p.part().name),
             mesh: &p.print_mesh,
-            material: materials.iter().position(|m| *m == material(p.part().role)).unwrap_or(usize::MAX),
+            material: materials
+                .iter()
+                .position(|m| *m == material(p.part().role, plastic))
+                .unwrap_or(usize::MAX),
             place: *place,
         })
         .collect();
@@ -72,9 +76,9 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
 }
 
 /// Returns the materials of a plate, each once, in the order of its parts.
-fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
+fn materials(plate: &Plate<'_>, plastic: &str) -> Vec<BaseMaterial> {
     plate.parts.iter().fold(Vec::new(), |mut known, (p, _)| {
-        let own = material(p.part().role);
+        let own = material(p.part().role, plastic);
         if !known.contains(&own) {
             known.push(own);
         }
@@ -82,8 +86,8 @@ fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
     })
 }
 
-/// Returns the material of a role, in the colour of its pictures.
-fn material(role: Role) -> BaseMaterial {
+/// Returns the material of a role, of this plastic, in the colour of its pictures.
+fn material(role: Role, plastic: &str) -> BaseMaterial {
     let what = match role {
         Role::Shell => "shell",
         Role::Mould => "mould",
@@ -94,5 +98,5 @@ fn material(role: Role) -> BaseMaterial {
         // Cast or bought, and not on a plate.
         Role::Layer | Role::Pin { .. } | Role::Tendon => "part",
     };
-    BaseMaterial { name: format!("ABS ({what})"), colour: role.colour() }
+    BaseMaterial { name: format!("{plastic} ({what})"), colour: role.colour() }
 }

@@ -9,7 +9,7 @@ use pinswitch_drafting::{lettering, number};
 /// The material in the title block.
 pub(super) fn material(design: &Design, material: Material) -> String {
     match material {
-        Material::Abs => "ABS, printed".to_owned(),
+        Material::Abs => format!("{}, printed", design.configuration().process.material.data().name),
         Material::Silicone => {
             format!("Silicone, {} Shore A", number(design.configuration().silicone.hardness_shore_a))
         }

@@ -63,7 +63,7 @@ pub const EXAMPLES: [(&str, &str); 8] = [
     ("run", include_str!("rig/run.toml")),
     ("rig", include_str!("rig/rig.toml")),
     ("import", include_str!("rig/import.toml")),
-    ("measured", include_str!("measured.toml")),
+    ("measured", include_str!("rig/measured.toml")),
 ];
 
 /// Rigs without a switch, by the word that `pinswitch init rig --kind` takes, in the format of the example `rig`.

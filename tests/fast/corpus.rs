@@ -70,7 +70,7 @@ fn shipped_files_are_accepted() {
         let reading = judge("ask", &std::fs::read(&path).unwrap());
         assert!(reading.is_ok(), "{}: {reading:?}", path.display());
     }
-    for name in ["effects", "plan", "run", "rig"] {
+    for name in ["effects", "plan", "run", "rig", "measured"] {
         let bytes = std::fs::read(repository(&format!("templates/rig/{name}.toml"))).unwrap();
         assert_eq!(judge(name, &bytes), Ok(Reading::Accepted), "{name}");
     }

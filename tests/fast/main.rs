@@ -33,6 +33,7 @@ mod next_experiment;
 mod own_effects;
 mod pictures;
 mod predict_rows;
+mod process;
 mod provenance;
 mod readme;
 mod reference_shell;

@@ -25,7 +25,9 @@ use pinswitch_simulation::{Plan, simulate};
 use pinswitch_solid::files::{read_stl, read_three_mf, stl_bytes};
 use pinswitch_solid::validity::{Expectation, examine};
 use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
+use pinswitch_switch::design::Design;
 use pinswitch_switch::feasibility;
+use pinswitch_switch::measured::Measured;
 use pinswitch_switch::request::Request;
 use sha2::{Digest, Sha256};
 
@@ -49,7 +51,7 @@ pub struct Reader {
 }
 
 /// All readers.
-pub const READERS: [Reader; 19] = [
+pub const READERS: [Reader; 20] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -69,6 +71,7 @@ pub const READERS: [Reader; 19] = [
     Reader { name: "batch_files", judge: batch_files },
     Reader { name: "import", judge: import_file },
     Reader { name: "import_map", judge: import_map },
+    Reader { name: "measured", judge: measured },
 ];
 
 /// Reads bytes with the reader of that name.
@@ -178,6 +181,27 @@ fn ask(bytes: &[u8]) -> Result<Reading, String> {
         Ok(()) => Ok(Reading::Accepted),
         Err(e) => refused(&e),
     }
+}
+
+fn measured(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let measured = match Measured::read(text, FILE) {
+        Ok(measured) => measured,
+        Err(e) => return refused(&e),
+    };
+    let planned = Design::new(Configuration::default()).map_err(|e| e.to_string())?;
+    let bed = *measured.apply(&planned).contact().bed();
+    let lengths = [
+        bed.contact_radius_mm,
+        bed.tendon_radius_mm,
+        bed.pin_diameter_mm,
+        bed.groove_radius_mm,
+        bed.layer_mm,
+        bed.layer_width_mm,
+        bed.modulus_mpa,
+    ];
+    require(lengths.iter().all(|x| x.is_finite() && *x > 0.0), || format!("{bed:?}"))?;
+    Ok(Reading::Accepted)
 }
 
 fn run_plan(bytes: &[u8]) -> Result<Reading, String> {

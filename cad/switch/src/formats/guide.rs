@@ -194,11 +194,11 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     };
     let process = Process::of(c);
     let preparation = instructions::preparation(c);
-    let product = s.product.unwrap_or("Your silicone");
+    let product = s.product.unwrap_or("your silicone");
     let _ = write!(
         text,
         "## 2. Cast the silicone\n\n\
-         1. {product}: weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.\n\
+         1. Weigh {:.1} g of base and {:.1} g of curing agent of {product} ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.\n\
          2. Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.\n\
          3. {close} {preparation}\n\
          4. {pour}\n\

@@ -1,0 +1,4 @@
+//! See `tests/harness/readers.rs`.
+#![no_main]
+
+pinswitch_fuzz::target!("measured");

@@ -44,7 +44,7 @@ export class Browser {
 
 // One page, in its own context without the storage of other visits.
 export class Visit {
-  static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before }) {
+  static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before, touch = false, showsAll = true }) {
     const visit = new Visit();
     Object.assign(visit, { browser, findings, allowed, problems: [], foreign: [] });
     visit.context = context ?? await browser.real.createBrowserContext();
@@ -55,6 +55,12 @@ export class Visit {
     page.on('pageerror', (error) => visit.problems.push(String(error?.stack ?? error)));
     page.on('request', (request) => visit.record(request.url()));
     await visit.look(width, height, dark);
+    // As for a person who chose to see all parameters.
+    if (showsAll) {
+      await page.evaluateOnNewDocument(() => {
+        try { if (!localStorage.getItem('pinswitch.configurator.1')) localStorage.setItem('pinswitch.configurator.1', JSON.stringify({ showsAll: true })); } catch { /* No storage. */ }
+      });
+    }
     if (before) await page.evaluateOnNewDocument(before);
     return visit;
   }

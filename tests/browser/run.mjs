@@ -18,6 +18,7 @@ import * as downloads from './downloads.mjs';
 import * as embedding from './embedding.mjs';
 import * as errors from './errors.mjs';
 import * as focus from './focus.mjs';
+import * as hands from './hands.mjs';
 import * as search from './search.mjs';
 import * as server from './server.mjs';
 import * as tables from './tables.mjs';
@@ -37,7 +38,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...server, ...downloads };
+  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...hands, ...server, ...downloads };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 

@@ -1,8 +1,12 @@
 // One control per parameter, in sections: slider and number, choice, switch, or text. Errors are
 // shown at the control.
 
+// Fields that are shown at first; the others are under "All parameters", found by the search, or shown where they differ.
+const BASIC_FIELDS = ['layout.pins', 'layout.wrap_angle_deg', 'segment.grooves', 'silicone.thickness_mm', 'silicone.hardness_shore_a', 'shell.outer_radius_mm', 'pins.diameter_mm', 'tendon.rope_diameter_mm', 'print.bed_mm'];
 // Sections that are open at first: those that are changed most.
-const OPEN_SECTIONS = ['layout', 'segment', 'silicone', 'pins'];
+const OPEN_SECTIONS = ['layout', 'segment', 'shell', 'silicone', 'pins', 'tendon', 'print'];
+// Words that people use for those of the fields.
+const SYNONYMS = { tendon: 'cable wire rope string', mould: 'mold cast', silicone: 'rubber elastomer', pins: 'rod dowel', fasteners: 'screw bolt nut', print: 'printer filament', shell: 'pulley body', label: 'text engraving', mesh: 'resolution quality', support: 'side plate cheek', friction: 'force load curve', mount: 'bracket holder', process: 'material plastic oven bake' };
 const SLIDER_STEPS = 1000;
 
 // The step of a number, by its range.
@@ -69,8 +73,9 @@ class Control {
       this.input = make('input', undefined, { ...attributes, type: 'checkbox', role: 'switch' });
       this.input.addEventListener('change', () => this.apply(this.input.checked));
     } else if (field.kind === 'number' || field.kind === 'whole') {
-      this.input = make('input', undefined, { ...attributes, type: 'number', step: stepOf(field), inputmode: field.kind === 'whole' ? 'numeric' : 'decimal' });
+      this.input = make('input', undefined, { ...attributes, type: 'text', class: 'number', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false' });
       this.input.addEventListener('input', () => this.parse());
+      stepByArrows(this.input, stepOf(field), field.unit, (value) => this.apply(value));
       if (field.ends) this.addSlider();
     } else {
       this.input = make('input', undefined, { ...attributes, type: 'text', maxlength: 200, spellcheck: 'false', autocomplete: 'off' });
@@ -79,7 +84,7 @@ class Control {
     // Text that is not a value is replaced by the value of the design when the control loses the
     // focus.
     this.input.addEventListener('blur', () => {
-      if (!this.hasInvalidText) return;
+      if (!this.hasInvalidText) { if (this.isNumber()) this.show(); return; }
       this.show();
       showToast(TEXT.unchanged(this.name, formatValue(this.state.value(this.field.path))));
     });
@@ -91,8 +96,10 @@ class Control {
     this.slider = make('input', undefined, { type: 'range', min: 0, max: SLIDER_STEPS, step: 'any', 'aria-label': TEXT.slider(this.name), tabindex: -1 });
     // Without a tab stop: the number input has the arrow keys, and ninety parameters would have
     // twice as many stops.
-    this.slider.addEventListener('input', () => this.apply(scale.value(Number(this.slider.value))));
+    listenToSlider(this.slider, () => this.apply(scale.value(Number(this.slider.value))));
   }
+
+  isNumber() { return this.field.kind === 'number' || this.field.kind === 'whole'; }
 
   parse() {
     const { kind } = this.field;
@@ -103,8 +110,8 @@ class Control {
       if (items) this.apply([...new Set(items)].sort((a, b) => a - b)); else this.rejectText(TEXT.notList);
       return;
     }
-    const value = Number(text);
-    if (text === '' || !Number.isFinite(value)) this.rejectText(TEXT.notNumber);
+    const { value, problem } = readQuantity(text, this.field.unit);
+    if (problem) this.rejectText(problem);
     else if (kind === 'whole' && !Number.isInteger(value)) this.rejectText(TEXT.notWhole);
     else this.apply(value);
   }
@@ -130,7 +137,7 @@ class Control {
     this.resetButton.hidden = !changed;
     if (this.field.kind === 'flag') this.input.checked = value;
     else if (this.field.kind === 'list') this.input.value = value.join(', ');
-    else if (document.activeElement !== this.input || Number(this.input.value) !== value) this.input.value = formatNumber(value, 6);
+    else if (document.activeElement !== this.input || readQuantity(this.input.value, this.field.unit).value !== value) this.input.value = formatNumber(value, 6);
     if (this.slider) {
       this.slider.value = this.scale.position(value);
       this.slider.style.setProperty('--at', `${this.scale.position(value) / 10}%`);
@@ -167,8 +174,11 @@ class Controls {
     host.append(this.none);
     byId('find').addEventListener('input', () => this.filter());
     byId('only-changed').addEventListener('change', () => this.filter());
+    byId('all-parameters').checked = Boolean(remembered().showsAll);
+    byId('all-parameters').addEventListener('change', () => { remember({ ...remembered(), showsAll: byId('all-parameters').checked }); this.filter(); });
     state.addEventListener('change', () => this.show());
     this.show();
+    this.filter();
   }
 
   section(name, fields) {
@@ -193,21 +203,22 @@ class Controls {
       const changed = fields.filter((f) => this.state.isChanged(f.path)).length;
       count.textContent = changed ? TEXT.groupChanged(changed) : '';
     }
-    if (byId('only-changed').checked) this.filter();
+    if (byId('only-changed').checked || !byId('all-parameters').checked) this.filter();
   }
 
   filter() {
     const words = byId('find').value.toLowerCase().split(/\s+/).filter(Boolean);
     const only = byId('only-changed').checked;
     const narrow = words.length > 0 || only;
+    const isBasic = !narrow && !byId('all-parameters').checked;
     let matches = 0;
     for (const section of this.sections) {
       let any = false;
       for (const field of section.fields) {
-        const text = `${field.path} ${fieldName(field)} ${TEXT.groups[field.section] ?? ''} ${field.reason}`.toLowerCase();
+        const text = `${field.path} ${fieldName(field)} ${TEXT.groups[field.section] ?? ''} ${SYNONYMS[field.section] ?? ''} ${field.reason}`.toLowerCase();
         const control = this.controls.get(field.path);
         // Errors are shown, whatever the filter.
-        const fits = control.hasError() || (words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path)));
+        const fits = control.hasError() || (words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path)) && (!isBasic || BASIC_FIELDS.includes(field.path) || this.state.isChanged(field.path) || control.element.contains(document.activeElement)));
         control.element.hidden = !fits;
         any ||= fits;
         matches += fits;

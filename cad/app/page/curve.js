@@ -1,7 +1,7 @@
 // The plot of friction over load: curve, band, other laws, measured points, a curve for comparison,
 // the present load.
 
-const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, OTHER = 4, COMPARISON = OTHER + MAX_OTHER_LAWS, PREVIEW = COMPARISON + 1, CALIBRATED = COMPARISON + 2, MEASURED = COMPARISON + 3;
+const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, OTHER = 4, COMPARISON = OTHER + MAX_OTHER_LAWS, PREVIEW = COMPARISON + 1, CALIBRATED = COMPARISON + 2, MEASURED = COMPARISON + 3, OWN = COMPARISON + 4;
 
 // Lines differ in dashes and in colour.
 const LINES = {
@@ -38,6 +38,19 @@ class Curve {
     this.draw();
     this.describe();
     this.moveTo(this.load_n);
+  }
+
+  // Shows a person's readings on the plot, for every design of their condition.
+  setMeasured(points) {
+    this.measured = points;
+    if (this.data) this.draw();
+  }
+
+  // Readings of the condition of the design: substrate, pins and wrap angle.
+  get ownPoints() {
+    const value = (path) => this.values?.[path] ?? this.state.fields.get(path).default;
+    const pins = [...value('layout.pins')].sort((a, b) => a - b);
+    return (this.measured ?? []).filter((p) => p.substrate === value('layout.substrate') && sameValue(p.pins, pins) && Math.abs(p.wrap_angle_deg - value('layout.wrap_angle_deg')) < 0.5);
   }
 
   // Shows another curve, `preview` or `calibrated`; null removes it.
@@ -82,6 +95,7 @@ class Curve {
       const line = LINES[i];
       if (i === LOAD) return {};
       if (i === MEASURED) return { paths: () => null, points: { show: true, size: 11, width: 2, stroke: card, fill: colourOf('--amber') } };
+      if (i === OWN) return { paths: () => null, points: { show: true, size: 8, width: 1.5, stroke: colourOf('--ink'), fill: card } };
       return { spanGaps: true, pxAlign: 0, points: { show: false }, stroke: line ? colourOf(line.colour) : 'transparent', width: line?.width, dash: line?.dash };
     });
     const axis = (side) => ({
@@ -171,11 +185,12 @@ class Curve {
       return drawing;
     };
     const item = (mark, text) => { const li = make('li'); li.append(mark, text); return li; };
-    const items = [item(sample(MAIN), this.data.curve.law), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), TEXT.band)];
+    const items = [item(sample(MAIN), TEXT.predicted(this.data.curve.law)), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), TEXT.band)];
     if (this.showsOtherLaws) this.data.other_laws.slice(0, MAX_OTHER_LAWS).forEach((o, i) => items.push(item(sample(OTHER + i), o.law)));
     if (this.comparison) items.push(item(sample(COMPARISON), TEXT.comparison(this.comparisonName())));
     if (this.preview) items.push(item(sample(PREVIEW), this.preview.name));
     if (this.calibrated) items.push(item(sample(CALIBRATED), TEXT.calibratedCurve));
+    if (this.ownPoints.length) items.push(item(make('i', undefined, { class: 'dotmark own', 'aria-hidden': 'true' }), TEXT.ownPoints(this.ownPoints.length)));
     if (this.data.published.length) items.push(item(make('i', undefined, { class: 'dotmark', 'aria-hidden': 'true' }), TEXT.measuredPoint));
     byId('legend').replaceChildren(...items);
   }

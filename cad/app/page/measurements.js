@@ -1,5 +1,8 @@
 // The user's measurements: a table of plateaus, its verdict, and its model in the design.
 
+// Longest fit that is kept for the next visit, in characters.
+const MAX_KEPT_FIT = 400_000;
+
 class Measurements {
   constructor(state, engine, curve) {
     Object.assign(this, { state, engine, curve });
@@ -8,6 +11,7 @@ class Measurements {
     byId('use-model').addEventListener('click', () => this.useModel());
     byId('stop-fit').addEventListener('click', () => this.engine.stop('calibrate'));
     byId('remove-model').addEventListener('click', () => this.state.change({ model: null }));
+    this.restore();
     this.updatePreview = debounce(() => this.preview(), EXACT_DELAY_MS);
     state.addEventListener('change', () => this.show());
     this.show();
@@ -27,6 +31,8 @@ class Measurements {
   begin() {
     this.engine.stop('calibrate');
     this.fitted = null;
+    this.curve.setMeasured([]);
+    byId('fit').hidden = true;
     byId('model-error').hidden = true;
     this.show();
     this.fitNumber = (this.fitNumber ?? 0) + 1;
@@ -86,9 +92,8 @@ class Measurements {
       const detected = effects.length ? [TEXT.detectedEffects(effects)] : [];
       const open = answer.verdict === 'inconclusive' ? [TEXT.notExcluded(answer.not_excluded)] : [];
       const friction = answer.friction ? [`${answer.friction}.`] : [];
-      this.report([...friction, ...detected, ...open, ...errors], TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict));
-      this.fitted = answer.model ? { name: file, toml: answer.model } : null;
-      this.show();
+      const { probabilities, sizes, points, residuals } = answer;
+      this.keep({ file, model: answer.model, head: TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict), lines: [...friction, ...detected, ...open, ...errors], probabilities, sizes, points, residuals });
     } catch (problem) {
       if (number !== this.fitNumber) return;
       this.report([problem instanceof Superseded ? TEXT.stopped : problem.message], undefined, !(problem instanceof Superseded));
@@ -96,6 +101,61 @@ class Measurements {
       // The fit of a later table can still be stopped.
       if (number === this.fitNumber) byId('stop-fit').hidden = true;
     }
+  }
+
+  // Keeps a fit for the next visit, if the browser has room for it, and shows it.
+  keep(fit) {
+    const text = JSON.stringify(fit);
+    remember({ ...remembered(), fit: text.length <= MAX_KEPT_FIT ? fit : undefined });
+    this.showFit(fit);
+  }
+
+  restore() {
+    const { fit } = remembered();
+    const isFit = fit && typeof fit.file === 'string' && ['lines', 'probabilities', 'sizes', 'points', 'residuals'].every((name) => Array.isArray(fit[name]));
+    if (isFit) this.showFit(fit);
+  }
+
+  showFit({ file, model, head, lines, probabilities, sizes, points, residuals }) {
+    this.report(lines, head);
+    this.fitted = model ? { name: file, toml: model } : null;
+    this.curve.setMeasured(points);
+    const box = byId('fit');
+    box.hidden = false;
+    box.replaceChildren();
+    if (probabilities.length) box.append(this.bars(probabilities));
+    if (sizes.length) box.append(table(TEXT.sizeColumns, sizes.map((s) => [TEXT.effectNames[s.id] ?? s.id, `${s.name} = ${formatNumber(s.value, 4)} ${s.unit}`.trim(), `${formatNumber(s.ci95[0], 4)} … ${formatNumber(s.ci95[1], 4)}`])));
+    if (residuals.length) box.append(this.residualPlot(residuals));
+    box.append(make('p', TEXT.pointsOf(points.length), { class: 'dim' }));
+    this.show();
+  }
+
+  // Probabilities of effects as bars.
+  bars(probabilities) {
+    const list = make('ul', undefined, { class: 'bars', 'aria-label': TEXT.probabilities });
+    list.append(...probabilities.map(([id, p]) => {
+      const item = make('li');
+      const bar = make('div', undefined, { class: 'bar', 'aria-hidden': 'true' });
+      bar.append(make('i', undefined, { style: `width: ${(100 * p).toFixed(1)}%` }));
+      item.append(make('span', `${TEXT.effectNames[id] ?? id}: ${TEXT.percent(p)}`), bar);
+      return item;
+    }));
+    return list;
+  }
+
+  // Residuals over the load: of the published model, and of the calibrated one.
+  residualPlot(residuals) {
+    const [width, height, pad] = [280, 120, 22];
+    const most = Math.max(...residuals.flatMap((r) => [Math.abs(r.before_n), Math.abs(r.after_n)]), 1e-9);
+    const heaviest = Math.max(...residuals.map((r) => r.load_n), 1e-9);
+    const at = (load, n) => ({ cx: (pad + (width - pad - 4) * load / heaviest).toFixed(1), cy: (height / 2 - (height / 2 - 8) * n / most).toFixed(1) });
+    const drawing = svg('svg', { viewBox: `0 0 ${width} ${height}`, class: 'residuals', role: 'img', 'aria-label': TEXT.residualsName(most.toFixed(2)) });
+    drawing.append(svg('line', { x1: pad, x2: width, y1: height / 2, y2: height / 2, class: 'zero' }));
+    for (const [column, name] of [['before_n', 'before'], ['after_n', 'after']]) drawing.append(...residuals.map((r) => svg('circle', { ...at(r.load_n, r[column]), r: 1.8, class: name })));
+    drawing.append(svg('text', { x: 0, y: 12 }, `+${most.toFixed(2)} N`), svg('text', { x: 0, y: height - 4 }, `−${most.toFixed(2)} N`));
+    const figure = make('figure');
+    figure.append(drawing, make('figcaption', TEXT.residualsCaption, { class: 'dim' }));
+    return figure;
   }
 
   // Shows the curve of the design by the fitted model next to the present one.

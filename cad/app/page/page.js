@@ -76,6 +76,7 @@ class Page {
     this.curve = new Curve(state);
     this.curve.moved = (load_n) => this.view.load(load_n);
     this.handles = new Handles(this.curve, state);
+    this.strip = new Strip(this.curve, state);
     this.controls = new Controls(byId('fields'), facts, state);
     this.pins = new Pins(byId('pins'), state);
     this.targets = new Targets(state, this.engine, this.curve, this.handles);
@@ -203,6 +204,7 @@ class Page {
     this.markTemplate();
     this.view.show(data);
     this.curve.show(data, values, model?.name ?? null);
+    this.strip.update();
     showChecks(data);
     showMaterials(data);
     this.downloads.show(data);
@@ -296,13 +298,20 @@ class Page {
       if (!(event.ctrlKey || event.metaKey) || event.altKey || byId('files').open) return;
       const key = event.key.toLowerCase();
       // In a text input the browser has its own undo.
-      if (event.target.matches?.('input[type=text], input[type=search]')) return;
+      if (event.target.matches?.('input[type=text]:not(.number), input[type=search]')) return;
       if (key === 'z' && !event.shiftKey) state.undo();
       else if (key === 'y' || (key === 'z' && event.shiftKey)) state.redo();
       else return;
       event.preventDefault();
     });
     addEventListener('pointerdown', (event) => this.closeMenus(event.target));
+    // A configuration as text, such as one that was shared.
+    addEventListener('paste', (event) => {
+      const text = event.clipboardData?.getData('text/plain') ?? '';
+      if (event.target.matches?.('input, textarea, select') || !/^\s*(#.*\n\s*)*\[\w+\]/.test(text)) return;
+      event.preventDefault();
+      this.open(text, TEXT.clipboard);
+    });
   }
 
   // Closes menus and reasons, except the one that contains `within`.
@@ -316,18 +325,30 @@ class Page {
     const was = document.body.classList.contains('sheet');
     document.body.classList.toggle('sheet', open);
     byId('parameters').setAttribute('aria-expanded', String(open));
-    if (open) byId('find').focus();
+    this.strip?.update();
+    // Not the search field: it would open the keyboard of a phone over the sheet.
+    if (open) byId('sheet-close').focus();
     else if (was) byId('parameters').focus();
   }
 
   async share() {
     this.writeAddress();
+    // An address of this computer opens nowhere else: there the design itself is shared, as a text that the page opens.
+    const isLocal = location.protocol === 'file:' || ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+    const host = document.documentElement.dataset.host ?? '';
+    const address = isLocal && host ? host + location.hash : location.href;
     try {
-      await navigator.clipboard.writeText(location.href);
-      showToast(TEXT.shared);
+      await navigator.clipboard.writeText(isLocal && !host ? await this.configurationText() : address);
+      showToast(isLocal && !host ? TEXT.sharedText : TEXT.shared);
     } catch {
-      showToast(TEXT.shareByHand);
+      showToast(isLocal && !host ? TEXT.shareFileByHand : TEXT.shareByHand);
     }
+  }
+
+  // The configuration of the design as TOML.
+  async configurationText() {
+    const { values } = this.state.now;
+    return (await this.engine.request({ ask: 'design', values, quality: 'coarse', extra: true })).toml;
   }
 }
 

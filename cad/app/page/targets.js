@@ -33,23 +33,24 @@ class Targets {
       if (text) input.setAttribute('aria-invalid', 'true'); else input.removeAttribute('aria-invalid');
     };
     input.addEventListener('input', () => {
-      const [text, value] = [input.value.trim(), Number(input.value)];
-      if (text !== '' && isTarget(value)) { report(''); apply(value); return; }
+      const { value, problem } = readQuantity(input.value, 'N');
+      if (isTarget(value)) { report(''); apply(value); return; }
       // An empty threshold removes the target; an empty friction is incomplete.
-      if (text === '' && !input.validity.badInput && input.id === 'target-threshold') { report(''); apply(null); return; }
-      report(TEXT.invalidTarget(MAX_TARGET_N));
+      if (input.value.trim() === '' && input.id === 'target-threshold') { report(''); apply(null); return; }
+      report(value === undefined && problem !== TEXT.notNumber ? problem : TEXT.invalidTarget(MAX_TARGET_N));
     });
+    stepByArrows(input, 0.5, 'N', (value) => { if (isTarget(value)) apply(value); });
+    input.addEventListener('keydown', (event) => { if (event.key === 'Enter' && !byId('search').disabled) this.search(); });
     input.addEventListener('blur', () => {
-      if (!input.hasAttribute('aria-invalid')) return;
-      report('');
+      if (input.hasAttribute('aria-invalid')) report('');
       input.value = current() ?? '';
     });
   }
 
   // Shows a target, unless the focused input has the same number in another form.
   fill(input, value) {
-    const typed = input.value === '' ? null : Number(input.value);
-    if (document.activeElement === input && typed === value && !input.validity.badInput) return;
+    const typed = input.value.trim() === '' ? null : readQuantity(input.value, 'N').value;
+    if (document.activeElement === input && typed === value) return;
     input.value = value ?? '';
     if (!input.hasAttribute('aria-invalid')) return;
     input.removeAttribute('aria-invalid');
@@ -73,7 +74,7 @@ class Targets {
     const row = make('div', undefined, { class: 'target-row' });
     const labelled = (text, key) => {
       const label = make('label', text);
-      const input = make('input', undefined, { type: 'number', min: 0, step: key === 'load_n' ? 0.5 : 0.1, inputmode: 'decimal' });
+      const input = make('input', undefined, { type: 'text', class: 'number', inputmode: 'decimal', autocomplete: 'off' });
       this.listen(input, (value) => this.handles.setFriction(i, { ...this.state.now.targets.friction[i], [key]: value }), () => this.state.now.targets.friction[i]?.[key]);
       label.append(input, make('span', TEXT.units.n, { class: 'unit' }));
       return label;
@@ -100,6 +101,7 @@ class Targets {
       const answer = await this.engine.request({ ask: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
       this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), input: this.searchInput(targets, values, model) };
       byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
+      this.showBlocked(answer.blocked);
       this.showDesigns(answer.designs);
     } catch (problem) {
       byId('search-status').textContent = problem instanceof Superseded ? TEXT.stopped : problem.message;
@@ -111,8 +113,8 @@ class Targets {
     }
   }
 
-  // Everything that the result of a search depends on: all but the pins, which it varies.
-  searchInput(targets, { 'layout.pins': _, ...values }, model) { return JSON.stringify([targets, values, model?.packed ?? null]); }
+  // Everything that the result of a search depends on: all but what it varies.
+  searchInput(targets, { 'layout.pins': _, 'segment.span_deg': __, 'silicone.thickness_mm': ___, ...values }, model) { return JSON.stringify([targets, values, model?.packed ?? null]); }
 
   // Marks designs of an earlier design or of earlier targets.
   markOutdated() {
@@ -150,16 +152,38 @@ class Targets {
     const rest = [...(hasThreshold ? [] : [TEXT.switchesAt(design.threshold_n)]), TEXT.heaviest(design.friction_n)].join(', ');
     const use = button(TEXT.useDesign, () => {
       this.curve.setExtra('preview', null);
-      // Everything that the search does not vary stays unchanged.
-      const { 'layout.pins': _, ...values } = this.state.now.values;
-      const pins = design.values['layout.pins'];
-      this.state.change({ values: pins ? { ...values, 'layout.pins': pins } : values });
+      this.state.change({ values: { ...design.values } });
       showToast(TEXT.designApplied);
     }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
-    card.append(head, bar, make('p', TEXT.designPins(design.pins)), targets, make('p', rest, { class: 'dim' }), use);
+    const changes = this.changes(design.values);
+    const sources = design.uncertainty.filter((s) => s.share >= 0.01).map((s) => TEXT.sourceShare(s.source, Math.round(100 * s.share)));
+    card.append(head, bar, make('p', TEXT.designPins(design.pins)), targets, make('p', rest, { class: 'dim' }));
+    if (changes.length) card.append(make('p', changes.join(', '), { class: 'dim' }));
+    if (sources.length) card.append(make('p', TEXT.uncertain(sources), { class: 'dim' }));
+    card.append(use);
     const preview = (on) => this.curve.setExtra('preview', on ? { name: TEXT.previewCurve(i + 1), curve: design.curve } : null);
     for (const [event, on] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]]) card.addEventListener(event, () => preview(on));
     return card;
+  }
+
+  // Fields other than the pins in which a proposed design differs from the present one.
+  changes(values) {
+    const { fields } = this.state;
+    const { values: now } = this.state.now;
+    const of = (all, path) => all[path] ?? fields.get(path)?.default;
+    const paths = [...new Set([...Object.keys(values), ...Object.keys(now)])].filter((path) => fields.has(path) && !['layout.pins', 'switch.name'].includes(path));
+    return paths.filter((path) => !sameValue(of(values, path), of(now, path)))
+      .map((path) => TEXT.changedTo(fieldName(fields.get(path)), `${formatValue(of(values, path))} ${unitName(fields.get(path))}`.trim()));
+  }
+
+  // Why no design reaches all targets, and what would.
+  showBlocked(blocked) {
+    const box = byId('blocked');
+    box.hidden = !blocked;
+    if (!blocked) return;
+    const list = make('ul');
+    list.append(...blocked.help.map((help) => make('li', help)));
+    box.replaceChildren(make('p', `${blocked.problem}.`, { class: 'error' }), list);
   }
 
   spark({ load_n, friction_n }) {

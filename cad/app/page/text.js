@@ -3,14 +3,15 @@
 // they come.
 
 const TEXT = {
-  title: 'pinswitch: configure a printable friction switch',
+  title: 'pinswitch: design a pulley whose friction rises with the load',
   brand: 'pinswitch',
   skip: 'Skip the parameters',
   // Texts of elements by `data-text`, accessible names by `data-name`.
   layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
   parameters: 'Parameters', close: 'Close',
-  find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No matching parameter.',
-  intro: 'A tendon runs over steel pins in silicone. As the load grows, the pins sink, the tendon meets the silicone, and friction rises.',
+  find: 'Find a parameter', changedOnly: 'Changed', allParameters: 'All',
+  stripName: 'What the design does. Show the curve', clipboard: 'the clipboard', noField: 'No matching parameter.',
+  intro: 'A friction switch is a pulley for the tendon of a robot or a machine: slippery at light loads, holding at heavy ones. The tendon runs over steel pins in silicone; as the load grows, the pins sink and it meets the silicone. Choose pins and sizes, watch the curve, then download parts, drawings and a guide.',
   explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
   assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
   curve: 'Friction over load', load: 'Load', otherLaws: 'Other laws', keepCurve: 'Keep for comparison', clearComparison: 'Clear comparison',
@@ -42,6 +43,11 @@ const TEXT = {
   aboutField: (f, value) => `${f.reason}. Range: ${f.range}. Default: ${value}, ${f.origin}.`,
   slider: (name) => `${name}, slider`,
   unchanged: (name, value) => `${name} is still ${value}.`,
+  quantity: {
+    notNumber: (text) => `${text} is not a number. Enter a number such as 2.5 or 2,5, or a sum such as 20 + 2*1.2.`,
+    ambiguous: (text, decimal, grouped) => `${text} can be ${decimal} or ${grouped}. Enter one of them.`,
+    otherUnit: (word, unit) => `${word} cannot be converted to ${unit}.`, noUnit: (word) => `${word} is not part of a number without a unit.`,
+  },
   notNumber: 'Enter a number.', notWhole: 'Enter a whole number.', notList: 'Enter groove numbers, separated by commas: 5, 8, 11.',
   setTo: (name, value) => `Set ${name} to ${value}`,
 
@@ -58,7 +64,7 @@ const TEXT = {
   calibratedTrust: (status) => `your model, ${status}`,
   trustName: (status) => `Prediction status: ${status}. Show the reasons`,
   axisLoad: 'load (N)', axisFriction: 'friction (N)',
-  band: '95 % band', measuredPoint: 'measured', comparison: (name) => `comparison: ${name}`, more: (n) => `${n} more`, publishedConstants: 'published constants', calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
+  band: '95 % band: of 20 parts, 19 are within', predicted: (law) => `predicted (${law})`, switchHelp: 'The load at which silicone and pins carry the same friction: above it, the switch holds.', measuredPoint: 'measured in the paper', comparison: (name) => `comparison: ${name}`, more: (n) => `${n} more`, publishedConstants: 'published constants', calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
   law: (law, source) => `Law of the curve, ${law}: ${source}.`,
   thresholdCurrent: (n) => `now ${n}`, switchesAtLoad: (n) => `switches at ${n}`, target: (n) => `target: ${n}`,
   thresholdHandle: 'Target threshold', frictionHandle: (i) => `Target friction ${i}`,
@@ -82,6 +88,9 @@ const TEXT = {
 
   searching: (s) => `Searching for designs, ${s} s. You can continue to work on the page.`, searchModel: (name) => `; with the ${TEXT.modelName(name)}`, searchOutdated: 'These designs are for an earlier design or earlier targets. Find designs again for the present ones.',
   invalidTarget: (max) => `Enter a number above 0 and up to ${max} N.`, noTargets: 'First enter a load at which it should switch, or a friction.',
+  sourceShare: (source, percent) => `${source} ${percent} %`, uncertain: (sources) => `Uncertain from: ${sources.join(', ')}.`, changedTo: (name, value) => `${name} ${value}`,
+  ownPoints: (n) => `your readings (${n})`, probabilities: 'Probabilities of effects', percent: (p) => (p > 0.995 ? '> 99 %' : `${Math.round(100 * p)} %`), sizeColumns: ['effect', 'size', '95 % interval'],
+  residualsName: (most) => `Residuals over the load, up to ${most} N: those of the published model, and those of the calibrated one.`, residualsCaption: 'Residuals over the load: \u25cb published model, \u25cf calibrated model.', pointsOf: (n) => `${n} measured points; those of the design’s layout are on the curve.`,
   stopped: 'Stopped.', probability: (p) => `${p} % probable`, designPins: (pins) => (pins.length ? `pins [${pins.join(', ')}]` : 'no pins'),
   probabilityNote: (tolerance) => `Probability that a printed part is within ${formatNumber(100 * tolerance)} % of all targets.`,
   switchesAt: (n) => (n === null ? 'does not switch' : `switches at ${n.toFixed(1)} N`), heaviest: (n) => `${n.toFixed(2)} N at the heaviest load`,
@@ -121,6 +130,7 @@ const TEXT = {
   kinds: { stl: 'Printed parts, one per file', '3mf': 'All parts on a plate', step: 'CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'Viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
 
   shared: 'Address copied: it contains the whole design.', shareByHand: 'Copy the address of this page: it contains the whole design.',
+  sharedText: 'This page runs on your computer, so its address opens nowhere else. The design is copied as text: paste it on any pinswitch page, or save it as a .toml file.', shareFileByHand: 'This page runs on your computer, so its address opens nowhere else. Share the configuration (TOML) under Download.',
   templateApplied: (name, lost) => (lost ? `${name} opened. Undo restores your ${lost} changed ${lost === 1 ? 'value' : 'values'}.` : `${name} opened.`), printerApplied: (name, kept) => `${name} applied.${kept.length ? ` Your own values are kept: ${kept.join(', ')}.` : ''}`,
   opened: (file) => `${file} opened.`, notOpened: (file) => `Cannot open ${file}: `, designApplied: 'Applied. Undo to revert.',
   restored: 'Your last design is restored.',

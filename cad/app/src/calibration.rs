@@ -2,12 +2,13 @@
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{ModelFile, SessionReport, calibrate};
+use pinswitch_calibration::{EffectReport, Estimate, ModelFile, Report, SessionReport, calibrate};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::friction_words;
 use serde::Serialize;
 
 use crate::Answer;
+use crate::bench::{MeasuredPoint, Residual, points, residuals};
 use crate::refusal::Refusal;
 
 /// Largest table that is read, in megabytes: some hundred thousand rows, minutes of computation in
@@ -16,6 +17,10 @@ pub(crate) const MAX_TABLE_MB: usize = 20;
 const MAX_TABLE_BYTES: usize = MAX_TABLE_MB * 1_000_000;
 /// Seed of the interval of the expected error; it is fixed, so that a table has one result.
 const SEED: u64 = 1;
+
+/// Least probability that is shown, and most of them.
+const LEAST_PROBABILITY: f64 = 0.05;
+const MOST_PROBABILITIES: usize = 6;
 
 /// What the page shows of a calibration.
 #[derive(Serialize)]
@@ -34,8 +39,27 @@ struct Summary {
     effects: Vec<Vec<String>>,
     /// Ids of effects that are not excluded at their size of consequence.
     not_excluded: Vec<String>,
+    /// Effects of the vocabulary and structures without a name, the most probable first.
+    probabilities: Vec<(String, f64)>,
+    /// Constants of the detected effects.
+    sizes: Vec<EffectSize>,
+    /// Measured friction.
+    points: Vec<MeasuredPoint>,
+    /// Residuals before and after.
+    residuals: Vec<Residual>,
     /// The text of `model.toml`; empty for a rig without a switch: its model does not predict a part.
     model: String,
+}
+
+/// A constant of a detected effect.
+#[derive(Serialize)]
+struct EffectSize {
+    id: String,
+    name: String,
+    value: f64,
+    /// 95 % interval.
+    ci95: [f64; 2],
+    unit: String,
 }
 
 /// Whether a text is a calibrated model, or why it is refused.
@@ -82,8 +106,37 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
         adequate: report.adequate,
         effects,
         not_excluded,
+        probabilities: probabilities(report),
+        sizes: sizes(report),
+        points: points(&table),
+        residuals: residuals(&table, &calibration),
         model: if is_switch { model.to_text()? } else { String::new() },
     })
+}
+
+/// Returns effects and structures by their probability, the most probable first, of at least [`LEAST_PROBABILITY`].
+fn probabilities(report: &Report) -> Vec<(String, f64)> {
+    let effects = report.candidates.iter().map(|c| (c.id.clone(), c.probability));
+    let structures = report.structures.iter().map(|s| (s.name.clone(), s.probability));
+    let mut all: Vec<_> = effects.chain(structures).filter(|(_, p)| *p >= LEAST_PROBABILITY).collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all.truncate(MOST_PROBABILITIES);
+    all
+}
+
+/// Returns the constants of the effects of the model.
+fn sizes(report: &Report) -> Vec<EffectSize> {
+    let of = |effect: &EffectReport| {
+        let size = |(name, e): (&String, &Estimate)| EffectSize {
+            id: effect.id.clone(),
+            name: name.clone(),
+            value: e.value,
+            ci95: e.ci95,
+            unit: e.unit.clone(),
+        };
+        effect.parameters.iter().map(size).collect::<Vec<_>>()
+    };
+    report.effects.iter().flat_map(of).collect()
 }
 
 #[cfg(test)]

@@ -21,6 +21,8 @@ use crate::refusal::Refusal;
 use crate::request::{SearchRequest, Values};
 use crate::values::{changed_values, configuration};
 
+/// Most sources of uncertainty of a design.
+const MAX_SOURCES: usize = 3;
 /// Most designs that are returned, whatever the request.
 const MAX_DESIGNS: usize = 12;
 /// A third of the draws of the command line, since a person waits.
@@ -37,6 +39,8 @@ struct ProposedDesign {
     threshold_n: Option<f64>,
     /// Friction at the heaviest load, N.
     friction_n: f64,
+    /// Sources of the uncertainty, the largest first.
+    uncertainty: Vec<UncertaintySource>,
     curve: FrictionCurve,
 }
 
@@ -56,8 +60,24 @@ struct TargetValue {
 struct SearchResult {
     designs: Vec<ProposedDesign>,
     summary: String,
+    /// Why no design reaches all targets; the designs are then the nearest.
+    blocked: Option<Explanation>,
     /// Largest relative deviation from a target at which a made part still counts.
     tolerance: f64,
+}
+
+/// Why no design reaches all targets, and the changes that help.
+#[derive(Debug, Serialize)]
+struct Explanation {
+    problem: String,
+    help: Vec<String>,
+}
+
+/// A source of the uncertainty of a design, with its share of the variance.
+#[derive(Debug, Serialize)]
+struct UncertaintySource {
+    source: String,
+    share: f64,
 }
 
 /// Answers a search.
@@ -87,16 +107,14 @@ fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
     let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL_NAME.to_owned()));
     let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
     let found = search(&base, &ask, belief, options, &Silent);
-    let mut summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);
-    if found.blocked.is_some() {
-        summary.push_str("; no design reaches all targets, the nearest are shown");
-    }
+    let summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);
+    let blocked = found.blocked.as_ref().map(|b| Explanation { problem: b.problem(), help: b.help() });
     let designs = found.proposals.iter().filter_map(|proposal| design(proposal, model.as_ref())).collect();
-    Ok(SearchResult { designs, summary, tolerance: DEFAULT_WITHIN })
+    Ok(SearchResult { designs, summary, blocked, tolerance: DEFAULT_WITHIN })
 }
 
-/// Returns the targets of a request. Only the layout varies: dimensions have sliders, and would
-/// make the search many times as long.
+/// Returns the targets of a request. Without a model the search varies what that of the command line varies; a calibrated
+/// model is of one rig, whose dimensions stay.
 fn ask(request: &SearchRequest) -> Request {
     let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
     let threshold =
@@ -105,7 +123,10 @@ fn ask(request: &SearchRequest) -> Request {
         quantity: Quantity::Friction { load_n: at.load_n },
         requirement: about(at.friction_n),
     });
-    let vary = Vary { pattern: true, parameters: Vec::new() };
+    let vary = match request.model {
+        None => Vary::default(),
+        Some(_) => Vary { pattern: true, parameters: Vec::new() },
+    };
     Request { targets: threshold.into_iter().chain(friction).collect(), vary, ..Request::default() }
 }
 
@@ -122,6 +143,12 @@ fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesi
         probability: proposal.probability.all,
         threshold_n: proposal.threshold_n,
         friction_n: proposal.friction_n,
+        uncertainty: proposal
+            .uncertainty
+            .iter()
+            .take(MAX_SOURCES)
+            .map(|s| UncertaintySource { source: s.source.to_string(), share: s.share })
+            .collect(),
         curve,
     })
 }

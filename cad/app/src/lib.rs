@@ -47,6 +47,7 @@
 //! # Ok::<(), pinswitch_switch::config::ConfigError>(())
 //! ```
 
+mod bench;
 mod cache;
 mod calibrated_curve;
 mod calibrated_switch;

@@ -9,18 +9,20 @@ const UNPACK: &str = include_str!("../page/xz-decompress.min.js");
 const WORKER: &str = include_str!("../page/worker.js");
 
 /// Scripts of the page, in the order in which they are joined.
-const SCRIPTS: [&str; 20] = [
+const SCRIPTS: [&str; 22] = [
     include_str!("../page/text.js"),
     include_str!("../page/dom.js"),
     include_str!("../page/focus.js"),
     include_str!("../page/state.js"),
     include_str!("../page/engine.js"),
+    include_str!("../page/quantity.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/pins.js"),
     include_str!("../page/view.js"),
     include_str!("../page/scales.js"),
     include_str!("../page/curve.js"),
     include_str!("../page/handles.js"),
+    include_str!("../page/strip.js"),
     include_str!("../page/checks.js"),
     include_str!("../page/materials.js"),
     include_str!("../page/targets.js"),

@@ -3,15 +3,13 @@
 use std::fmt::Write;
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
+use pinswitch_switch::design_search::{Blocked, Found, Proposal};
 use pinswitch_switch::request::{Parameter, Request};
 
 /// Most sources of uncertainty that are listed.
 const MAX_SOURCES: usize = 3;
 /// Smallest share of the variance that is listed.
 const MIN_SHARE: f64 = 0.005;
-/// Most changes of one parameter that are listed.
-const MAX_MOVES: usize = 3;
 
 /// Formats the targets, and every proposal with its values, its sources of uncertainty and its sensitivities.
 pub(super) fn table(found: &Found, ask: &Request) -> String {
@@ -110,34 +108,5 @@ fn parameters(p: &Proposal, ask: &Request) -> String {
 /// Returns the diagnostic of a request that no design meets: what the nearest design misses, what blocks it, and the
 /// changes that help.
 pub(super) fn refusal(blocked: &Blocked) -> Diagnostic {
-    let problem = if blocked.missed.is_empty() {
-        "no printable design within the limits meets the request; the nearest design outside of them does"
-            .to_owned()
-    } else {
-        format!("no design meets the request; the nearest misses: {}", all_missed(&blocked.missed))
-    };
-    let mut help: Vec<String> = blocked.moves.iter().take(MAX_MOVES).map(advice).collect();
-    if !blocked.together.is_empty() {
-        let all: Vec<String> = blocked
-            .together
-            .iter()
-            .map(|c| format!("{} from {:.2} to {:.2}", c.parameter.name(), c.from, c.to))
-            .collect();
-        help.push(format!("together these meet the request: {}", all.join(", ")));
-    }
-    Diagnostic::new(format!("{problem}; blocked by {}", blocked.limit)).with_help(help.join("\n"))
-}
-
-/// Lists how far each target is from its bound, as a share of the bound.
-fn all_missed(missed: &[Missed]) -> String {
-    let one =
-        |m: &Missed| format!("{} is {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
-    missed.iter().map(one).collect::<Vec<_>>().join("; ")
-}
-
-fn advice(m: &Move) -> String {
-    let verb = if m.to > m.from { "raise" } else { "lower" };
-    let effect =
-        if m.meets { "meets the request".to_owned() } else { format!("leaves {}", all_missed(&m.missed)) };
-    format!("{verb} {} from {:.2} to {:.2}: {effect} ({})", m.parameter.name(), m.from, m.to, m.forbidden_by)
+    Diagnostic::new(blocked.problem()).with_help(blocked.help().join("\n"))
 }

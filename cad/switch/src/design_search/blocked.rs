@@ -70,6 +70,50 @@ pub struct Blocked {
     pub together: Vec<Change>,
 }
 
+/// Most changes of one parameter that an explanation lists.
+const MAX_MOVES: usize = 3;
+
+impl Blocked {
+    /// Returns the problem in a sentence: what the nearest design misses, and what blocks it.
+    pub fn problem(&self) -> String {
+        let problem = if self.missed.is_empty() {
+            "no printable design within the limits meets the request; the nearest design outside of them does"
+                .to_owned()
+        } else {
+            format!("no design meets the request; the nearest misses: {}", listed(&self.missed))
+        };
+        format!("{problem}; blocked by {}", self.limit)
+    }
+
+    /// Returns the changes that help, one sentence each.
+    pub fn help(&self) -> Vec<String> {
+        let mut help: Vec<String> = self.moves.iter().take(MAX_MOVES).map(advice).collect();
+        if !self.together.is_empty() {
+            let all: Vec<String> = self
+                .together
+                .iter()
+                .map(|c| format!("{} from {:.2} to {:.2}", c.parameter.name(), c.from, c.to))
+                .collect();
+            help.push(format!("together these meet the request: {}", all.join(", ")));
+        }
+        help
+    }
+}
+
+/// Lists how far each target is from its bound, as a share of the bound.
+fn listed(missed: &[Missed]) -> String {
+    let one =
+        |m: &Missed| format!("{} is {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
+    missed.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
+fn advice(m: &Move) -> String {
+    let verb = if m.to > m.from { "raise" } else { "lower" };
+    let effect =
+        if m.meets { "meets the request".to_owned() } else { format!("leaves {}", listed(&m.missed)) };
+    format!("{verb} {} from {:.2} to {:.2}: {effect} ({})", m.parameter.name(), m.from, m.to, m.forbidden_by)
+}
+
 /// The change of one parameter among several.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Change {

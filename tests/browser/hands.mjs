@@ -117,7 +117,7 @@ export async function searchByEnter(visit, site, { findings }) {
 
 // A person's readings are on the curve, with residuals and sizes, also after a reload.
 export async function bench(visit, site, { findings, table }) {
-  await visit.open(site.address + '#v=1&layout.pins=5,8,11');
+  await visit.open(`${site.address}#v=1&layout.pins=6,8,10&layout.substrate=abs`);
   await visit.drop('plateaus.csv', table);
   await visit.page.waitForSelector('#fit:not([hidden])', { timeout: SLOW_MS });
   await visit.check('the readings are on the curve', () => /your readings \(\d+\)/.test(document.querySelector('#legend').textContent));

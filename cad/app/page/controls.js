@@ -81,6 +81,7 @@ class Control {
       this.input = make('input', undefined, { ...attributes, type: 'text', maxlength: 200, spellcheck: 'false', autocomplete: 'off' });
       this.input.addEventListener('change', () => this.parse());
     }
+    this.input.addEventListener('focus', () => { this.atFocus = this.state.value(field.path); });
     // Text that is not a value is replaced by the value of the design when the control loses the
     // focus.
     this.input.addEventListener('blur', () => {
@@ -124,25 +125,37 @@ class Control {
 
   // Reports text that is not a value; the state does not have it.
   rejectText(problem) {
+    // Of 2,5,5 the part 2,5 was a value: the state goes back to the one before it was typed.
+    const { path } = this.field;
+    if (this.atFocus !== undefined && !sameValue(this.atFocus, this.state.value(path))) {
+      this.isRestoring = true;
+      this.state.set(path, this.atFocus);
+      this.isRestoring = false;
+    }
     this.showError(problem);
     this.hasInvalidText = true;
   }
 
   // Shows the value of the state, unless the focused input has the same number in another form.
   show() {
-    if (this.hasInvalidText) { this.hasInvalidText = false; this.showError(''); }
+    if (this.hasInvalidText && !this.isRestoring) { this.hasInvalidText = false; this.showError(''); }
     const value = this.state.value(this.field.path);
     const changed = this.state.isChanged(this.field.path);
     this.element.classList.toggle('changed', changed);
     this.resetButton.hidden = !changed;
-    if (this.field.kind === 'flag') this.input.checked = value;
-    else if (this.field.kind === 'list') this.input.value = value.join(', ');
-    else if (document.activeElement !== this.input || readQuantity(this.input.value, this.field.unit).value !== value) this.input.value = formatNumber(value, 6);
+    // The text that is being typed stays.
+    if (!this.isRestoring) this.showValue(value);
     if (this.slider) {
       this.slider.value = this.scale.position(value);
       this.slider.style.setProperty('--at', `${this.scale.position(value) / 10}%`);
       this.slider.setAttribute('aria-valuetext', `${formatNumber(value)} ${unitName(this.field)}`.trim());
     }
+  }
+
+  showValue(value) {
+    if (this.field.kind === 'flag') this.input.checked = value;
+    else if (this.field.kind === 'list') this.input.value = value.join(', ');
+    else if (document.activeElement !== this.input || readQuantity(this.input.value, this.field.unit).value !== value) this.input.value = formatNumber(value, 6);
   }
 
   explain(open = this.about.hidden) {

@@ -11,8 +11,8 @@ class Measurements {
     byId('use-model').addEventListener('click', () => this.useModel());
     byId('stop-fit').addEventListener('click', () => this.engine.stop('calibrate'));
     byId('remove-model').addEventListener('click', () => this.state.change({ model: null }));
-    this.restore();
     this.updatePreview = debounce(() => this.preview(), EXACT_DELAY_MS);
+    this.restore();
     state.addEventListener('change', () => this.show());
     this.show();
   }

@@ -74,10 +74,10 @@ export async function cardsOfAnEarlierDesign(visit, site) {
   await visit.open(`${site.address}${START}&ask.threshold_n=24`);
   await searched(visit);
   visit.findings.check('new cards belong to the present design', !(await visit.page.$('.results.outdated')));
-  await visit.type('#f-silicone-thickness_mm', '3');
+  await visit.type('#f-shell-width_mm', '16');
   await visit.check('cards of an earlier design are marked', () => document.querySelector('.results.outdated') && /earlier design or earlier targets/.test(document.querySelector('#search-status').textContent));
   await visit.click('.design button');
-  await visit.addressHas('silicone.thickness_mm=3');
+  await visit.addressHas('shell.width_mm=16');
   await visit.click('#undo');
   await visit.click('#undo');
   await visit.check('after undo they are not marked', () => !document.querySelector('.results.outdated'));
@@ -117,7 +117,7 @@ export async function invalidText(visit, site) {
   await visit.check('after blur it shows the value of the design', isValid, box);
   await visit.type('#f-segment-grooves', '17.5');
   await visit.focus('#explode');
-  await visit.check('a fraction of a groove is replaced, too', () => document.querySelector('#f-segment-grooves').value === '17' && !document.querySelector('#f-segment-grooves').hasAttribute('aria-invalid'));
+  await visit.check('a fraction of a groove changes nothing', () => document.querySelector('#f-segment-grooves').value === '15' && !document.querySelector('#f-segment-grooves').hasAttribute('aria-invalid'));
   await visit.type('#f-segment-grooves', '7');
   await visit.check('too few grooves for the pins are refused', () => document.body.classList.contains('stale'));
   await visit.click('#mirror-pins');

@@ -1,5 +1,8 @@
 // Targets of the design, the search, and the proposed designs as cards.
 
+// Fields that a search varies.
+const VARIED = ['layout.pins', 'segment.span_deg', 'silicone.thickness_mm'];
+
 class Targets {
   constructor(state, engine, curve, handles) {
     Object.assign(this, { state, engine, curve, handles });
@@ -114,7 +117,10 @@ class Targets {
   }
 
   // Everything that the result of a search depends on: all but what it varies.
-  searchInput(targets, { 'layout.pins': _, 'segment.span_deg': __, 'silicone.thickness_mm': ___, ...values }, model) { return JSON.stringify([targets, values, model?.packed ?? null]); }
+  searchInput(targets, values, model) {
+    const rest = Object.entries(values).filter(([path]) => !VARIED.includes(path));
+    return JSON.stringify([targets, rest, model?.packed ?? null]);
+  }
 
   // Marks designs of an earlier design or of earlier targets.
   markOutdated() {
@@ -152,7 +158,10 @@ class Targets {
     const rest = [...(hasThreshold ? [] : [TEXT.switchesAt(design.threshold_n)]), TEXT.heaviest(design.friction_n)].join(', ');
     const use = button(TEXT.useDesign, () => {
       this.curve.setExtra('preview', null);
-      this.state.change({ values: { ...design.values } });
+      // Everything that the search does not vary stays unchanged.
+      const values = { ...this.state.now.values };
+      for (const path of VARIED) { if (path in design.values) values[path] = design.values[path]; else delete values[path]; }
+      this.state.change({ values });
       showToast(TEXT.designApplied);
     }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
     const changes = this.changes(design.values);
@@ -171,8 +180,7 @@ class Targets {
     const { fields } = this.state;
     const { values: now } = this.state.now;
     const of = (all, path) => all[path] ?? fields.get(path)?.default;
-    const paths = [...new Set([...Object.keys(values), ...Object.keys(now)])].filter((path) => fields.has(path) && !['layout.pins', 'switch.name'].includes(path));
-    return paths.filter((path) => !sameValue(of(values, path), of(now, path)))
+    return VARIED.slice(1).filter((path) => !sameValue(of(values, path), of(now, path)))
       .map((path) => TEXT.changedTo(fieldName(fields.get(path)), `${formatValue(of(values, path))} ${unitName(fields.get(path))}`.trim()));
   }
 

@@ -50,7 +50,8 @@ class PinswitchError(ValueError):
         self.changes = changes or {}
         self.causes = causes or []
         if text is None:
-            text = problem if help is None else f"{problem}\n  help: {help}"
+            located = problem if file is None else f"{file}: {problem}"
+            text = located if help is None else f"{located}\n  help: {help}"
         super().__init__(text)
 
     def __reduce__(self) -> tuple[object, ...]:

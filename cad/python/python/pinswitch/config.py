@@ -185,7 +185,7 @@ def _read(source: str | os.PathLike[str], base: _pinswitch.Configuration | None)
         return _pinswitch.Configuration.read(text, name, base)
     near = difflib.get_close_matches(name, _pinswitch.templates(), 1, 0.0)[0]
     help = f"the nearest template is {near!r}; pinswitch.templates() lists all templates"
-    raise PinswitchError(f"{name}: no such file or template", help=help, file=name)
+    raise PinswitchError("no such file or template", help=help, file=name)
 
 
 def templates() -> list[str]:

@@ -89,7 +89,7 @@ pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 pub use curves::{
     ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveOutcome, CurveTableError, CurveTally,
-    RowOutcome, predict_rows, predict_table,
+    PredictedRow, RowOutcome, predict_rows, predict_table,
 };
 #[cfg(feature = "cloud")]
 pub use destination::Store;

@@ -31,7 +31,8 @@ def main(backend: str) -> list[float]:
     if backend == "dask":
         import dask.bag
 
-        tasks: Any = dask.bag.from_sequence(blocks, npartitions=len(blocks)).map(mean_friction_n)
+        bag: Any = dask.bag
+        tasks = bag.from_sequence(blocks, npartitions=len(blocks)).map(mean_friction_n)
         return list(tasks.compute(scheduler="processes"))
     if backend == "ray":
         import ray

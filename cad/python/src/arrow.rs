@@ -13,7 +13,7 @@ use pyo3::types::PyCapsule;
 
 use crate::error::OrRaise;
 
-/// Returns the stream of columns: arrays of float64 or int64, or sequences of text. Texts of `None` are null.
+/// Returns the stream of columns: arrays of float64 or int64, or sequences of text. NaN and `None` are null.
 #[pyfunction]
 pub(crate) fn arrow_stream<'py>(
     py: Python<'py>,
@@ -24,7 +24,14 @@ pub(crate) fn arrow_stream<'py>(
     for (name, column) in columns {
         let (kind, array): (DataType, ArrayRef) =
             if let Ok(numbers) = column.extract::<PyReadonlyArray1<'_, f64>>() {
-                (DataType::Float64, Arc::new(Float64Array::from(numbers.to_vec()?)))
+                // A number that is missing in a table is NaN in numpy and null in Arrow.
+                let numbers = numbers.to_vec()?;
+                let numbers: Float64Array = if numbers.iter().any(|number| number.is_nan()) {
+                    numbers.into_iter().map(|number| Some(number).filter(|number| !number.is_nan())).collect()
+                } else {
+                    Float64Array::from(numbers)
+                };
+                (DataType::Float64, Arc::new(numbers))
             } else if let Ok(numbers) = column.extract::<PyReadonlyArray1<'_, i64>>() {
                 (DataType::Int64, Arc::new(Int64Array::from(numbers.to_vec()?)))
             } else {

@@ -59,6 +59,8 @@ def test_frames_take_tables_by_arrow(config: pinswitch.Config) -> None:
         assert np.array_equal(np.asarray(frame["friction_N"]), curve.friction_n)
     texts = pinswitch.Table({"a": np.array(["x", None], dtype=object), "b": np.array([1, 2])})
     assert polars.DataFrame(texts).rows() == [("x", 1), (None, 2)]
+    numbers = pinswitch.Table({"a": np.array([1.5, np.nan])})
+    assert polars.DataFrame(numbers).rows() == [(1.5,), (None,)]
 
 
 INPUTS: list[Any] = [

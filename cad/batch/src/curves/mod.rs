@@ -237,16 +237,18 @@ pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveOutcome, Curv
     Ok(CurveOutcome { tally, existing })
 }
 
-/// Predicts every row in memory; returns the values of each row, as its fields accept them, with its outcome. Rows keep
-/// their order. The format, the lock policy and the identity of the law have no effect. Returns `None` if `stop` returns
-/// true, which is called after each block.
+/// The values of a row, as its fields accept them, and its outcome.
+pub type PredictedRow = (Vec<Value>, RowOutcome);
+
+/// Predicts every row in memory; rows keep their order. The lock policy and the identity of the law have no effect.
+/// Returns `None` if `stop` returns true, which is called after each block.
 ///
 /// # Errors
 /// [`CurveTableError`] if the table is damaged or no threads can be started.
 pub fn predict_table(
     job: &CurveJob<'_>,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Vec<(Vec<Value>, RowOutcome)>>, CurveTableError> {
+) -> Result<Option<Vec<PredictedRow>>, CurveTableError> {
     let pool = Pool::new(job.threads).map_err(CurveTableError::Threads)?;
     let predictor = Predictor {
         job,

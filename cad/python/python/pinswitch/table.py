@@ -22,7 +22,7 @@ SHOWN = 12
 
 
 class Table:
-    """Columns of equal length: float64, int64, or objects that are ``str`` or ``None``.
+    """Columns of equal length: float64, int64, or objects that are ``str`` or ``None``. A missing number is NaN.
 
     Any library that reads Arrow takes a table without a conversion through Python objects: it implements the
     `PyCapsule protocol <https://arrow.apache.org/docs/format/CDataInterface/PyCapsuleInterface.html>`_.
@@ -71,7 +71,7 @@ class Table:
         return Table({**self._columns, name: np.asarray(values)})
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Return the table as an Arrow stream. A requested schema is ignored, which the protocol allows."""
+        """Return the table as an Arrow stream, in which NaN is null. A requested schema is ignored, which the protocol allows."""
         def native(column: Column) -> object:
             if column.dtype.kind == "f":
                 return np.ascontiguousarray(column, dtype=np.float64)

@@ -20,7 +20,7 @@ use crate::write::SetFolder;
 
 /// Wrap angles of the table of a finger, from the straight to the flexed one.
 const WRAPS: u32 = 15;
-/// Smallest wrap angle of a table, degrees: without wrap there is no friction.
+/// Smallest wrap angle of a table, degrees. Hosts interpolate to zero friction at zero wrap.
 const LEAST_WRAP_DEG: f64 = 2.0;
 /// Most models of a distribution.
 const MOST_DRAWS: i64 = 10_000;

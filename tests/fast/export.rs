@@ -11,7 +11,7 @@ fn table(folder: &std::path::Path) -> Value {
 fn tables_contain_the_curve() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    done(&pinswitch(path, &["export", "three-double", "--to", "fmu", "--out", "unit"]));
+    done(path, &["export", "three-double", "--to", "fmu", "--out", "unit"]);
     let (table, curve) = (table(&path.join("unit")), json(path, &["predict", "three-double", "--json"]));
     assert_eq!(table["load_n"], curve["load_n"]);
     assert_eq!(table["eccentric_n"][0], curve["eccentric_n"]);
@@ -26,7 +26,7 @@ fn fingers_have_a_table_over_the_wrap() {
     let export = |out: &str, more: &[&str]| {
         let arguments =
             ["export", "three-double", "--set", "friction.points=5", "--to", "mujoco", "--out", out];
-        done(&pinswitch(path, &[&arguments[..], more].concat()));
+        done(path, &[&arguments[..], more].concat());
         table(&path.join(out))
     };
     let finger = export("finger", &["--draws", "2", "--flexion", "60"]);

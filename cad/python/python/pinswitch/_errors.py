@@ -58,6 +58,10 @@ class PinswitchError(ValueError):
         return (_restored, (self.__dict__.copy(), self.args[0]))
 
 
+# The name under which users import it.
+PinswitchError.__module__ = "pinswitch"
+
+
 def _restored(fields: dict[str, object], text: str) -> PinswitchError:
     error = PinswitchError("", text=text)
     error.__dict__.update(fields)

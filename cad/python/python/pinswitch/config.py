@@ -43,8 +43,8 @@ class Config(Sections):
     >>> config.shell.width_mm = -1
     Traceback (most recent call last):
     ...
-    pinswitch._errors.PinswitchError: shell.width_mm = -1: outside 4 to 40
-      help: give a number from 4 to 40
+    pinswitch.PinswitchError: shell.width_mm = -1: outside 2 to 100
+      help: give a number from 2 to 100
     """
 
     _native: _pinswitch.Configuration

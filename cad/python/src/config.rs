@@ -25,6 +25,9 @@ pub(crate) struct Configuration {
     assigned: BTreeSet<String>,
 }
 
+/// A field with its old value, its new value, and the reason.
+type ChangedField = (String, String, String, String);
+
 /// Returns the parameter at `table.key`.
 fn parameter(path: &str) -> Result<&'static Parameter<Values>, Diagnostic> {
     let find = |path: &str| Values::PARAMETERS.iter().find(|parameter| parameter.path() == path);
@@ -140,7 +143,7 @@ impl Configuration {
     }
 
     /// Returns the nearest valid configuration, with the changes as (field, old, new, reason).
-    fn repaired(&self, py: Python<'_>) -> PyResult<(Self, Vec<(String, String, String, String)>)> {
+    fn repaired(&self, py: Python<'_>) -> PyResult<(Self, Vec<ChangedField>)> {
         let proposal = py.detach(|| feasibility::repair(&self.values)).or_raise(py)?;
         let Some(proposal) = proposal else { return Ok((self.clone(), Vec::new())) };
         let changes = proposal.changes.into_iter().map(|c| (c.field, c.from, c.to, c.reason)).collect();

@@ -20,6 +20,9 @@ use crate::curve::Curve;
 use crate::error::{OrRaise, exception, json};
 use crate::task;
 
+/// Vertices and triangles.
+type MeshArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+
 /// A built switch.
 #[pyclass(module = "pinswitch._pinswitch", frozen)]
 pub(crate) struct Parts {
@@ -61,10 +64,7 @@ impl Parts {
     }
 
     /// Returns vertices (n, 3) in mm and triangles (m, 3) of the print mesh of a part, over the memory of the mesh.
-    fn mesh<'py>(
-        slf: &Bound<'py, Self>,
-        name: &str,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
+    fn mesh<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<MeshArrays<'py>> {
         let py = slf.py();
         let mesh = &slf.get().part(py, name)?.print_mesh;
         let failed = |_| exception(py, Diagnostic::new("the mesh is not an array"));

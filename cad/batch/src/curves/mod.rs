@@ -495,6 +495,30 @@ mod tests {
     }
 
     #[test]
+    fn tables_in_memory_keep_their_rows() {
+        let mut base = Configuration::default();
+        pinswitch_switch::config::assign(&mut base, "friction.points=2").unwrap();
+        let (table, done) = (table(), AtomicU64::new(0));
+        let job = CurveJob {
+            table: &table,
+            base: &base,
+            law: None,
+            threads: 2,
+            policy: LockPolicy::Refuse,
+            progress: &|rows| {
+                done.fetch_add(rows, Ordering::Relaxed);
+            },
+        };
+        let rows = predict_table(&job, &|| false).unwrap().unwrap();
+        assert_eq!((rows.len(), done.load(Ordering::Relaxed)), (610, 610));
+        for (i, (values, outcome)) in rows.iter().enumerate() {
+            assert_eq!(values[0].to_string().trim(), format!("[{}]", 5 + i % 2));
+            assert_eq!(matches!(outcome, RowOutcome::Refused(_)), i % 7 == 3, "row {i}");
+        }
+        assert!(predict_table(&job, &|| true).unwrap().is_none(), "stopped");
+    }
+
+    #[test]
     fn one_run_writes_at_a_time() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("t.csv");

@@ -17,6 +17,19 @@ use pinswitch_switch::prediction::loads_n;
 /// A [`Diagnostic`] if the model is invalid, if a pin lacks a counterpart on the rig, or if nothing
 /// touches.
 pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Result<FrictionCurve, Diagnostic> {
+    calibrated_curve_at(design, model, name, &loads_n(design))
+}
+
+/// Returns the curve as [`calibrated_curve`], at ascending `loads_n` in newtons.
+///
+/// # Errors
+/// As [`calibrated_curve`].
+pub fn calibrated_curve_at(
+    design: &Design,
+    model: &ModelFile,
+    name: &str,
+    loads_n: &[f64],
+) -> Result<FrictionCurve, Diagnostic> {
     let configuration = design.configuration();
     let (layout, grooves) = (&configuration.layout.pins, configuration.segment.grooves);
     let pins = rig_grooves(layout, grooves).ok_or_else(|| {
@@ -28,11 +41,10 @@ pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Resul
         .with_location(Location::field("layout.pins", format!("{layout:?}")))
         .with_help("use the published constants, without a model")
     })?;
-    let loads_n = loads_n(design);
     let substrate = design.contact().substrate();
-    let curve = model.part_curve(substrate, &pins, &loads_n, name)?;
+    let curve = model.part_curve(substrate, &pins, loads_n, name)?;
     let rig = rig_contact(design.contact(), &pins).map_err(|e| Diagnostic::from(e).or_in_file(name))?;
-    let transfer = Transfer::between(&rig, design.contact(), &loads_n).map_err(Diagnostic::from)?;
+    let transfer = Transfer::between(&rig, design.contact(), loads_n).map_err(Diagnostic::from)?;
     Ok(transfer.apply(curve))
 }
 

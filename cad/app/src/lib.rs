@@ -73,7 +73,7 @@ use files::FileSet;
 use request::Request;
 use serde::Serialize;
 
-pub use calibrated_curve::calibrated_curve;
+pub use calibrated_curve::{calibrated_curve, calibrated_curve_at};
 pub use calibrated_switch::CalibratedSwitch;
 pub use request::Values;
 pub use values::{changed_values, configuration};

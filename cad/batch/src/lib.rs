@@ -44,7 +44,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`predict_rows`] predicts the curves of a [`ConfigurationTable`] without making parts.
+//! [`predict_rows`] predicts the curves of a [`ConfigurationTable`] without making parts;
+//! [`predict_table`] does so in memory.
 //!
 //! [`run`] makes the variants at a [`Destination`]; `cad/examples/sweep.rs` is a complete program.
 //! `cad/doc/batch.md` describes the files of a batch, how it is resumed and distributed, and what
@@ -88,7 +89,7 @@ pub use constraint::{Constraint, Violation};
 pub use content::{MeshMaker, mesh_file};
 pub use curves::{
     ConfigurationTable, CurveFormat, CurveFunction, CurveJob, CurveOutcome, CurveTableError, CurveTally,
-    predict_rows,
+    PredictedRow, RowOutcome, predict_rows, predict_table,
 };
 #[cfg(feature = "cloud")]
 pub use destination::Store;

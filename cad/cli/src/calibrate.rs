@@ -11,11 +11,11 @@ use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ExternalInput, ModelFile, ProvenanceReport, SessionPlan, SessionReport, calibrate,
-    calibrate_below, explain_published,
+    Calibration, ExternalInput, ProvenanceReport, SessionPlan, SessionReport, calibrate, calibrate_below,
+    explain_published,
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
-use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};
+use pinswitch_report::{UNEXPLAINED, calibration_files, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
 
 use super::terminal::to_json;
@@ -234,33 +234,10 @@ fn published(out: &Path) -> Result<(), Failure> {
 
 /// Makes every file in memory, before the first one is written.
 fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<Vec<OutputFile>, Failure> {
-    let Calibration { evidence, baseline, augmented, .. } = calibration;
-    let toml = |fitted| ModelFile::new(fitted).to_text().map_err(Failure::failed);
-    let plots = plots(calibration).map_err(Failure::failed)?;
-    let title =
-        std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let html = page(&title, calibration, &plots);
-    let residual = |predicted: &[f64]| -> Vec<f64> {
-        table.rows.iter().zip(predicted).map(|(row, predicted)| row.force_n - predicted).collect()
-    };
-    let residuals = table.with_columns(
-        &["baseline_N", "residual_baseline_N", "model_N", "residual_model_N", "weight"],
-        &[
-            baseline.predicted_n.clone(),
-            residual(&baseline.predicted_n),
-            augmented.predicted_n.clone(),
-            residual(&augmented.predicted_n),
-            evidence.weights(),
-        ],
-        5,
-    );
-    let mut files = vec![
-        OutputFile { name: "report.html".to_owned(), bytes: html.into_bytes() },
-        OutputFile { name: "residuals.csv".to_owned(), bytes: residuals.into_bytes() },
-        OutputFile { name: "baseline.toml".to_owned(), bytes: toml(baseline)?.into_bytes() },
-        OutputFile { name: "model.toml".to_owned(), bytes: toml(augmented)?.into_bytes() },
-    ];
-    files.extend(plots.into_iter().map(|p| OutputFile { name: p.file, bytes: p.svg.into_bytes() }));
+    let title = Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let files = calibration_files(&title, table, calibration).map_err(Failure::failed)?;
+    let mut files: Vec<OutputFile> =
+        files.into_iter().map(|(name, bytes)| OutputFile { name, bytes }).collect();
     files.push(OutputFile { name: "report.json".to_owned(), bytes: to_json(&calibration.report)? });
     Ok(files)
 }

@@ -43,7 +43,7 @@ const SEED: u64 = 1;
 #[command(after_help = "Commands by task:
   make parts        generate, init, layouts, view, render
   make many         batch, merge
-  predict           predict, physics, finger
+  predict           predict, physics, finger, export
   design            design
   check meshes      check
   use measurements  import, segment, calibrate, experiment, effects, simulate, power
@@ -88,6 +88,7 @@ commands! {
     Predict: predict,
     Design: design,
     Finger: finger,
+    Export: export,
     Physics: physics,
     View: view,
     Check: check,

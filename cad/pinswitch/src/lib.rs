@@ -19,6 +19,7 @@
 //! | [`switch`] | configurations, rules, parts, sets and their documents, the search for designs |
 //! | [`batch`] | sweeps of many switches, made in parallel and resumed after an interruption |
 //! | [`slicer`] | print time and filament from an installed slicer |
+//! | [`robot`] | models of a switch for robot simulators: MuJoCo, URDF, FMI |
 //! | [`report`] | figures of curves, layouts and calibrations as SVG and HTML |
 //! | [`diagnostic`] | errors with a location, a problem and a help |
 //!
@@ -65,6 +66,7 @@ pub use pinswitch_formula as formula;
 pub use pinswitch_friction as friction;
 pub use pinswitch_import as import;
 pub use pinswitch_report as report;
+pub use pinswitch_robot as robot;
 pub use pinswitch_simulation as simulation;
 pub use pinswitch_slicer as slicer;
 pub use pinswitch_solid as solid;

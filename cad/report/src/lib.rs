@@ -55,6 +55,7 @@
 #![warn(clippy::disallowed_methods)]
 
 mod calibration;
+mod calibration_files;
 mod calibration_page;
 mod contact;
 mod effect_words;
@@ -72,6 +73,7 @@ mod scale;
 mod text_size;
 
 pub use calibration::{Plot, plots};
+pub use calibration_files::calibration_files;
 pub use calibration_page::page;
 pub use contact::contact_svg;
 pub use effect_words::{

@@ -44,6 +44,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+pub mod file_check;
 pub mod files;
 pub mod mesh;
 mod parallel;

@@ -4,7 +4,7 @@
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substrate, published};
 
-use crate::model::{Noise, prediction_sd_n};
+use crate::model::{Model, Noise, prediction_sd_n};
 use crate::model_check::check_friction;
 use crate::model_file::ModelFile;
 use crate::table::{Frame, Labels, PlateauRow, Point, Sweep, Unknown};
@@ -137,18 +137,7 @@ impl ModelFile {
             .iter()
             .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))
             .collect();
-        let mut known = self.model(file)?;
-        if z.iter().any(|z| *z != 0.0) {
-            let covariance = self.covariance();
-            let n = covariance.nrows();
-            // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance
-            // singular.
-            let parts = nalgebra::SymmetricEigen::new(covariance);
-            for (j, z) in z.iter().take(n).enumerate() {
-                let sd = parts.eigenvalues[j].max(0.0).sqrt();
-                (0..n).for_each(|i| known.coordinates[i] += parts.eigenvectors[(i, j)] * sd * z);
-            }
-        }
+        let known = self.drawn_model(z, file)?;
         let mut frame = known.frame.clone();
         frame.extend(&rows[0]);
         let model = known.in_frame(frame);
@@ -157,6 +146,38 @@ impl ModelFile {
         let n = loads_n.len();
         let friction_n = (0..n).map(|i| 0.5 * (tension[n + i] - tension[i])).collect();
         Ok((friction_n, model.silicone_share(&points[..n])))
+    }
+
+    /// Returns the names and units of the constants, with their values for constants drawn from their covariance
+    /// with standard normal variates `z`, as in [`Self::drawn_part`].
+    ///
+    /// # Errors
+    /// As [`ModelFile::model`].
+    pub fn drawn_constants(
+        &self,
+        z: &[f64],
+        file: &str,
+    ) -> Result<Vec<(String, &'static str, f64)>, Diagnostic> {
+        let model = self.drawn_model(z, file)?;
+        let named = model.names().into_iter().zip(model.values());
+        Ok(named.map(|((name, unit), value)| (name, unit, value)).collect())
+    }
+
+    /// Returns the model with constants drawn from their covariance with standard normal variates `z`.
+    fn drawn_model(&self, z: &[f64], file: &str) -> Result<Model, Diagnostic> {
+        let mut model = self.model(file)?;
+        if z.iter().any(|z| *z != 0.0) {
+            let covariance = self.covariance();
+            let n = covariance.nrows();
+            // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance
+            // singular.
+            let parts = nalgebra::SymmetricEigen::new(covariance);
+            for (j, z) in z.iter().take(n).enumerate() {
+                let sd = parts.eigenvalues[j].max(0.0).sqrt();
+                (0..n).for_each(|i| model.coordinates[i] += parts.eigenvectors[(i, j)] * sd * z);
+            }
+        }
+        Ok(model)
     }
 
     fn row(&self, substrate: Substrate, pins: &[usize], load_n: f64, direction: Direction) -> PlateauRow {

@@ -22,9 +22,10 @@ const CURVE: [(&str, ColumnType); 5] = [
 const LOAD: [&str; 7] =
     ["load_N", "eccentric_N", "concentric_N", "friction_N", "band_low_N", "band_high_N", "silicone_share"];
 
-/// What became of a row.
+/// The outcome of a row.
 #[derive(Clone, Debug)]
-pub(super) enum RowOutcome {
+pub enum RowOutcome {
+    /// Its curve.
     Predicted(FrictionCurve),
     /// Its configuration is invalid, or the law does not apply to it.
     Refused(Diagnostic),

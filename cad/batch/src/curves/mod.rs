@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml_edit::Value;
 
+pub use columns::RowOutcome;
 pub use configurations::ConfigurationTable;
 
 use crate::axis::accepted;
@@ -33,7 +34,6 @@ use crate::parallel::{self, Pool};
 use crate::prediction_cache::PredictionCache;
 use crate::table::Column;
 use crate::table_files::{BatchTableError, CsvTable, ParquetTable};
-use columns::RowOutcome;
 use work_folder::{FinishedBlock, FinishedOutput, WorkFolder};
 
 /// Most rows of a block: after a run is killed, at most this many per thread are predicted again.
@@ -237,6 +237,41 @@ pub fn predict_rows(job: &CurveJob<'_>, out: &Path) -> Result<CurveOutcome, Curv
     Ok(CurveOutcome { tally, existing })
 }
 
+/// The values of a row, as its fields accept them, and its outcome.
+pub type PredictedRow = (Vec<Value>, RowOutcome);
+
+/// Predicts every row in memory; rows keep their order. The lock policy and the identity of the law have no effect.
+/// Returns `None` if `stop` returns true, which is called after each block.
+///
+/// # Errors
+/// [`CurveTableError`] if the table is damaged or no threads can be started.
+pub fn predict_table(
+    job: &CurveJob<'_>,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Vec<PredictedRow>>, CurveTableError> {
+    let pool = Pool::new(job.threads).map_err(CurveTableError::Threads)?;
+    let predictor = Predictor {
+        job,
+        format: CurveFormat::Csv,
+        columns: Vec::new(),
+        predictions: PredictionCache::default(),
+    };
+    let mut reader = job.table.reader().map_err(CurveTableError::Input)?;
+    let block = job.block_rows() * (BLOCKS_PER_THREAD * pool.threads()) as u64;
+    let (mut rows, mut start) = (Vec::new(), 0);
+    while start < job.table.count() {
+        let end = job.table.count().min(start + block);
+        let values = reader.take(start..end).map_err(CurveTableError::Input)?;
+        rows.extend(pool.install(|| parallel::map(&values, |values| predictor.outcome(values))));
+        (job.progress)(end - start);
+        start = end;
+        if stop() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(rows))
+}
+
 /// Returns the totals of blocks.
 fn total(blocks: &BTreeMap<u64, FinishedBlock>) -> CurveTally {
     let mut tally = CurveTally::default();
@@ -308,12 +343,7 @@ impl Predictor<'_> {
         let row = |index: &u64| {
             let values = usize::try_from(index - block.start).ok().and_then(|i| block.rows.get(i));
             let values = values.map(Vec::as_slice).unwrap_or_default();
-            // A panic in one row must not fail the others.
-            let outcome = catch_unwind(AssertUnwindSafe(|| self.row(values))).unwrap_or_else(|_| {
-                let bug = Diagnostic::new("internal error (panic)");
-                (values.to_vec(), RowOutcome::Failed(bug.with_help("please report the configuration")))
-            });
-            (*index, outcome)
+            (*index, self.outcome(values))
         };
         let indices: Vec<u64> = (block.start..block.start + block.rows.len() as u64).collect();
         let rows = parallel::map(&indices, row);
@@ -347,6 +377,14 @@ impl Predictor<'_> {
             }
         };
         Ok((bytes, tally))
+    }
+
+    /// Predicts a row; a panic in it does not fail the other rows.
+    fn outcome(&self, values: &[Value]) -> (Vec<Value>, RowOutcome) {
+        catch_unwind(AssertUnwindSafe(|| self.row(values))).unwrap_or_else(|_| {
+            let bug = Diagnostic::new("internal error (panic)");
+            (values.to_vec(), RowOutcome::Failed(bug.with_help("please report the configuration")))
+        })
     }
 
     /// Predicts a row. Also returns its values, converted to the types of their fields where these accept them.
@@ -454,6 +492,30 @@ mod tests {
             text.records().map(|r| r.unwrap().iter().map(str::to_owned).collect()).collect();
         assert_eq!(csv.len(), 2 * 523 + 87);
         assert_eq!(csv, parquet);
+    }
+
+    #[test]
+    fn tables_in_memory_keep_their_rows() {
+        let mut base = Configuration::default();
+        pinswitch_switch::config::assign(&mut base, "friction.points=2").unwrap();
+        let (table, done) = (table(), AtomicU64::new(0));
+        let job = CurveJob {
+            table: &table,
+            base: &base,
+            law: None,
+            threads: 2,
+            policy: LockPolicy::Refuse,
+            progress: &|rows| {
+                done.fetch_add(rows, Ordering::Relaxed);
+            },
+        };
+        let rows = predict_table(&job, &|| false).unwrap().unwrap();
+        assert_eq!((rows.len(), done.load(Ordering::Relaxed)), (610, 610));
+        for (i, (values, outcome)) in rows.iter().enumerate() {
+            assert_eq!(values[0].to_string().trim(), format!("[{}]", 5 + i % 2));
+            assert_eq!(matches!(outcome, RowOutcome::Refused(_)), i % 7 == 3, "row {i}");
+        }
+        assert!(predict_table(&job, &|| true).unwrap().is_none(), "stopped");
     }
 
     #[test]

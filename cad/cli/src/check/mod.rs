@@ -1,19 +1,16 @@
 //! `pinswitch check FILE…`.
 
-mod format;
-mod judgement;
-mod verdict;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 
-use std::path::PathBuf;
-
-use clap::Args;
+use clap::{Args, ValueEnum};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use rayon::prelude::*;
 
 use super::{Failure, print_json, print_text};
-use judgement::{Judgement, Purpose, Status};
+use pinswitch_solid::file_check::{Judgement, Purpose, Status, Verdict};
 use pinswitch_solid::validity::{Expectation, Level};
-use verdict::Verdict;
 
 /// Check whether STL and 3MF files from any program are valid printable solids.
 ///
@@ -46,10 +43,28 @@ pub(super) struct Arguments {
     strict: bool,
     /// Judge the files only for this purpose; without it, for both.
     #[arg(long = "for", value_name = "PURPOSE")]
-    purpose: Option<Purpose>,
+    purpose: Option<PurposeName>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// What a file is judged for.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PurposeName {
+    /// Whether a slicer prints the part
+    Print,
+    /// Whether the file conforms to the specification of its format
+    Spec,
+}
+
+impl From<PurposeName> for Purpose {
+    fn from(name: PurposeName) -> Self {
+        match name {
+            PurposeName::Print => Self::Print,
+            PurposeName::Spec => Self::Spec,
+        }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -63,8 +78,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let expected =
         Expectation { bodies: arguments.bodies, min_wall_mm: arguments.min_wall, ..Expectation::default() };
     let level = if arguments.strict { Level::Warning } else { Level::Error };
-    let judgement = Judgement { purpose: arguments.purpose, level };
-    let verdict = |file: &PathBuf| Verdict::of_file(file, &expected, judgement);
+    let judgement = Judgement { purpose: arguments.purpose.map(Purpose::from), level };
+    let verdict = |file: &PathBuf| check_file(file, &expected, judgement);
     let outcomes: Vec<_> = arguments.files.par_iter().map(verdict).collect();
     let mut verdicts = Vec::new();
     let mut unjudged = Vec::new();
@@ -98,6 +113,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             verdicts.len()
         )))),
     }
+}
+
+/// Reads and examines a file.
+///
+/// # Errors
+/// A diagnostic if the file cannot be examined.
+fn check_file(file: &Path, expected: &Expectation, judgement: Judgement) -> Result<Verdict, Diagnostic> {
+    let unreadable = |error: std::io::Error| {
+        Diagnostic::new(format!("cannot read the file: {error}"))
+            .with_help("give a file that exists and can be read")
+    };
+    // Opening a pipe or a device could wait for ever.
+    let metadata = std::fs::metadata(file).map_err(unreadable)?;
+    if metadata.is_dir() {
+        return Err(Diagnostic::new("the path is a folder").with_help("give the files in it"));
+    }
+    if !metadata.is_file() {
+        return Err(Diagnostic::new("the path is not a regular file").with_help("give an STL or a 3MF"));
+    }
+    let mut reader = BufReader::new(File::open(file).map_err(unreadable)?);
+    Verdict::read(&mut reader, metadata.len(), file.display().to_string(), expected, judgement)
 }
 
 /// The diagnostic of a file whose checks exceed a bound.

@@ -1,12 +1,11 @@
 //! Verdicts: the outcome of the check of a file, and of each part of a file that contains several.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::io::{BufRead, Seek};
 
 use pinswitch_diagnostic::{Diagnostic, excerpt, neutral_line};
-use pinswitch_solid::validity::{Examination, Expectation, Fault, Level, MeshFacts};
 use serde::Serialize;
+
+use crate::validity::{Examination, Expectation, Fault, Level, MeshFacts};
 
 use super::format::{self, Format, unreadable};
 use super::judgement::{Judgement, Status};
@@ -18,14 +17,15 @@ const MAX_PARTS: usize = 100;
 
 /// The outcome of the check of one file; its facts are the sums over its parts.
 #[derive(Debug, Serialize)]
-pub(super) struct Verdict {
+pub struct Verdict {
     file: String,
     format: &'static str,
     valid: bool,
     /// Whether all checks that count are complete, or a fault is known.
     judged: bool,
+    /// The outcome.
     #[serde(skip)]
-    pub(super) status: Status,
+    pub status: Status,
     #[serde(flatten)]
     examination: Examination,
     /// Objects of a 3MF.
@@ -35,18 +35,19 @@ pub(super) struct Verdict {
 
 /// The outcome of the check of one part of a file.
 #[derive(Debug, Serialize)]
-pub(super) struct PartVerdict {
+pub struct PartVerdict {
     name: String,
     valid: bool,
+    /// The outcome.
     #[serde(skip)]
-    pub(super) status: Status,
+    pub status: Status,
     #[serde(flatten)]
     examination: Examination,
 }
 
 impl PartVerdict {
     /// The verdict on an object of a 3MF.
-    pub(super) fn new(name: String, mut examination: Examination, judgement: Judgement) -> Self {
+    pub fn new(name: String, mut examination: Examination, judgement: Judgement) -> Self {
         judgement.apply(&mut examination.faults, true);
         let status = judgement.status(&examination);
         Self { name, valid: status == Status::Valid, status, examination }
@@ -54,34 +55,27 @@ impl PartVerdict {
 }
 
 impl Verdict {
-    /// Reads and examines a file of any supported format.
+    /// Reads and examines a file of any supported format. `name` is its name in the verdict, and `bytes` its
+    /// length.
     ///
     /// # Errors
-    /// A diagnostic if the file cannot be examined.
-    pub(super) fn of_file(
-        file: &Path,
+    /// A diagnostic if the file is of another format, damaged, or too long to be examined.
+    pub fn read(
+        reader: &mut (impl BufRead + Seek),
+        bytes: u64,
+        name: String,
         expected: &Expectation,
         judgement: Judgement,
     ) -> Result<Self, Diagnostic> {
-        // Opening a pipe or a device could wait for ever.
-        let metadata = std::fs::metadata(file).map_err(unreadable)?;
-        if metadata.is_dir() {
-            return Err(Diagnostic::new("the path is a folder").with_help("give the files in it"));
-        }
-        if !metadata.is_file() {
-            return Err(Diagnostic::new("the path is not a regular file").with_help("give an STL or a 3MF"));
-        }
-        let mut reader = BufReader::new(File::open(file).map_err(unreadable)?);
         let format = Format::detect(reader.fill_buf().map_err(unreadable)?)?;
-        let (bytes, most) = (metadata.len(), format.max_bytes());
+        let most = format.max_bytes();
         if bytes > most {
             return Err(Diagnostic::new(format!("the file has {bytes} bytes, at most {most} are examined"))
                 .with_help("export it with a coarser mesh"));
         }
-        let name = file.display().to_string();
         match format {
             Format::Stl => {
-                let mut examination = format::stl(&mut reader, expected)?;
+                let mut examination = format::stl(reader, expected)?;
                 judgement.apply(&mut examination.faults, false);
                 let status = judgement.status(&examination);
                 Ok(Self::new(name, format, status, examination, Vec::new()))
@@ -126,7 +120,7 @@ impl Verdict {
     }
 
     /// The bounds that prevented a judgement.
-    pub(super) fn bounds(&self) -> Vec<String> {
+    pub fn bounds(&self) -> Vec<String> {
         let examinations = self.parts.iter().map(|part| &part.examination).chain([&self.examination]);
         let checks = examinations.flat_map(|examination| &examination.incomplete);
         let mut bounds: Vec<_> = checks.map(|one| format!("{}: {}", one.check, one.bound)).collect();
@@ -139,7 +133,7 @@ impl Verdict {
     ///
     /// Names and faults contain text of the file, which may act on a terminal: control characters
     /// become visible.
-    pub(super) fn describe(&self) -> String {
+    pub fn describe(&self) -> String {
         let mut text = format!("{}: {}\n", shown(&self.file), summary(self.status, &self.examination));
         // Parts with findings come first if not all are printed.
         let mut parts: Vec<_> = self.parts.iter().collect();

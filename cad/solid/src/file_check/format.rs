@@ -3,8 +3,9 @@
 use std::io::{BufRead, Read, Seek};
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_solid::files::{PlacedMesh, StlFile, read_stl, read_three_mf};
-use pinswitch_solid::validity::{
+
+use crate::files::{PlacedMesh, StlFile, read_stl, read_three_mf};
+use crate::validity::{
     Allowance, Examination, Expectation, Fault, Incomplete, Level, examine, examine_within, shared_place,
 };
 

@@ -1,24 +1,24 @@
 //! Which faults make a file invalid: the purpose that it is judged for, and the level that counts.
 
-use clap::ValueEnum;
-use pinswitch_solid::validity::{Examination, Fault, Level};
+use crate::validity::{Examination, Fault, Level};
 
 /// What a file is judged for. Without a purpose, a file must be printable and conform to its
 /// specification.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Purpose {
-    /// Whether a slicer prints the part
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Whether a slicer prints the part.
     Print,
-    /// Whether the file conforms to the specification of its format
+    /// Whether the file conforms to the specification of its format.
     Spec,
 }
 
 /// How faults are judged.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Judgement {
-    pub(super) purpose: Option<Purpose>,
+pub struct Judgement {
+    /// Purpose; both without one.
+    pub purpose: Option<Purpose>,
     /// Least level that makes a file invalid.
-    pub(super) level: Level,
+    pub level: Level,
 }
 
 /// Checks of a package that change the part which a slicer prints.
@@ -41,7 +41,7 @@ const MESH: [&str; 9] = [
 
 impl Judgement {
     /// Sets the levels of the faults of a file as a whole, or of a part of a 3MF.
-    pub(super) fn apply(self, faults: &mut [Fault], is_three_mf: bool) {
+    pub fn apply(self, faults: &mut [Fault], is_three_mf: bool) {
         for fault in faults {
             if is_three_mf && fault.paragraph.is_none() && MESH.contains(&fault.check) {
                 fault.paragraph = Some("3MF core 4.1");
@@ -72,12 +72,12 @@ impl Judgement {
     }
 
     /// Whether a fault of this kind makes a file invalid.
-    pub(super) fn counts(self, fault: &Fault) -> bool {
+    pub fn counts(self, fault: &Fault) -> bool {
         fault.level >= self.level
     }
 
     /// The outcome of an examination, whose faults have the levels of this judgement.
-    pub(super) fn status(self, examination: &Examination) -> Status {
+    pub fn status(self, examination: &Examination) -> Status {
         if examination.faults.iter().any(|fault| self.counts(fault)) {
             Status::Invalid
         } else if examination.incomplete.iter().any(|check| check.level >= self.level) {
@@ -90,7 +90,7 @@ impl Judgement {
 
 /// The outcome of a check; a worse one is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Status {
+pub enum Status {
     /// Nothing counts against the file.
     Valid,
     /// A check that could find a fault was not completed.
@@ -101,7 +101,7 @@ pub(super) enum Status {
 
 impl Status {
     /// The words for a person.
-    pub(super) fn words(self) -> &'static str {
+    pub fn words(self) -> &'static str {
         match self {
             Self::Valid => "valid",
             Self::Unjudged => "cannot be judged",

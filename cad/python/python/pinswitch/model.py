@@ -1,0 +1,126 @@
+"""Models of a calibration."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _pinswitch
+from ._errors import PinswitchError
+from .table import columns_of, csv_text
+
+Floats = NDArray[np.float64]
+
+
+class Model:
+    """A fitted model: ``model.toml`` or ``baseline.toml`` of a calibration.
+
+    Attributes
+    ----------
+    text : str
+        The text of the file.
+    name : str
+        The name of the file in errors.
+    """
+
+    def __init__(self, native: _pinswitch.Model) -> None:
+        self._native = native
+
+    @property
+    def text(self) -> str:
+        """The text of the file."""
+        return self._native.text
+
+    @property
+    def name(self) -> str:
+        """The name in errors."""
+        return self._native.name
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Model:
+        """Read a model file.
+
+        Raises
+        ------
+        PinswitchError
+            If the file cannot be read, is not a model, or was changed since pinswitch wrote it.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except OSError as error:
+            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(path)) from error
+        return cls(_pinswitch.Model.parse(text, os.fspath(path)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the file."""
+        Path(path).write_text(self.text, encoding="utf-8")
+
+    @property
+    def constants(self) -> dict[str, tuple[float, str]]:
+        """Fitted value and unit of each constant."""
+        return {name: (value, unit) for name, unit, value in self._native.constants([])}
+
+    def predict(self, table: Any, *, fitted_session: bool = False) -> tuple[Floats, Floats]:
+        """Predict readings of the rig.
+
+        Parameters
+        ----------
+        table : frame or path
+            A plateau table (``model/doc/file-formats.md``); ``force_N`` is not used.
+        fitted_session : bool
+            The rows are of the session that was fitted: a drift has its value at their times, not its mean.
+
+        Returns
+        -------
+        predicted_n, sd_n : ndarray, shape (n,)
+            Readings and their standard deviations, N.
+        """
+        content, name = plateau_bytes(table)
+        return self._native.predict(content, name, fitted_session)
+
+    def draws(self, count: int = 1000, *, seed: int = 1) -> dict[str, Floats]:
+        """Draw constants from their posterior: a normal distribution of their coordinates.
+
+        Parameters
+        ----------
+        count : int
+            Number of draws.
+        seed : int
+            Seed of numpy's generator.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (count,)
+            Draws of each constant, in its unit.
+        """
+        variates = np.random.default_rng(seed).standard_normal((count, self._native.dimension()))
+        rows = [self._native.constants(z) for z in variates.tolist()]
+        names = [name for name, _, _ in rows[0]] if rows else []
+        values = np.array([[value for _, _, value in row] for row in rows], dtype=np.float64)
+        return {name: values[:, i] for i, name in enumerate(names)}
+
+    def __repr__(self) -> str:
+        constants = ", ".join(f"{name}={value:.4g}" for name, (value, _) in self.constants.items())
+        return f"Model({self.name}: {constants})"
+
+
+def plateau_bytes(table: Any) -> tuple[bytes, str]:
+    """Return a plateau table as CSV, with its name in errors."""
+    if isinstance(table, (str, os.PathLike)):
+        try:
+            return Path(table).read_bytes(), os.fspath(table)
+        except OSError as error:
+            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(table)) from error
+    columns = columns_of(table)
+    if "repetition" in columns:
+        columns["repetition"] = [_whole(value) for value in columns["repetition"]]
+    return csv_text(columns).encode(), "table"
+
+
+def _whole(value: Optional[Any]) -> Any:
+    """Return a whole float as an integer: frames store counts with gaps as floats."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value

@@ -1,0 +1,47 @@
+//! The files of a calibration.
+
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::{Calibration, ModelFile};
+use pinswitch_diagnostic::Diagnostic;
+
+use crate::{page, plots};
+
+/// Digits after the decimal point of a residual in newtons.
+const DECIMALS: usize = 5;
+
+/// Returns the files of a calibration with their names, except `report.json`: the page, the residuals of each row,
+/// both models and the plots. `title` is the title of the page.
+///
+/// # Errors
+/// A [`Diagnostic`] if a plot cannot be drawn, or a model cannot be written as TOML.
+pub fn calibration_files(
+    title: &str,
+    table: &PlateauTable,
+    calibration: &Calibration,
+) -> Result<Vec<(String, Vec<u8>)>, Diagnostic> {
+    let Calibration { evidence, baseline, augmented, .. } = calibration;
+    let plots = plots(calibration).map_err(Diagnostic::from_error)?;
+    let html = page(title, calibration, &plots);
+    let residual = |predicted: &[f64]| -> Vec<f64> {
+        table.rows.iter().zip(predicted).map(|(row, predicted)| row.force_n - predicted).collect()
+    };
+    let residuals = table.with_columns(
+        &["baseline_N", "residual_baseline_N", "model_N", "residual_model_N", "weight"],
+        &[
+            baseline.predicted_n.clone(),
+            residual(&baseline.predicted_n),
+            augmented.predicted_n.clone(),
+            residual(&augmented.predicted_n),
+            evidence.weights(),
+        ],
+        DECIMALS,
+    );
+    let mut files = vec![
+        ("report.html".to_owned(), html.into_bytes()),
+        ("residuals.csv".to_owned(), residuals.into_bytes()),
+        ("baseline.toml".to_owned(), ModelFile::new(baseline).to_text()?.into_bytes()),
+        ("model.toml".to_owned(), ModelFile::new(augmented).to_text()?.into_bytes()),
+    ];
+    files.extend(plots.into_iter().map(|plot| (plot.file, plot.svg.into_bytes())));
+    Ok(files)
+}

@@ -25,6 +25,7 @@ mod second_kernel;
 mod slicing;
 mod source;
 mod terminal;
+mod tolerances_text;
 mod usage;
 mod user_effects;
 pub mod write;
@@ -42,7 +43,7 @@ const SEED: u64 = 1;
 #[command(after_help = "Commands by task:
   make parts        generate, init, layouts, view, render
   make many         batch, merge
-  predict           predict, physics, finger
+  predict           predict, physics, finger, tolerances
   design            design
   check meshes      check
   use measurements  import, segment, calibrate, experiment, effects, simulate, power
@@ -88,6 +89,7 @@ commands! {
     Design: design,
     Finger: finger,
     Physics: physics,
+    Tolerances: tolerances,
     View: view,
     Check: check,
     Render: render,

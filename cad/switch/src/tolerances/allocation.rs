@@ -78,6 +78,7 @@ mod tests {
         Link {
             dimension: ChainDimension::PinDiameter,
             nominal: 1.0,
+            drawing: process,
             count,
             process: tolerance(process),
             best: tolerance(best),

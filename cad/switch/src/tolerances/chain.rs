@@ -16,6 +16,8 @@ const IT9_MM: [f64; 9] = [0.025, 0.030, 0.036, 0.043, 0.052, 0.062, 0.074, 0.087
 
 /// Tolerance of small printed features, such as grooves and slots, mm: [`Tolerances`] has the source.
 const PRINTED_FEATURE_MM: f64 = 0.1;
+/// Largest excess of the width of a slot by the fit on its drawing, +0.1/0, mm.
+pub const SLOT_EXCESS_MM: f64 = 0.1;
 /// Tolerance of printed heights: 0.254 mm and 0.1 % of the height (Stratasys' guide for ABS).
 const PRINTED_HEIGHT_MM: (f64, f64) = (0.254, 0.001);
 /// Tolerance of the outer diameter of a coated tendon, mm. Assumed.
@@ -153,6 +155,8 @@ pub struct Link {
     pub nominal: f64,
     /// Number of independent occurrences: one, or one of each pin.
     pub count: usize,
+    /// Tolerance that the drawing requires, ±: that of the process, or a smaller one that the function needs.
+    pub drawing: f64,
     /// Tolerance that the process gives.
     pub process: SourcedTolerance,
     /// Smallest tolerance that the best process gives.
@@ -205,7 +209,9 @@ pub fn link(design: &Design, dimension: ChainDimension) -> Link {
         ),
         ChainDimension::GroovePosition | ChainDimension::SlotPosition => (0.0, position),
         ChainDimension::SlotWidth => {
-            (design.slot().width_mm, (PRINTED_FEATURE_MM, printed, it9_mm(design.slot().width_mm), MILLED))
+            let width_mm = design.slot().width_mm + SLOT_EXCESS_MM / 2.0;
+            let fit = "drawing: +0.1/0, the fit of the pin; the coupon shows how the machine reaches it";
+            (width_mm, (SLOT_EXCESS_MM / 2.0, fit, it9_mm(width_mm), MILLED))
         }
         ChainDimension::LayerThickness => (
             c.silicone.thickness_mm,
@@ -266,9 +272,17 @@ pub fn link(design: &Design, dimension: ChainDimension) -> Link {
         ),
     };
     let pins = design.contact().all_pins().count();
+    // Groove and slot share half of the play on each side, so that the pin stays free.
+    let drawing = match dimension {
+        ChainDimension::GroovePosition | ChainDimension::SlotPosition => {
+            process.min(c.support.slot_clearance_mm / 4.0)
+        }
+        _ => process,
+    };
     Link {
         dimension,
         nominal,
+        drawing,
         count: if dimension.is_of_each_pin() { pins } else { 1 },
         process: SourcedTolerance { plus_minus: process, source },
         best: SourcedTolerance { plus_minus: best.min(process), source: best_source },
@@ -321,7 +335,8 @@ pub(super) fn made(design: &Design, deviations: &Deviations) -> MadeDimensions {
     let positive = |nominal: f64, by: f64| (nominal + by).max(0.02 * nominal);
     let layer_mm = positive(bed.layer_mm, by(ChainDimension::LayerThickness));
     let position_mm = |pin: usize| {
-        let width_mm = c.support.slot_clearance_mm + deviations.get(ChainDimension::SlotWidth, pin);
+        let clearance_mm = c.support.slot_clearance_mm + SLOT_EXCESS_MM / 2.0;
+        let width_mm = clearance_mm + deviations.get(ChainDimension::SlotWidth, pin);
         let half_play_mm = ((width_mm - by(ChainDimension::PinDiameter)) / 2.0).max(0.0);
         let slot_mm = deviations.get(ChainDimension::SlotPosition, pin);
         let groove_mm = deviations.get(ChainDimension::GroovePosition, pin);

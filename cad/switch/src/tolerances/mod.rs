@@ -25,7 +25,9 @@ use serde::Serialize;
 
 use crate::design::Design;
 use allocation::{allocate, standard_deviation_n};
-pub use chain::{ChainDimension, DEVIATIONS_PER_TOLERANCE, Link, SourcedTolerance, chain, link};
+pub use chain::{
+    ChainDimension, DEVIATIONS_PER_TOLERANCE, Link, SLOT_EXCESS_MM, SourcedTolerance, chain, link,
+};
 use chain::{Deviations, made};
 pub use simulation::Simulated;
 
@@ -109,6 +111,7 @@ impl Analysis {
             for link in links.iter_mut().filter(|link| link.dimension == *dimension) {
                 link.process = SourcedTolerance { plus_minus: *tolerance, source: "measured" };
                 link.best.plus_minus = link.best.plus_minus.min(*tolerance);
+                link.drawing = link.drawing.min(*tolerance);
             }
         }
         let slopes = slopes(design, &switch, &links, threshold_n)?;
@@ -296,7 +299,10 @@ mod tests {
         let (each, all) = (of(ChainDimension::PinHeight), of(ChainDimension::GrooveDepth));
         assert_eq!((each.slopes.len(), all.slopes.len()), (3, 1));
         let sum: f64 = each.slopes.iter().sum();
-        assert!((sum + all.slopes[0]).abs() < 0.02 * sum, "a deeper groove lowers its pin: {each:?}, {all:?}");
+        assert!(
+            (sum + all.slopes[0]).abs() < 0.02 * sum,
+            "a deeper groove lowers its pin: {each:?}, {all:?}"
+        );
         assert!(square(&each.slopes).sqrt() < 0.75 * all.slopes[0].abs());
     }
 

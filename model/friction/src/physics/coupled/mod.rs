@@ -15,6 +15,7 @@ mod derivatives;
 mod elimination;
 mod explicit;
 mod extrapolation;
+mod forces;
 
 use super::constants::Constants;
 use super::equilibrium::{BALANCE, Supports};

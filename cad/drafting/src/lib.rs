@@ -25,7 +25,7 @@
 //!     product: ("Machine".to_owned(), "Press".to_owned()),
 //!     title: "Base plate".to_owned(),
 //!     material: "Steel".to_owned(),
-//!     general_tolerance: "ISO 2768-m".to_owned(),
+//!     general_tolerance: "ISO 2768-1 m".to_owned(),
 //!     ..TitleBlock::default()
 //! };
 //! let sheet = drawing.sheet(&title, Paper::A4).ok_or("the plate fits on no paper")?;

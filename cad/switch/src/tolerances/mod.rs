@@ -11,7 +11,7 @@
 //! assert!(layer.slopes[0] < 0.0, "a thicker layer is softer, and switches at a lower load");
 //! let simulated = analysis.simulate(&analysis.process(), 200, 1)?;
 //! assert!((simulated.standard_deviation_n / analysis.linear.standard_deviation_n - 1.0).abs() < 0.3);
-//! # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod allocation;

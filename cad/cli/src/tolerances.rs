@@ -202,7 +202,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         play: Play {
             half_mm: design.configuration().support.slot_clearance_mm / 2.0,
             groove_to_slot_mm: NORMAL_95 / DEVIATIONS_PER_TOLERANCE
-                * of(ChainDimension::GroovePosition).hypot(of(ChainDimension::SlotPosition)),
+                * [ChainDimension::GroovePosition, ChainDimension::SlotPosition]
+                    .map(|dimension| of(dimension).powi(2))
+                    .iter()
+                    .sum::<f64>()
+                    .sqrt(),
             drawing_mm: [ChainDimension::GroovePosition, ChainDimension::SlotPosition]
                 .map(|dimension| link(&design, dimension).drawing)
                 .iter()

@@ -343,7 +343,7 @@ mod tests {
         let cylinder = Solid::prism(&disc, &[], 0.0, 20.0, 0.0).unwrap();
         let strokes = isometric(&[Shifted { solid: &cylinder, pose: Pose::upright(0.0), by: [0.0; 3] }]);
         // An isometric circle is an ellipse with axes of 1.2247 and 0.7071 of its diameter.
-        let (a, b): (f64, f64) = (5.0 * 1.2247, 5.0 * 0.7071);
+        let (a, b) = (5.0 * 1.5f64.sqrt(), 5.0 * 0.5f64.sqrt());
         let h = ((a - b) / (a + b)).powi(2);
         let ellipse = std::f64::consts::PI * (a + b) * (1.0 + 3.0 * h / (10.0 + (4.0 - 3.0 * h).sqrt()));
         let expected = 1.5 * ellipse + 2.0 * 20.0;

@@ -75,7 +75,7 @@ impl Picture {
             all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
         };
         let [(left, right), (foot, top)] = [ends(0), ends(1)];
-        (left < right && foot < top).then(|| Self {
+        (left < right && foot < top).then_some(Self {
             view,
             title,
             low: [left, foot],

@@ -78,7 +78,7 @@ fn half_rounds(design: &Design, part: &Part) -> Fit {
     match part.role {
         Role::Layer | Role::Mould => {
             let [all, each] = [ChainDimension::GrooveDepth, ChainDimension::PinHeight];
-            let tolerance = link(design, all).drawing.hypot(link(design, each).drawing);
+            let tolerance = libm::hypot(link(design, all).drawing, link(design, each).drawing);
             Fit::new(plus_minus(tolerance), "").with_indicator(position(&['A']))
         }
         Role::Shell => Fit::new(CLOSE, "").with_indicator(position(&datums(design))),

@@ -46,6 +46,7 @@ mod solid_files;
 mod structure;
 mod table_columns;
 mod terminal;
+mod tolerances;
 mod transactions;
 mod verification;
 mod view;

@@ -57,7 +57,7 @@ kind.step = { at = 0.5 }
 "#;
 
 /// A command of each kind that writes into a folder or a file in it.
-const WRITERS: [&[&str]; 10] = [
+const WRITERS: [&[&str]; 11] = [
     &["generate", "three-double", "--format", "stl", "--out", "out"],
     &["simulate", "plan.toml", "--out", "out"],
     &["calibrate", "bench/plateaus.csv", "--out", "out"],
@@ -65,6 +65,7 @@ const WRITERS: [&[&str]; 10] = [
     &["design", "three-double", "--threshold", "24", "--best", "1", "--out", "out"],
     &["finger", "--out", "out"],
     &["physics", "three-double", "--out", "out"],
+    &["tolerances", "three-double", "--draws", "10", "--out", "out"],
     &["render", "three-double", "--out", "out/picture.png"],
     &["init", "three-double", "--out", "out/mine.toml"],
     &["man", "--out", "out"],

@@ -193,9 +193,10 @@ fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Predicti
     }
     let friction = &set.manifest.friction;
     log::info!(
-        "{}: {} parts; {:.2} N of friction at {:.2} N of load ({:.2} to {:.2} N, {})",
+        "{}: {} parts; {}{:.2} N of friction at {:.2} N of load ({:.2} to {:.2} N, {})",
         folder.display(),
         set.manifest.parts.len(),
+        friction.threshold_n.map(|n| format!("switches at {n:.1} N; ")).unwrap_or_default(),
         friction.friction_n,
         friction.load_n,
         friction.band_n[0],

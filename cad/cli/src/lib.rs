@@ -26,6 +26,7 @@ mod second_kernel;
 mod slicing;
 mod source;
 mod terminal;
+mod tolerances_text;
 mod usage;
 mod user_effects;
 pub mod write;
@@ -43,7 +44,7 @@ const SEED: u64 = 1;
 #[command(after_help = "Commands by task:
   make parts        generate, init, layouts, view, render
   make many         batch, merge
-  predict           predict, physics, finger, export
+  predict           predict, physics, finger, tolerances, export
   design            design
   check meshes      check
   use measurements  import, segment, calibrate, experiment, effects, simulate, power
@@ -90,6 +91,7 @@ commands! {
     Finger: finger,
     Export: export,
     Physics: physics,
+    Tolerances: tolerances,
     View: view,
     Check: check,
     Render: render,

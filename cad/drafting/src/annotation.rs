@@ -6,12 +6,19 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::draft::{Candidate, Draft};
 use super::font::{fit_text, text_width_mm};
 use super::geometry::{Extent, Point};
+use super::indicator::{INDICATOR_MM, Indicator, datum, rectangle};
 use super::sheet::{ARROW_MM, Layer, Shape, Text};
 
 /// Height of the text of dimensions, mm (ISO 3098).
 pub(super) const TEXT_MM: f64 = 2.5;
 /// Distance of the lines of a note, mm.
 const LINE_MM: f64 = 4.2;
+/// Distance of an indicator from the baseline above it, mm.
+const BELOW_TEXT_MM: f64 = 1.6;
+/// Length of the stem of a datum below a callout, mm.
+const DATUM_STEM_MM: f64 = 1.5;
+/// Distance of the frame around a theoretically exact dimension from its text, mm.
+const EXACT_MM: f64 = 0.8;
 /// Distance of an extension line from its edge, mm.
 const EXTENSION_GAP_MM: f64 = 0.8;
 /// Length of an extension line beyond the dimension line, mm.
@@ -146,6 +153,8 @@ pub struct Angular {
     pub edge_mm: f64,
     /// Whether arcs are on the side of the vertex, and not beyond the edge.
     pub is_inside: bool,
+    /// Whether the angle is theoretically exact: it has a frame (ISO 1101).
+    pub is_exact: bool,
 }
 
 impl Angular {
@@ -157,6 +166,7 @@ impl Angular {
     fn candidates(&self) -> Vec<Candidate> {
         let sweep = self.to_rad - self.from_rad;
         let width = text_width_mm(&self.text, TEXT_MM);
+        let frame = if self.is_exact { EXACT_MM } else { 0.0 };
         let mut all = Vec::new();
         let outward = if self.is_inside { -1.0 } else { 1.0 };
         for tier in 0..TIERS {
@@ -191,7 +201,7 @@ impl Angular {
                 let towards = Point::towards(angle);
                 let clear = (0..60).map(|i| radius + 0.5 + 0.5 * f64::from(i)).find(|r| {
                     let middle = on(angle, *r);
-                    let half = Point::new(width / 2.0 + 0.7, TEXT_MM / 2.0 + 0.7);
+                    let half = Point::new(width / 2.0 + 0.7 + frame, TEXT_MM / 2.0 + 0.7 + frame);
                     let nearest = Point::new(
                         (self.centre.x - middle.x).clamp(-half.x, half.x),
                         (self.centre.y - middle.y).clamp(-half.y, half.y),
@@ -203,6 +213,11 @@ impl Angular {
                 let mut shapes = common.clone();
                 let at = middle - Point::new(width / 2.0, TEXT_MM / 2.0);
                 shapes.push((Layer::Text, text(at, &self.text, false)));
+                if self.is_exact {
+                    let half = Point::new(width / 2.0, TEXT_MM / 2.0);
+                    let framed = Extent { low: middle - half, high: middle + half }.grown(EXACT_MM);
+                    shapes.extend(rectangle(framed));
+                }
                 all.push((
                     ARC_TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0),
                     shapes,
@@ -252,6 +267,10 @@ pub struct Callout {
     pub avoid: Vec<Extent>,
     /// Centre and radius of a circle around the feature: the mark of a detail.
     pub around: Option<(Point, f64)>,
+    /// Geometrical tolerances, below the text.
+    pub indicators: Vec<Indicator>,
+    /// Datum of which the feature is, below the text.
+    pub datum: Option<char>,
 }
 
 /// A name next to a round feature, without a leader.
@@ -307,7 +326,14 @@ const REACHES_MM: [f64; 20] = [
 impl Callout {
     /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
-        draft.place(&self.key, self.candidates())
+        draft.place_with_content(&self.key, Some(self.content().join("\n")), self.candidates())
+    }
+
+    /// Returns its lines, with the geometrical tolerances and the datum in words.
+    pub(super) fn content(&self) -> Vec<String> {
+        let indicators = self.indicators.iter().map(Indicator::words);
+        let datum = self.datum.iter().map(|letter| format!("datum {letter}"));
+        self.lines.iter().cloned().chain(indicators).chain(datum).collect()
     }
 
     fn candidates(&self) -> Vec<Candidate> {
@@ -347,6 +373,18 @@ impl Callout {
             // Lines left of the shelf end at it.
             let x = if side > 0.0 { x } else { shelf.x - 0.8 - width };
             shapes.push((Layer::Text, text(Point::new(x, y), content, false)));
+        }
+        let widest = self.indicators.iter().map(Indicator::width_mm).fold(0.0, f64::max);
+        let left = if side > 0.0 { x } else { shelf.x - 0.8 - widest };
+        let last = LINE_MM * (self.lines.len() as f64 - 1.0);
+        let mut low = Point::new(left, shelf.y - TEXT_MM / 2.0 - last - BELOW_TEXT_MM);
+        for indicator in &self.indicators {
+            low.y -= INDICATOR_MM;
+            shapes.extend(indicator.shapes(low));
+        }
+        if let Some(letter) = self.datum {
+            let foot = low + Point::new(INDICATOR_MM / 2.0, 0.0);
+            shapes.extend(datum(foot, Point::new(0.0, -1.0), DATUM_STEM_MM, letter));
         }
         shapes
     }

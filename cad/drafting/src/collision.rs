@@ -1,8 +1,8 @@
 //! Collisions on a finished sheet.
 
-use super::geometry::Extent;
+use super::geometry::{Extent, lines_cross};
 use super::index::{Index, Piece};
-use super::sheet::{Shape, Sheet};
+use super::sheet::{Layer, Shape, Sheet};
 
 /// Least distance of a text from other texts and lines, mm.
 const LEAST_GAP_MM: f64 = 0.2;
@@ -18,19 +18,37 @@ pub struct Collision {
     pub at: Extent,
 }
 
-/// Returns every collision on a sheet: of texts with each other, of a text with a line that is not of its own annotation, and
-/// of anything with the frame or the title block.
+/// Returns every collision on a sheet: of texts with each other, of a text with a line that is not of its own annotation, of
+/// an arrow head with a line of another annotation, and of anything with the frame or the title block.
 #[must_use]
 pub fn collisions(sheet: &Sheet) -> Vec<Collision> {
     let mut all = Vec::new();
     let mut pieces = Index::new();
     for entity in &sheet.entities {
+        // Lines of views may meet arrow heads, and so may centre lines and frames.
+        let is_annotation = entity.view.is_none() && entity.layer == Layer::Dimension;
         for ends in entity.shape.pieces() {
             let extent = Extent::between(ends[0], ends[1]);
-            pieces.insert(extent, Piece { ends, group: entity.group, is_annotation: false });
+            pieces.insert(extent, Piece { ends, group: entity.group, is_annotation });
         }
         if entity.group >= sheet.first_group {
             out_of_bounds(sheet, &entity.shape, &mut all);
+        }
+    }
+    for entity in &sheet.entities {
+        let Shape::Arrow { tip, direction } = entity.shape else { continue };
+        for [a, b] in Shape::arrow_sides(tip, direction) {
+            let extent = Extent::between(a, b);
+            let is_met =
+                |p: &Piece| p.is_annotation && p.group != entity.group && lines_cross(p.ends, [a, b]);
+            if pieces.any(extent, is_met) {
+                all.push(Collision {
+                    what: "an arrow head".to_owned(),
+                    with: "a line of another annotation".to_owned(),
+                    at: extent,
+                });
+                break;
+            }
         }
     }
     let texts: Vec<_> = sheet

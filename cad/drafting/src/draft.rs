@@ -5,7 +5,7 @@ use super::index::{Index, Piece};
 use super::sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, View};
 
 /// Width and height of the title block, mm (ISO 7200).
-pub(super) const TITLE_BLOCK_MM: [f64; 2] = [180.0, 28.5];
+pub(super) const TITLE_BLOCK_MM: [f64; 2] = [180.0, 34.0];
 /// Distance of a new text from lines, and of a new line from texts, mm.
 const LINE_GAP_MM: f64 = 0.6;
 /// Distance of a new text from other texts, mm.
@@ -26,6 +26,8 @@ pub struct Draft {
     sheet: Sheet,
     texts: Index<(Extent, usize)>,
     pieces: Index<Piece>,
+    /// Sides of arrow heads.
+    arrows: Index<[Point; 2]>,
     groups: usize,
 }
 
@@ -46,7 +48,8 @@ impl Draft {
             title_block,
             first_group: 1,
         };
-        let mut draft = Self { sheet, texts: Index::new(), pieces: Index::new(), groups: 1 };
+        let mut draft =
+            Self { sheet, texts: Index::new(), pieces: Index::new(), arrows: Index::new(), groups: 1 };
         draft.rectangle(Layer::Frame, frame, 0);
         draft
     }
@@ -73,6 +76,11 @@ impl Draft {
         if let Shape::Text(text) = &shape {
             self.texts.insert(text.extent(), (text.extent(), group));
         }
+        if let Shape::Arrow { tip, direction } = shape {
+            for [a, b] in Shape::arrow_sides(tip, direction) {
+                self.arrows.insert(Extent::between(a, b), [a, b]);
+            }
+        }
         for ends in shape.pieces() {
             // Cutting planes and engraved letters are as important as dimensions.
             let is_annotation = match layer {
@@ -92,6 +100,15 @@ impl Draft {
         for i in 0..4 {
             self.put(layer, Shape::Line { from: corners[i], to: corners[(i + 1) % 4] }, None, group);
         }
+    }
+
+    /// Whether an area inside the frame has no text and no line, and does not touch the title block.
+    #[must_use]
+    pub fn is_free(&self, extent: Extent) -> bool {
+        self.sheet.paper.frame().contains(extent)
+            && !extent.overlaps(self.sheet.title_block)
+            && !self.texts.any(extent, |(other, _)| extent.overlaps(*other))
+            && !self.pieces.any(extent, |piece| extent.is_crossed_by(piece.ends[0], piece.ends[1]))
     }
 
     /// The sheet.
@@ -131,6 +148,9 @@ impl Draft {
                 }
             }
         }
+        if self.meets_arrows(shapes) {
+            return None;
+        }
         let mut cost = 0.0;
         for (_, shape) in shapes {
             for [a, b] in shape.pieces() {
@@ -163,8 +183,31 @@ impl Draft {
         Some(cost)
     }
 
+    /// Whether a line of these shapes crosses an arrow head, or one of their arrow heads a line of an annotation.
+    fn meets_arrows(&self, shapes: &[(Layer, Shape)]) -> bool {
+        shapes.iter().any(|(_, shape)| match *shape {
+            Shape::Arrow { tip, direction } => Shape::arrow_sides(tip, direction).iter().any(|[a, b]| {
+                self.pieces.any(Extent::between(*a, *b), |p| p.is_annotation && lines_cross(p.ends, [*a, *b]))
+            }),
+            _ => shape
+                .pieces()
+                .iter()
+                .any(|[a, b]| self.arrows.any(Extent::between(*a, *b), |side| lines_cross(*side, [*a, *b]))),
+        })
+    }
+
     /// Draws the cheapest of `candidates` that touches nothing; returns whether there is one.
-    pub(super) fn place(&mut self, key: &str, mut candidates: Vec<Candidate>) -> bool {
+    pub(super) fn place(&mut self, key: &str, candidates: Vec<Candidate>) -> bool {
+        self.place_with_content(key, None, candidates)
+    }
+
+    /// As [`Draft::place`], with the content of the annotation where it is not that of its texts.
+    pub(super) fn place_with_content(
+        &mut self,
+        key: &str,
+        content: Option<String>,
+        mut candidates: Vec<Candidate>,
+    ) -> bool {
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Candidate> = None;
         for (base, shapes) in candidates {
@@ -182,7 +225,8 @@ impl Draft {
             .iter()
             .filter_map(|(_, s)| if let Shape::Text(t) = s { Some(t.content.as_str()) } else { None })
             .collect();
-        self.sheet.annotations.push(Annotation { group, key: key.to_owned(), text: lines.join("\n") });
+        let text = content.unwrap_or_else(|| lines.join("\n"));
+        self.sheet.annotations.push(Annotation { group, key: key.to_owned(), text });
         for (layer, shape) in shapes {
             self.put(layer, shape, None, group);
         }

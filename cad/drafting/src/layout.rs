@@ -25,7 +25,7 @@ const AROUND_TABLE_MM: f64 = 5.0;
 
 /// Returns papers and scales for a part, in the order to try them.
 ///
-/// A part that does not fit on A4 at 2:1 gets A3 at 2:1. A small part whose dimensions find no space on A4 gets A3 at 5:1.
+/// A part that does not fit on A4 at 2:1 gets A3, at 5:1 if possible, so that its views fill the sheet, and else at 2:1.
 /// Other parts are drawn at 1:1 on A4 before they are reduced.
 #[must_use]
 pub fn part_formats(preferred: Paper) -> Vec<(Paper, f64)> {
@@ -33,7 +33,7 @@ pub fn part_formats(preferred: Paper) -> Vec<(Paper, f64)> {
     if preferred == Paper::A3 {
         return on_a3.collect();
     }
-    let first = [(Paper::A4, 5.0), (Paper::A4, 2.0), (Paper::A3, 2.0), (Paper::A3, 5.0), (Paper::A4, 1.0)];
+    let first = [(Paper::A4, 5.0), (Paper::A4, 2.0), (Paper::A3, 5.0), (Paper::A3, 2.0), (Paper::A4, 1.0)];
     first.into_iter().chain(on_a3.filter(|(_, s)| *s <= 1.0)).collect()
 }
 

@@ -25,7 +25,7 @@
 //!     product: ("Machine".to_owned(), "Press".to_owned()),
 //!     title: "Base plate".to_owned(),
 //!     material: "Steel".to_owned(),
-//!     general_tolerance: "ISO 2768-m".to_owned(),
+//!     general_tolerance: "ISO 2768-1 m".to_owned(),
 //!     ..TitleBlock::default()
 //! };
 //! let sheet = drawing.sheet(&title, Paper::A4).ok_or("the plate fits on no paper")?;
@@ -78,6 +78,7 @@ mod escape;
 mod font;
 mod geometry;
 mod index;
+mod indicator;
 mod layout;
 mod part;
 mod pdf;
@@ -94,8 +95,9 @@ pub use draft::Draft;
 pub use dxf::drawing_dxf;
 pub use escape::escape;
 pub use geometry::{Extent, Point};
+pub use indicator::{Characteristic, DatumMark, Indicator};
 pub use layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, assembly_formats, part_formats};
-pub use part::{Fit, Fits, PartDrawing, RoundFit, Terms, number};
+pub use part::{FaceDatum, Fit, Fits, PartDrawing, RadialSize, RadiusFit, RoundFit, Terms, number};
 pub use pdf::drawing_pdf;
 pub use sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, Text, View};
 pub use svg::drawing_svg;

@@ -188,6 +188,8 @@ pub enum Shape {
 
 /// Length of an arrow head, mm.
 pub(super) const ARROW_MM: f64 = 2.5;
+/// Length of the tip of an arrow head that may touch other lines, mm.
+const ARROW_TIP_MM: f64 = 0.5;
 /// Half of its width, mm.
 pub(super) const ARROW_HALF_MM: f64 = 0.42;
 
@@ -204,6 +206,13 @@ impl Shape {
             Self::Arrow { tip, direction } => vec![[tip, tip - direction * ARROW_MM]],
             Self::Text(_) => Vec::new(),
         }
+    }
+
+    /// The sides of an arrow head, without its tip, which touches other lines.
+    pub(super) fn arrow_sides(tip: Point, direction: Point) -> [[Point; 2]; 3] {
+        let [_, left, right] = Self::arrow_corners(tip, direction);
+        let front = tip - direction * ARROW_TIP_MM;
+        [[front, left], [front, right], [left, right]]
     }
 
     /// The three corners of an arrow head.

@@ -5,12 +5,16 @@ use super::font::{LINE_PER_CAPITAL, fit_text};
 use super::geometry::{Extent, Point};
 use super::sheet::{Layer, Paper, Shape, Text};
 
+/// Label of the cell with the symbol of surface texture.
+const TEXTURE: &str = "Surface texture";
 /// Height of a row, mm.
-const ROW_MM: f64 = TITLE_BLOCK_MM[1] / 3.0;
+const ROW_MM: f64 = TITLE_BLOCK_MM[1] / 4.0;
 /// Height of the label of a cell, mm.
 const LABEL_MM: f64 = 1.6;
 /// Height of the value of a cell, mm.
-const VALUE_MM: f64 = 3.0;
+const VALUE_MM: f64 = 2.5;
+/// Width and height of the symbol of surface texture, mm.
+const TEXTURE_MM: [f64; 2] = [4.4, 3.4];
 /// Least height of a text on one line, before it is broken into several, mm.
 const LEAST_MM: f64 = 1.8;
 
@@ -24,7 +28,8 @@ pub enum Projection {
     Third,
 }
 
-/// The content of a title block.
+/// The content of a title block: the fields of ISO 7200, with material, tolerances and scale. An empty text leaves its
+/// cell for handwriting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TitleBlock {
     /// Label and name of the product, such as `Switch` and `three-double`.
@@ -33,17 +38,31 @@ pub struct TitleBlock {
     pub variant: (String, String),
     /// Title of the sheet.
     pub title: String,
-    /// Part number.
+    /// Type of the document, such as `Part drawing`.
+    pub document_type: String,
+    /// Status of the document, such as `Released`.
+    pub status: String,
+    /// Legal owner.
+    pub owner: String,
+    /// Person who approved the document.
+    pub approved_by: String,
+    /// Index of the revision.
+    pub revision: String,
+    /// Code of the language (ISO 639).
+    pub language: String,
+    /// Identification number: that of the part.
     pub part_number: String,
     /// Material.
     pub material: String,
     /// Tolerance of dimensions without one.
     pub general_tolerance: String,
+    /// Surface texture (ISO 21920-1) of surfaces without one; empty without a requirement.
+    pub surface_texture: String,
     /// Scale of the main views.
     pub scale: String,
     /// Arrangement of the views.
     pub projection: Projection,
-    /// Date; without one, there is no cell for it.
+    /// Date of issue.
     pub date: Option<String>,
     /// Number of the sheet, and of all sheets.
     pub sheet: (usize, usize),
@@ -58,9 +77,16 @@ impl Default for TitleBlock {
             product: ("Product".to_owned(), String::new()),
             variant: ("Variant".to_owned(), String::new()),
             title: String::new(),
+            document_type: "Part drawing".to_owned(),
+            status: String::new(),
+            owner: String::new(),
+            approved_by: String::new(),
+            revision: String::new(),
+            language: "en".to_owned(),
             part_number: String::new(),
             material: String::new(),
             general_tolerance: String::new(),
+            surface_texture: String::new(),
             scale: String::new(),
             projection: Projection::First,
             date: None,
@@ -83,32 +109,35 @@ impl Draft {
     fn put_title_block(&mut self, title: &TitleBlock, paper: Paper) {
         let block = self.sheet().title_block;
         let sheet = format!("{} / {}", title.sheet.0, title.sheet.1);
-        let mut last = vec![
-            (24.0, "", String::new()),
-            (24.0, "Scale", title.scale.clone()),
-            (24.0, "Units", "mm".to_owned()),
-            (18.0, "Size", paper.name().to_owned()),
-            (24.0, "Sheet", sheet),
-        ];
-        match &title.date {
-            Some(date) => {
-                last.push((28.0, "Date", date.clone()));
-                last.push((38.0, "Drawn by", title.generator.clone()));
-            }
-            None => last.push((66.0, "Drawn by", title.generator.clone())),
-        }
         let rows = [
             vec![
                 (66.0, title.product.0.as_str(), title.product.1.clone()),
                 (46.0, title.variant.0.as_str(), title.variant.1.clone()),
-                (68.0, "Part number", title.part_number.clone()),
+                (68.0, "Identification number", title.part_number.clone()),
             ],
             vec![
                 (66.0, "Title", title.title.clone()),
                 (46.0, "Material", title.material.clone()),
-                (68.0, "General tolerance", title.general_tolerance.clone()),
+                (36.0, "Document type", title.document_type.clone()),
+                (32.0, "Status", title.status.clone()),
             ],
-            last,
+            vec![
+                (66.0, "General tolerances", title.general_tolerance.clone()),
+                (46.0, TEXTURE, title.surface_texture.clone()),
+                (36.0, "Created by", title.generator.clone()),
+                (32.0, "Approved by", title.approved_by.clone()),
+            ],
+            vec![
+                (24.0, "", String::new()),
+                (16.0, "Scale", title.scale.clone()),
+                (13.0, "Units", "mm".to_owned()),
+                (13.0, "Size", paper.name().to_owned()),
+                (33.0, "Legal owner", title.owner.clone()),
+                (13.0, "Rev.", title.revision.clone()),
+                (28.0, "Date of issue", title.date.clone().unwrap_or_default()),
+                (20.0, "Language", title.language.clone()),
+                (20.0, "Sheet", sheet),
+            ],
         ];
         for (i, row) in rows.into_iter().enumerate() {
             let top = block.high.y - ROW_MM * i as f64;
@@ -131,8 +160,28 @@ impl Draft {
         }
         let at = Point::new(cell.low.x + 1.2, cell.high.y - LABEL_MM - 1.1);
         self.put_text(label, LABEL_MM, at, [cell.width() - 2.4, LABEL_MM]);
-        let at = Point::new(cell.low.x + 1.2, cell.low.y + 1.7);
-        self.put_text(value, VALUE_MM, at, [cell.width() - 2.4, ROW_MM - LABEL_MM - 3.3]);
+        if value.is_empty() {
+            return;
+        }
+        let at = Point::new(cell.low.x + 1.2, cell.low.y + 1.2);
+        let room = [cell.width() - 2.4, ROW_MM - LABEL_MM - 3.1];
+        if label == TEXTURE {
+            self.put_texture_symbol(at);
+            let indent = TEXTURE_MM[0] + 1.0;
+            self.put_text(value, VALUE_MM, at + Point::new(indent, 0.0), [room[0] - indent, room[1]]);
+        } else {
+            self.put_text(value, VALUE_MM, at, room);
+        }
+    }
+
+    /// Draws the symbol of surface texture for any manufacturing process (ISO 21920-1) with its foot at `low`.
+    fn put_texture_symbol(&mut self, low: Point) {
+        let [width, height] = TEXTURE_MM;
+        let at = |x: f64, y: f64| low + Point::new(x * width, y * height);
+        let corners = [at(0.0, 0.5), at(0.27, 0.0), at(0.8, 1.0), at(1.0, 1.0)];
+        for pair in corners.windows(2) {
+            self.put(Layer::Thin, Shape::Line { from: pair[0], to: pair[1] }, None, 0);
+        }
     }
 
     /// Draws a text into a box with its lower left corner at `low`, with capitals of at most `most_mm`, in as many lines as
@@ -204,6 +253,13 @@ mod tests {
                     date,
                     sheet: (10, 12),
                     generator: "pinswitch 0.1.0".to_owned(),
+                    document_type: name.clone(),
+                    status: name.clone(),
+                    owner: name.clone(),
+                    approved_by: name.clone(),
+                    revision: name.clone(),
+                    language: name.clone(),
+                    surface_texture: name.clone(),
                 };
                 for paper in [Paper::A4, Paper::A3] {
                     let draft = Draft::new(paper, &title);

@@ -1,11 +1,12 @@
-//! The figure of a friction curve: curve and band, limits of both materials, and the paper's
-//! measurements.
+//! The figure of a friction curve: curve and band, limits of both materials, the threshold, and the
+//! paper's measurements. The legend is below the axes, so that it covers no data.
 
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use pinswitch_friction::{
-    Contact, FrictionCurve, Law, PredictionStatus, capstan_friction_n, published, published_points,
+    Contact, FrictionCurve, Law, PredictionStatus, Transition, capstan_friction_n, published,
+    published_points,
 };
 
 use super::PlotError;
@@ -17,14 +18,19 @@ use super::text_size::Svg;
 type DashedSample = DashedPathElement<std::vec::IntoIter<(i32, i32)>, u32>;
 
 /// Width and height of the figure in pixels.
-const SIZE: (u32, u32) = (760, 480);
+const SIZE: (u32, u32) = (760, 584);
+/// Height of the axes with their labels in pixels; the legend is below.
+const AXES: u32 = 476;
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
 /// Colours of other laws in the order of [`Law::predictive`], repeated.
 const OTHERS: [RGBColor; 3] = [RGBColor(0, 120, 90), RGBColor(140, 60, 150), RGBColor(190, 20, 60)];
-/// Pixels of dash and gap of a limit line, and of a published onset.
+/// Colour of the threshold, that of its curve.
+const THRESHOLD: RGBColor = CURVE;
+/// Pixels of dash and gap of a limit line, of the threshold, and of a published onset.
 const LIMIT_DASHES: [u8; 2] = [6, 4];
+const THRESHOLD_DASHES: [u8; 2] = [8, 3];
 const ONSET_DASHES: [u8; 2] = [2, 3];
 /// Points of a limit line.
 const LIMIT_POINTS: u32 = 60;
@@ -60,7 +66,8 @@ fn draw(
     let measured = points.iter().filter_map(|p| p.friction_n).fold(0.0, f64::max);
     let top = curve.band_high_n.iter().copied().fold(limit(published::MU_SILICONE, highest_load), f64::max);
     let mut legend = Legend::default();
-    let mut chart = ChartBuilder::on(&root)
+    let (axes, below) = root.split_vertically(fine::<u32>(1) * AXES);
+    let mut chart = ChartBuilder::on(&axes)
         .margin(fine::<u32>(14))
         .caption(format!("{name}: friction over load"), ("sans-serif", fine::<i32>(19)))
         .x_label_area_size(fine::<u32>(44))
@@ -71,7 +78,7 @@ fn draw(
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.10).stroke_width(fine(1)))
         .x_desc("load F (N)")
-        .y_desc("friction D = (F_c - F_e)/2 (N)")
+        .y_desc("friction D = (T_c - T_e)/2 (N)")
         .x_label_formatter(&|v| format!("{v:.0}"))
         .y_label_formatter(&|v| format!("{v:.0}"))
         .set_all_tick_mark_size(fine::<u32>(5))
@@ -132,8 +139,13 @@ fn draw(
         chart.draw_series(dashed(line, ONSET_DASHES, BLACK))?;
         legend.line(format!("published onset, {load:.2} N"), |at| dashed_sample(at, ONSET_DASHES, BLACK));
     }
-    let measures = Measures { margin: fine(10), samples: fine(26), font: fine(14), border: fine(1) };
-    legend.draw(&chart.plotting_area().strip_coord_spec(), measures)?;
+    if let Some(transition) = Transition::of(curve) {
+        let load = transition.threshold_n;
+        chart.draw_series(dashed(vec![(load, 0.0), (load, top)], THRESHOLD_DASHES, THRESHOLD))?;
+        legend.line(format!("switches at {load:.1} N"), |at| dashed_sample(at, THRESHOLD_DASHES, THRESHOLD));
+    }
+    let measures = Measures { margin: fine(52), samples: fine(28), font: fine(14), columns: 2 };
+    legend.draw(&below, measures)?;
     root.present()?;
     Ok(())
 }
@@ -169,6 +181,40 @@ mod tests {
     fn drawn(contact: &Contact) -> String {
         let curve = predict(contact, &[5.0, 15.0, 30.0, 49.0]);
         friction_svg("mine", contact, &curve, &[]).unwrap()
+    }
+
+    /// The threshold is that of the curve, and a proxy, which does not switch, has none.
+    #[test]
+    fn figures_show_the_threshold() {
+        let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
+        let of = |substrate| Contact::new(substrate, pins.clone(), published::wrap_angle_rad()).unwrap();
+        let loads_n: Vec<f64> = (6..=100).map(|i| 0.5 * f64::from(i)).collect();
+        let curve = predict(&of(Substrate::Silicone), &loads_n);
+        let threshold_n = Transition::of(&curve).unwrap().threshold_n;
+        let svg = friction_svg("mine", &of(Substrate::Silicone), &curve, &[]).unwrap();
+        assert!(svg.contains(&format!("switches at {threshold_n:.1} N")), "{svg}");
+        assert!(!drawn(&of(Substrate::Abs)).contains("switches at"));
+    }
+
+    /// Every text of the legend is below the axes: no data is there.
+    #[test]
+    fn legends_cover_no_data() {
+        let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
+        let svg = drawn(&Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap());
+        let mut labels = 0;
+        for (before, after) in svg.match_indices("<text ").map(|(at, _)| svg[at..].split_once('>').unwrap()) {
+            let content = after.split('<').next().unwrap_or_default().trim();
+            let y = before.split(" y=\"").nth(1).unwrap().split('"').next().unwrap();
+            let is_label =
+                content.contains("band") || content.contains("capstan") || content.contains("published");
+            labels += usize::from(is_label);
+            assert_eq!(
+                is_label || content == "physics",
+                y.parse::<u32>().unwrap() > fine::<u32>(1) * AXES,
+                "{content}"
+            );
+        }
+        assert!(labels >= 4, "{labels}");
     }
 
     /// Contacts that differ from the paper's in one property have no published measurements.

@@ -1,5 +1,5 @@
-//! The legend of a figure: the layout of plotters with text sizes that are the same on every
-//! platform (see `text_size`).
+//! The legend of a figure in columns, in an area of its own: samples with labels, whose sizes are the
+//! same on every platform (see `text_size`).
 
 use plotters::coord::Shift;
 use plotters::element::{DynElement, IntoDynElement};
@@ -8,8 +8,6 @@ use plotters::prelude::*;
 use crate::PlotError;
 use crate::text_size::{Svg, text_size};
 
-/// Distance from the corner of the figure, in units of the drawing.
-const CORNER: i32 = 5;
 /// Line spacing, in font sizes.
 const LINE_SPACING: f64 = 1.25;
 
@@ -22,14 +20,14 @@ pub(crate) struct Legend<'a>(Vec<(String, Sample<'a>)>);
 /// Sizes of a legend, in units of the drawing.
 #[derive(Clone, Copy)]
 pub(crate) struct Measures {
-    /// Margin around the legend.
+    /// Margin left of the first column, and right of the last.
     pub(crate) margin: i32,
     /// Width of the samples.
     pub(crate) samples: i32,
     /// Size of the font.
     pub(crate) font: i32,
-    /// Width of the border.
-    pub(crate) border: u32,
+    /// Number of columns.
+    pub(crate) columns: usize,
 }
 
 impl<'a> Legend<'a> {
@@ -42,7 +40,7 @@ impl<'a> Legend<'a> {
         self.0.push((label.into(), Box::new(move |at| sample(at).into_dyn())));
     }
 
-    /// Draws the legend in the upper left corner of `area`.
+    /// Draws the legend from the top of `area`, column by column.
     ///
     /// # Errors
     /// [`PlotError`] if the drawing library refuses a coordinate.
@@ -51,27 +49,22 @@ impl<'a> Legend<'a> {
         area: &DrawingArea<Svg<'a>, Shift>,
         measures: Measures,
     ) -> Result<(), PlotError> {
-        let Measures { margin, samples, font, border } = measures;
+        let Measures { margin, samples, font, columns } = measures;
         let size = f64::from(font);
-        // A legend has a handful of lines.
-        #[allow(clippy::cast_possible_truncation)]
-        let top = |line: usize| (line as f64 * size * LINE_SPACING).round() as i32;
-        let sizes: Vec<_> = self.0.iter().map(|(label, _)| text_size(label, size)).collect();
-        let width = sizes.iter().map(|(width, _)| *width).max().unwrap_or(0) + samples + 2 * margin;
-        let height = sizes.iter().enumerate().map(|(i, (_, h))| top(i) + h).max().unwrap_or(0) + 2 * margin;
-        let corners = [(CORNER, CORNER), (CORNER + width, CORNER + height)];
-        area.draw(&Rectangle::new(corners, WHITE.mix(0.9).filled())).map_err(|e| PlotError::new(&e))?;
-        area.draw(&Rectangle::new(corners, BLACK.mix(0.3).stroke_width(border)))
-            .map_err(|e| PlotError::new(&e))?;
-        let (left, first) = (CORNER + samples + margin, CORNER + margin);
-        for (i, (label, _)) in self.0.iter().enumerate() {
-            let text = Text::new(label.clone(), (left, first + top(i)), ("sans-serif", font));
+        let rows = self.0.len().div_ceil(columns.max(1)).max(1);
+        // A drawing has some ten thousand units, and a legend a handful of lines.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)]
+        let column_width = (area.dim_in_pixel().0 as i32 - 2 * margin) / columns.max(1) as i32;
+        for (i, (label, sample)) in self.0.iter().enumerate() {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)]
+            let (left, top) = (
+                margin + column_width * (i / rows) as i32,
+                ((i % rows) as f64 * size * LINE_SPACING).round() as i32,
+            );
+            let text = Text::new(label.clone(), (left + samples, top), ("sans-serif", font));
             area.draw(&text).map_err(|e| PlotError::new(&e))?;
-        }
-        for (i, ((_, sample), (_, height))) in self.0.iter().zip(&sizes).enumerate() {
-            let low = first + top(i);
-            area.draw(&sample((CORNER + margin, (low + low + height) / 2)))
-                .map_err(|e| PlotError::new(&e))?;
+            let (_, height) = text_size(label, size);
+            area.draw(&sample((left, top + height / 2))).map_err(|e| PlotError::new(&e))?;
         }
         Ok(())
     }

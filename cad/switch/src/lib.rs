@@ -37,4 +37,5 @@ pub mod request;
 pub mod scene;
 pub mod set;
 pub mod templates;
+pub mod tolerances;
 mod warnings;

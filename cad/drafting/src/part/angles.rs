@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::dimension::{Dimension, numbered};
 use super::features::Features;
+use super::fit::{Fit, Fits};
 use super::text;
 use crate::Angular;
 use crate::view::Place;
@@ -31,10 +32,16 @@ struct Sector {
     from_rad: f64,
     to_rad: f64,
     radius_mm: f64,
+    is_exact: bool,
 }
 
 /// Returns all angles. In an upright pattern they are beyond the last pocket, in another one inside the bow of the first.
-pub(super) fn angles(f: &Features, half_span_rad: Option<f64>, places: &Places) -> Vec<Dimension> {
+pub(super) fn angles(
+    f: &Features,
+    fits: &Fits,
+    half_span_rad: Option<f64>,
+    places: &Places,
+) -> Vec<Dimension> {
     let radius = |arcs: Option<&Vec<pinswitch_solid::profile::Arc>>| arcs.map_or(0.0, |a| a[0].radius_mm);
     let (outermost, innermost) = (radius(f.axis_arcs.first()), radius(f.axis_arcs.last()));
     if outermost <= 0.0 {
@@ -55,9 +62,10 @@ pub(super) fn angles(f: &Features, half_span_rad: Option<f64>, places: &Places) 
             begins_mm: sector.radius_mm * place.scale,
             edge_mm: edge_mm * place.scale,
             is_inside,
+            is_exact: sector.is_exact,
         })
     };
-    let mut all = pitches(f);
+    let mut all = pitches(f, fits);
     if let Some(half_span_rad) = half_span_rad.filter(|_| !f.ends.is_empty()) {
         all.push(Sector {
             key: "span".to_owned(),
@@ -65,32 +73,35 @@ pub(super) fn angles(f: &Features, half_span_rad: Option<f64>, places: &Places) 
             from_rad: -half_span_rad,
             to_rad: half_span_rad,
             radius_mm: edge_mm,
+            is_exact: false,
         });
     }
     all.into_iter().map(dimension).collect()
 }
 
 /// Pitches of evenly spaced grooves and slots.
-fn pitches(f: &Features) -> Vec<Sector> {
+fn pitches(f: &Features, fits: &Fits) -> Vec<Sector> {
     let mut all = Vec::new();
-    let mut pitch = |key: String, points: &[Point2], radius_mm: f64| {
+    let mut pitch = |key: String, points: &[Point2], radius_mm: f64, fit: &Fit| {
         let angles: Vec<f64> = points.iter().map(|p| text::angle_rad(*p)).collect();
         if let Some((first, step)) = text::even_step(&angles) {
             let steps = (angles.len() - 1) as f64;
             let total = step * steps;
             let text = format!("{steps} \u{d7} {} = {}", text::degrees(step), text::degrees(total));
-            all.push(Sector { key, text, from_rad: first, to_rad: first + total, radius_mm });
+            // The positions of toleranced features are theoretically exact.
+            let is_exact = !fit.indicators.is_empty();
+            all.push(Sector { key, text, from_rad: first, to_rad: first + total, radius_mm, is_exact });
         }
     };
     for (i, rounding) in f.roundings.iter().filter(|r| r.is_half_round).enumerate() {
         let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
         let radius = centres.first().map_or(0.0, |p| p.coords.norm());
-        pitch(numbered("groove pitch", i), &centres, radius);
+        pitch(numbered("groove pitch", i), &centres, radius, &fits.half_rounds);
     }
     for (i, slot) in f.slots.iter().enumerate() {
         let centres: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
         let radius = centres.first().map_or(0.0, |p| p.coords.norm()) + slot.width_mm / 2.0;
-        pitch(numbered("slot pitch", i), &centres, radius);
+        pitch(numbered("slot pitch", i), &centres, radius, &fits.slots);
     }
     all
 }

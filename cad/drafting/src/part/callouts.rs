@@ -6,7 +6,7 @@ use super::angles::Places;
 use super::detail::Detail;
 use super::dimension::{Dimension, numbered};
 use super::features::{Features, Slot};
-use super::fit::Fits;
+use super::fit::{Fit, Fits};
 use super::hole_table;
 use super::text;
 use crate::contour::{same, same_point};
@@ -40,10 +40,11 @@ pub(super) fn of_detail(subject: &Subject<'_>, detail: &Detail, place: &Place) -
             let Some(arc) = rounding.arcs.iter().find(|a| same_point(a.centre, detail.middle)) else {
                 continue;
             };
-            all.push(Dimension::callout(
+            all.push(Dimension::fitted_callout(
                 numbered("groove", i),
                 text::rounding(subject.fits, rounding, f),
                 on_arc(arc, place, &[0.25, 0.4, 0.5, 0.6, 0.75], OTHER_SIDE_MM),
+                &subject.fits.half_rounds,
             ));
         }
         return all;
@@ -85,7 +86,8 @@ pub(super) fn of_detail(subject: &Subject<'_>, detail: &Detail, place: &Place) -
             })
         })
     });
-    all.push(Dimension::callout(numbered("slot", i), text::slot(subject.fits, slot), sides.collect()));
+    let lines = text::slot(subject.fits, slot);
+    all.push(Dimension::fitted_callout(numbered("slot", i), lines, sides.collect(), &subject.fits.slots));
     all
 }
 
@@ -125,7 +127,7 @@ pub(super) fn callouts(subject: &Subject<'_>, places: &Places, details: &[Detail
     }
     ends(subject, place, &mut all);
     if f.is_axial() {
-        radii(f, places, &mut all);
+        radii(subject, places, &mut all);
     }
     all
 }
@@ -191,7 +193,12 @@ fn bores(subject: &Subject<'_>, place: &Place, all: &mut Vec<Dimension>) {
         if let (Some(name), Some(first)) = (hole_table::letter(f, i), lines.first_mut()) {
             *first = format!("{name}: {first}");
         }
-        all.push(Dimension::callout(format!("hole {}", i + 1), lines, leaders));
+        // The geometrical tolerance of a bore is that of any of its stages.
+        let of_stage = |stage| subject.fits.of_stage(*bore.centres.first()?, stage);
+        let fits = bore.stages.iter().filter_map(of_stage);
+        let fit = fits.max_by_key(|fit| (fit.indicators.len(), fit.datum.is_some())).cloned();
+        let key = format!("hole {}", i + 1);
+        all.push(Dimension::fitted_callout(key, lines, leaders, &fit.unwrap_or_default()));
     }
 }
 
@@ -251,7 +258,12 @@ fn slots(subject: &Subject<'_>, place: &Place, details: &[Detail], all: &mut Vec
         if f.is_axial() {
             lines.extend(text::slot(subject.fits, slot));
         }
-        all.push(Dimension::callout(numbered("slot", i), lines, leaders.collect()));
+        all.push(Dimension::fitted_callout(
+            numbered("slot", i),
+            lines,
+            leaders.collect(),
+            &subject.fits.slots,
+        ));
     }
 }
 
@@ -272,7 +284,8 @@ fn roundings(subject: &Subject<'_>, place: &Place, details: &[Detail], all: &mut
             format!("corner {}", text::number(rounding.radius_mm))
         };
         let leaders = rounding.arcs.iter().flat_map(|a| on_arc(a, place, &[0.3, 0.5, 0.7], 0.0)).collect();
-        all.push(Dimension::callout(key, text::rounding(subject.fits, rounding, f), leaders));
+        let fit = if rounding.is_half_round { subject.fits.half_rounds.clone() } else { Fit::default() };
+        all.push(Dimension::fitted_callout(key, text::rounding(subject.fits, rounding, f), leaders, &fit));
     }
 }
 
@@ -305,7 +318,8 @@ fn slot_row(f: &Features) -> Option<(Vec<String>, Vec<Point2>)> {
 
 /// Callouts of radii about the axis, the outermost from outside and the innermost from inside. With a pattern, leaders from
 /// inside end at its first pocket and those from outside at its last, so that none crosses another pocket.
-fn radii(f: &Features, places: &Places, all: &mut Vec<Dimension>) {
+fn radii(subject: &Subject<'_>, places: &Places, all: &mut Vec<Dimension>) {
+    let f = subject.features;
     for (i, arcs) in f.axis_arcs.iter().enumerate() {
         let radius = arcs[0].radius_mm;
         let shares: &[f64] = if arcs.len() > 4 {
@@ -334,6 +348,10 @@ fn radii(f: &Features, places: &Places, all: &mut Vec<Dimension>) {
             Some(_) => on(&places.first, &|direction, is_outward| !is_outward || direction.x < 0.0),
         };
         let key = format!("radius {}", text::number(radius));
-        all.push(Dimension::callout(key, vec![format!("R{}", text::number(radius))], leaders));
+        let (fit, is_auxiliary) = subject.fits.of_radius(radius);
+        let text = format!("R{}", text::number(radius));
+        let fit = fit.cloned().unwrap_or_default();
+        let text = if is_auxiliary { format!("({text})") } else { text::joined(&[&text, &fit.tolerance]) };
+        all.push(Dimension::fitted_callout(key, vec![text], leaders, &fit));
     }
 }

@@ -1,6 +1,7 @@
 //! A dimension or callout that is still to be placed on a sheet.
 
-use crate::{Angular, Callout, Draft, Extent, Label, Leader, Linear, Point};
+use super::fit::Fit;
+use crate::{Angular, Callout, DatumMark, Draft, Extent, Label, Leader, Linear, Point};
 
 /// A dimension that is still to be placed.
 #[derive(Clone, Debug)]
@@ -18,6 +19,7 @@ enum Kind {
     Angular(Angular),
     Callout(Callout),
     Label(Label),
+    Datum(DatumMark),
 }
 
 impl Dimension {
@@ -45,6 +47,25 @@ impl Dimension {
         Self::callout_around(key.into(), lines, leaders, None)
     }
 
+    /// A callout with the geometrical tolerances and the datum of a fit.
+    pub(super) fn fitted_callout(
+        key: impl Into<String>,
+        lines: Vec<String>,
+        leaders: Vec<Leader>,
+        fit: &Fit,
+    ) -> Self {
+        let mut dimension = Self::callout(key, lines, leaders);
+        if let Kind::Callout(callout) = &mut dimension.kind {
+            callout.indicators.clone_from(&fit.indicators);
+            callout.datum = fit.datum;
+        }
+        dimension
+    }
+
+    pub(super) fn datum(mark: DatumMark) -> Self {
+        Self { key: mark.key.clone(), lines: vec![mark.letter.to_string()], kind: Kind::Datum(mark) }
+    }
+
     /// The letter of a detail at the circle around what the detail shows.
     pub(super) fn mark_of_detail(at: Point, radius_mm: f64, letter: &str) -> Self {
         let leaders = Leader::to_circle(at, radius_mm);
@@ -65,6 +86,8 @@ impl Dimension {
             is_balloon: false,
             avoid: Vec::new(),
             around,
+            indicators: Vec::new(),
+            datum: None,
         };
         Self { key, lines, kind: Kind::Callout(callout) }
     }
@@ -83,12 +106,16 @@ impl Dimension {
             Kind::Angular(a) => a.place(draft),
             Kind::Callout(c) => c.place(draft),
             Kind::Label(l) => l.place(draft),
+            Kind::Datum(d) => d.place(draft),
         }
     }
 
     /// The dimension as a note, for one that finds no space near its feature.
     pub(super) fn to_note(&self) -> String {
-        let text = self.lines.join(", ");
+        let text = match &self.kind {
+            Kind::Callout(callout) => callout.content().join(", "),
+            _ => self.lines.join(", "),
+        };
         // Some keys end in the text, so that they are unique.
         if self.key.ends_with(&text) { self.key.clone() } else { format!("{}: {text}", self.key) }
     }

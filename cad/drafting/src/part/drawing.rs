@@ -5,7 +5,7 @@ use super::callouts::{Subject, callouts, of_detail};
 use super::detail::{Detail, cut_x, details, draw_detail};
 use super::dimension::Dimension;
 use super::features::Features;
-use super::fit::Fits;
+use super::fit::{FaceDatum, Fits, RadialSize};
 use super::notes::{Terms, first_notes, reading_notes};
 use super::{hole_table, sides, text};
 use crate::contour::same;
@@ -14,8 +14,8 @@ use crate::view::{
     draw_strokes, elevation, joined, legible, plan,
 };
 use crate::{
-    ABOVE_MM, Draft, Extent, Layer, Layout, Linear, Paper, Point, Projection, Shape, Sheet, Sizes, Table,
-    TitleBlock, part_formats,
+    ABOVE_MM, DatumMark, Draft, Extent, Layer, Layout, Linear, Paper, Point, Projection, Shape, Sheet, Sizes,
+    Table, TitleBlock, part_formats,
 };
 use pinswitch_solid::mesh::Point3;
 use pinswitch_solid::pose::Pose;
@@ -216,7 +216,7 @@ impl Views<'_> {
         let mut notes: Vec<String> = part.engraving.iter().cloned().collect();
         notes.extend(first_notes(&self.features, part.chamfer_mm));
         notes.extend(part.notes.iter().cloned());
-        notes.extend(reading_notes(&self.features, &part.terms));
+        notes.extend(reading_notes(&self.features, &part.terms, part.fits.has_positions()));
         notes.extend(part.legend.iter().cloned());
         notes
     }
@@ -232,7 +232,8 @@ impl Views<'_> {
             boss: &self.part.terms.boss,
         };
         let mut all = self.heights(drawn);
-        all.extend(angles(f, self.part.half_span_rad, &places));
+        all.extend(self.radial_sizes(drawn));
+        all.extend(angles(f, &self.part.fits, self.part.half_span_rad, &places));
         for (detail, place, _) in &drawn.details {
             all.extend(of_detail(&subject, detail, place));
         }
@@ -252,7 +253,48 @@ impl Views<'_> {
         let details: Vec<Detail> = drawn.details.iter().map(|d| d.0).collect();
         all.extend(callouts(&subject, &places, &details));
         all.extend(hole_table::names(f, &drawn.place));
+        all.extend(self.datum_of_face(drawn));
         all
+    }
+
+    /// The position of a height over the bottom in the section.
+    fn section_x(drawn: &Drawn, z_mm: f64) -> f64 {
+        drawn.layout.section_mm + drawn.layout.section_sense * z_mm * drawn.place.scale
+    }
+
+    /// Thicknesses along a radius, right of the section.
+    fn radial_sizes(&self, drawn: &Drawn) -> Vec<Dimension> {
+        let section = drawn.section;
+        let dimension = |size: &RadialSize| {
+            let at = |radius_mm: f64| {
+                Point::new(section.high.x, drawn.place.at(Point2::new(self.cut_x, radius_mm)).y)
+            };
+            let (from, to) = (at(size.inner_mm), at(size.outer_mm));
+            Dimension::linear(Linear {
+                key: size.key.clone(),
+                text: text::joined(&[&text::number(size.outer_mm - size.inner_mm), &size.tolerance]),
+                from,
+                to,
+                upright: true,
+                edge_mm: section.high.x,
+                outward: 1.0,
+                room_mm: f64::INFINITY,
+                clear_of: [from.y, to.y],
+            })
+        };
+        self.part.fits.sizes.iter().map(dimension).collect()
+    }
+
+    /// The datum of an end face, at its edge in the section.
+    fn datum_of_face(&self, drawn: &Drawn) -> Option<Dimension> {
+        let FaceDatum { letter, z_mm, is_upper } = self.part.fits.face?;
+        let x = Self::section_x(drawn, z_mm);
+        let sense = if is_upper { drawn.layout.section_sense } else { -drawn.layout.section_sense };
+        let outward = Point::new(sense, 0.0);
+        let section = drawn.section;
+        let foot = |share: f64| Point::new(x, section.low.y + share * section.height());
+        let feet = [0.35, 0.45, 0.25, 0.55, 0.15, 0.65, 0.08].map(|share| (foot(share), outward)).to_vec();
+        Some(Dimension::datum(DatumMark { key: format!("datum {letter}"), letter, feet }))
     }
 
     /// Space below and above the front view, up to the view from above, mm.
@@ -359,17 +401,17 @@ impl Views<'_> {
 
     /// Heights of the outer faces over the bottom, in the section.
     fn heights(&self, drawn: &Drawn) -> Vec<Dimension> {
-        let (layout, section, scale) = (&drawn.layout, drawn.section, drawn.place.scale);
+        let section = drawn.section;
         let foot = section.low.y;
-        let x = |z: f64| layout.section_mm + layout.section_sense * z * scale;
+        let x = |z: f64| Self::section_x(drawn, z);
         let all = &self.features.heights_mm;
         all.iter()
             .map(|z| {
                 let text = text::number(*z);
-                let key = if Some(z) == all.last() {
-                    "overall height".to_owned()
+                let (key, text) = if Some(z) == all.last() {
+                    ("overall height".to_owned(), text::joined(&[&text, &self.part.fits.height_tolerance]))
                 } else {
-                    format!("height {text}")
+                    (format!("height {text}"), text)
                 };
                 Dimension::linear(Linear {
                     key,

@@ -18,6 +18,6 @@ mod sides;
 mod text;
 
 pub use drawing::PartDrawing;
-pub use fit::{Fit, Fits, RoundFit};
+pub use fit::{FaceDatum, Fit, Fits, RadialSize, RadiusFit, RoundFit};
 pub use notes::Terms;
 pub use text::number;

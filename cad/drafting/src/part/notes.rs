@@ -27,14 +27,17 @@ pub(super) fn first_notes(f: &Features, chamfer_mm: f64) -> Vec<String> {
         notes.push(format!("Bottom edges {} \u{d7} 45\u{b0}", number(chamfer_mm)));
     }
     if !f.is_axial() && !f.slots.is_empty() {
-        notes.push("Slots: through, with round ends".to_owned());
+        notes.push("Slots through, with full radius ends".to_owned());
     }
     notes
 }
 
 /// Notes about how dimensions are to be read.
-pub(super) fn reading_notes(f: &Features, terms: &Terms) -> Vec<String> {
+pub(super) fn reading_notes(f: &Features, terms: &Terms, has_positions: bool) -> Vec<String> {
     let mut notes = Vec::new();
+    if has_positions {
+        notes.push("Framed angles, and radii of centres: theoretically exact".to_owned());
+    }
     if f.bores.iter().any(|b| !b.is_plain()) {
         notes.push("Near face: the face in the front view".to_owned());
     }
@@ -51,7 +54,7 @@ pub(super) fn reading_notes(f: &Features, terms: &Terms) -> Vec<String> {
     if f.is_axial() {
         let of_pocket = format!("the axis of the {}", terms.pocket);
         let axis = if f.pattern.is_some() { &of_pocket } else { &terms.axis };
-        notes.push(format!("R without a centre mark: about {axis}"));
+        notes.push(format!("Radii without a centre mark are about {axis}"));
         notes.push("Angles from the middle plane, positive to the right".to_owned());
     }
     notes

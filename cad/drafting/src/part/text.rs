@@ -125,7 +125,7 @@ pub(super) fn boss(fits: &Fits, boss: &Boss, noun: &str, is_body: bool, is_axial
 }
 
 /// Words that are not empty, with spaces between them.
-fn joined(words: &[&str]) -> String {
+pub(super) fn joined(words: &[&str]) -> String {
     words.iter().filter(|w| !w.is_empty()).copied().collect::<Vec<_>>().join(" ")
 }
 
@@ -206,8 +206,8 @@ pub(super) fn segments(segments: &Segments, slots_rad: &[f64]) -> Vec<String> {
 /// The callout of ends that are not in a plane through the axis.
 pub(super) fn ends(shift_mm: f64, half_span_rad: f64) -> Vec<String> {
     vec![
-        "end face parallel to the plane".to_owned(),
-        format!("at \u{b1}{}, {} outside it", degrees(half_span_rad), number(shift_mm)),
+        format!("end face {} beyond the radial plane", number(shift_mm)),
+        format!("at \u{b1}{}, parallel to it", degrees(half_span_rad)),
     ]
 }
 
@@ -315,7 +315,7 @@ fn stacked(bore: &Bore, stages: &[Stage], fits: &[Option<&Fit>]) -> Vec<String> 
             lines.push(format!("{size}{depth}{}", purpose(*fit)));
         }
         if let Some(skin) = skins.get(i).filter(|s| !same(**s, 0.0)) {
-            lines.push(format!("closed skin {} above it", number(*skin)));
+            lines.push(format!("web {} above it", number(*skin)));
         }
     }
     lines

@@ -1,8 +1,9 @@
-//! Views of solids: front views, side views with hidden lines, cut faces, and the mark of a section.
+//! Views of solids: front views, side views with hidden lines, cut faces, the mark of a section, and isometric views.
 //!
 //! A front view looks along the axis of a solid, onto its upper face. Side views look across the axis; their coordinates
 //! are `u` across the paper, `z` along the axis, and `w` toward the observer.
 
+mod axonometric;
 mod body;
 mod elevation;
 mod face;
@@ -11,6 +12,7 @@ mod section_mark;
 mod stack;
 mod strokes;
 
+pub use axonometric::{Shifted, isometric};
 pub use body::{Body, Side};
 pub use elevation::{Elevation, elevation};
 pub use face::Face;

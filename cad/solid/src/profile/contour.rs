@@ -80,6 +80,20 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| p + by).collect(), edges: edges.collect() }
     }
 
+    /// Returns the contour rotated about the origin by `angle_rad`, counter-clockwise.
+    #[must_use]
+    pub fn rotated(&self, angle_rad: f64) -> Self {
+        let (c, s) = (libm::cos(angle_rad), libm::sin(angle_rad));
+        let turn = |p: Point2| Point2::new(c * p.x - s * p.y, s * p.x + c * p.y);
+        let edges = self.edges.iter().map(|edge| match edge {
+            Edge::Line => Edge::Line,
+            Edge::Arc(a) => {
+                Edge::Arc(Arc { centre: turn(a.centre), start_rad: a.start_rad + angle_rad, ..*a })
+            }
+        });
+        Self { corners: self.corners.iter().map(|p| turn(*p)).collect(), edges: edges.collect() }
+    }
+
     /// Returns the contour scaled about the origin by a positive `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {

@@ -177,6 +177,13 @@ impl Solid {
         foot
     }
 
+    /// Returns the solid rotated about the z axis by `angle_rad`, counter-clockwise.
+    #[must_use]
+    pub fn rotated(&self, angle_rad: f64) -> Self {
+        let turned = |ring: &Ring| Ring { contour: ring.contour.rotated(angle_rad), ..*ring };
+        Self { rings: self.rings.iter().map(turned).collect(), ..self.clone() }
+    }
+
     /// Returns the lower and upper corner of the exact bounding box in mm; `None` without rings.
     pub fn bounds(&self) -> Option<(Point3, Point3)> {
         self.rings

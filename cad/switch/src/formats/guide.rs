@@ -82,8 +82,9 @@ fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (
     let f = &manifest.friction;
     let _ = write!(
         text,
-        "## Predicted friction\n\nFriction is {:.2} N ({:.2} to {:.2} N) at a load of {:.2} N ({}). `friction.csv` and \
+        "## Predicted friction\n\n{}Friction is {:.2} N ({:.2} to {:.2} N) at a load of {:.2} N ({}). `friction.csv` and \
          `friction.svg` contain the curve.\n",
+        f.threshold_n.map(switches_at).unwrap_or_default(),
         f.friction_n,
         f.band_n[0],
         f.band_n[1],
@@ -91,6 +92,13 @@ fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (
         format!("{:?}", f.trust).to_lowercase()
     );
     (text, stages)
+}
+
+/// Returns the sentence about the threshold.
+fn switches_at(threshold_n: f64) -> String {
+    format!(
+        "Switches at {threshold_n:.1} N, the load at which the silicone carries half of the friction. "
+    )
 }
 
 fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {

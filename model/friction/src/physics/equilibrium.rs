@@ -27,6 +27,9 @@ const MAX_STEPS: usize = 60;
 pub(super) const BALANCE: f64 = 1e-8;
 /// Rounding error of a node's force, relative to its largest summand.
 const ROUNDING: f64 = 1e-12;
+/// Least height of a pin, relative to the nominal height: the support of a lower pin is small but
+/// defined.
+const LOWEST_PIN: f64 = 1e-3;
 /// Largest number of cuts of a step; the last one is used then.
 const MAX_CUTS: usize = 30;
 /// Largest multiple of the string's negative stiffness that is added to the matrix of a Newton
@@ -55,6 +58,8 @@ pub(super) struct Supports<'a> {
     pub(super) bed: &'a Bed,
     /// `N0` of this bed, N.
     pub(super) flush_force_n: f64,
+    /// Deviation of the height of each pin of the grid, mm; empty if all pins are nominal.
+    pub(super) heights_mm: &'a [f64],
 }
 
 /// Force and stiffness of a pin that is pressed into the silicone.
@@ -65,15 +70,23 @@ pub(super) struct Support {
 }
 
 impl Supports<'_> {
-    /// Returns the support of a pin at a gap of `u` mm: `N = N0 (1 + b) x/(1 + b x)` with `x = <h0
-    /// - u>/h0`.
-    pub(super) fn pin(&self, gap_mm: f64) -> Support {
-        let h0 = self.bed.protrusion_mm();
+    /// Returns the support of the pin of this index in the grid at a gap of `u` mm:
+    /// `N = N0 (1 + b) x/(1 + b x)` with `x = <h0 - u>/h0`. A pin that is higher than nominal has a
+    /// larger `h0`, and a larger `N0` in proportion.
+    pub(super) fn pin(&self, pin: usize, gap_mm: f64) -> Support {
+        let nominal = self.bed.protrusion_mm();
+        let (h0, flush_force_n) = match self.heights_mm.get(pin) {
+            None => (nominal, self.flush_force_n),
+            Some(by) => {
+                let height = (nominal + by).max(LOWEST_PIN * nominal);
+                (height, self.flush_force_n * height / nominal)
+            }
+        };
         let (x, b) = ((h0 - gap_mm).max(0.0) / h0, self.bed.softening);
         if x == 0.0 {
             return Support { force_n: 0.0, stiffness_n_mm: 0.0 };
         }
-        let (scale, soft) = (self.flush_force_n * (1.0 + b), 1.0 + b * x);
+        let (scale, soft) = (flush_force_n * (1.0 + b), 1.0 + b * x);
         Support { force_n: scale * x / soft, stiffness_n_mm: scale / (h0 * soft * soft) }
     }
 
@@ -118,8 +131,8 @@ impl Supports<'_> {
                 springs[i] += spring;
             }
         }
-        for p in &self.grid.pins {
-            let support = self.pin(u[*p]);
+        for (k, p) in self.grid.pins.iter().enumerate() {
+            let support = self.pin(k, u[*p]);
             gradient[*p] -= support.force_n;
             springs[*p] += support.stiffness_n_mm;
         }
@@ -202,7 +215,7 @@ impl Supports<'_> {
         let k = self.bed.stiffness_n_mm2();
         let silicone_n =
             gap_mm.iter().zip(&self.grid.silicone_mm).map(|(u, w)| k * w * (-u).max(0.0)).collect();
-        let pin_n = self.grid.pins.iter().map(|p| self.pin(gap_mm[*p]).force_n).collect();
+        let pin_n = self.grid.pins.iter().enumerate().map(|(k, p)| self.pin(k, gap_mm[*p]).force_n).collect();
         Equilibrium { gap_mm, pin_n, silicone_n, steps }
     }
 }

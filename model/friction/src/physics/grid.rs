@@ -23,6 +23,8 @@ pub(super) struct Grid {
     pub(super) pins: Vec<usize>,
     /// Angle of the span beyond each end of the wrap.
     pub(super) reach_rad: f64,
+    /// Number of elements between neighbouring corners.
+    pieces: Vec<usize>,
 }
 
 /// Length of an element of the straight spans, relative to the others.
@@ -69,37 +71,35 @@ impl Grid {
     /// Creates nodes over `wrap_rad` and [`reach_rad`] beyond both ends, about
     /// `wrap_rad / elements` apart, with one at each of `pins_rad` (ascending) within that reach.
     pub(super) fn new(wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Self {
-        let half = wrap_rad / 2.0;
-        let reach = reach_rad(bed);
-        let end = half + reach;
-        let inside: Vec<f64> = pins_rad.iter().copied().filter(|p| p.abs() < end).collect();
-        let margin = match bed.outside {
-            // Up to the edge of the outermost pins' grooves.
-            OutsidePins::Free => bed.groove_radius_mm / bed.contact_radius_mm,
-            OutsidePins::NextGroove => published::GROOVE_PITCH_DEG.to_radians(),
-            OutsidePins::OnSilicone => f64::INFINITY,
-        };
-        let span = match (inside.first(), inside.last()) {
-            (Some(first), Some(last)) => ((first - margin).max(-end), (last + margin).min(end)),
-            _ => (-end, end),
-        };
+        let corners = Corners::new(wrap_rad, pins_rad, bed, elements);
         let step = wrap_rad / elements.max(1) as f64;
-        let mut corners = inside.clone();
-        corners.dedup_by(|a, b| (*a - *b).abs() < SAME_RAD);
-        for corner in [-end, end, -half, half, span.0, span.1] {
-            if corners.iter().all(|c| (c - corner).abs() > SHORTEST * step) {
-                corners.push(corner);
-            }
-        }
-        corners.sort_by(f64::total_cmp);
-        let mut angle_rad: Vec<f64> = corners.first().copied().into_iter().collect();
-        for pair in corners.windows(2) {
+        let pieces = corners.angles_rad.windows(2).map(|pair| {
             // Beyond the wrap the tendon is almost straight.
             let beyond = pair[0] + pair[1] > wrap_rad || pair[0] + pair[1] < -wrap_rad;
             let step = if beyond { STRAIGHT * step } else { step };
-            let pieces = ((pair[1] - pair[0]) / step).ceil().max(1.0);
-            let piece = (pair[1] - pair[0]) / pieces;
-            angle_rad.extend((1..pieces as usize).map(|k| pair[0] + piece * k as f64));
+            ((pair[1] - pair[0]) / step).ceil().max(1.0) as usize
+        });
+        Self::of_corners(pieces.collect(), corners, bed)
+    }
+
+    /// Creates the nodes of a switch with slightly other dimensions, as many between neighbouring
+    /// corners as here, so that friction is smooth in the dimensions. `None` if the pins within
+    /// reach, or other corners, are not the same.
+    pub(super) fn moved(&self, wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Option<Self> {
+        let corners = Corners::new(wrap_rad, pins_rad, bed, elements);
+        let is_same =
+            corners.angles_rad.len() == self.pieces.len() + 1 && corners.inside.len() == self.pins.len();
+        let moved = is_same.then(|| Self::of_corners(self.pieces.clone(), corners, bed))?;
+        (moved.pins == self.pins).then_some(moved)
+    }
+
+    /// Creates the nodes between corners, from the number of elements between neighbouring ones.
+    fn of_corners(pieces: Vec<usize>, corners: Corners, bed: &Bed) -> Self {
+        let Corners { angles_rad: corners, inside, span, reach } = corners;
+        let mut angle_rad: Vec<f64> = corners.first().copied().into_iter().collect();
+        for (pair, count) in corners.windows(2).zip(&pieces) {
+            let piece = (pair[1] - pair[0]) / *count as f64;
+            angle_rad.extend((1..*count).map(|k| pair[0] + piece * k as f64));
             angle_rad.push(pair[1]);
         }
         let nodes = angle_rad.len();
@@ -117,7 +117,16 @@ impl Grid {
         let pins = inside.iter().map(|p| angle_rad.partition_point(|a| *a < p - SAME_RAD)).collect();
         let unit_bending = unit_bending(&element_mm, bed.axis_radius_mm());
         let per_element_mm = element_mm.iter().map(|length| 1.0 / length).collect();
-        Self { angle_rad, per_element_mm, unit_bending, share_mm, silicone_mm, pins, reach_rad: reach }
+        Self {
+            angle_rad,
+            per_element_mm,
+            unit_bending,
+            share_mm,
+            silicone_mm,
+            pins,
+            reach_rad: reach,
+            pieces,
+        }
     }
 
     /// Returns the quadratic form and the linear term of bending, `EI/2 (u'' + u/Rc^2 - 1/Rc)^2`,
@@ -141,6 +150,47 @@ impl Grid {
     /// Returns the number of nodes.
     pub(super) fn len(&self) -> usize {
         self.angle_rad.len()
+    }
+}
+
+/// Angles between which the elements are even, and what determines them.
+struct Corners {
+    /// Pins, ends of the wrap, of the silicone and of the spans beyond, ascending.
+    angles_rad: Vec<f64>,
+    /// Angles of the pins within reach.
+    inside: Vec<f64>,
+    /// First and last angle at which silicone can touch the tendon.
+    span: (f64, f64),
+    /// Angle of the span beyond each end of the wrap.
+    reach: f64,
+}
+
+impl Corners {
+    fn new(wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Self {
+        let half = wrap_rad / 2.0;
+        let reach = reach_rad(bed);
+        let end = half + reach;
+        let inside: Vec<f64> = pins_rad.iter().copied().filter(|p| p.abs() < end).collect();
+        let margin = match bed.outside {
+            // Up to the edge of the outermost pins' grooves.
+            OutsidePins::Free => bed.groove_radius_mm / bed.contact_radius_mm,
+            OutsidePins::NextGroove => published::GROOVE_PITCH_DEG.to_radians(),
+            OutsidePins::OnSilicone => f64::INFINITY,
+        };
+        let span = match (inside.first(), inside.last()) {
+            (Some(first), Some(last)) => ((first - margin).max(-end), (last + margin).min(end)),
+            _ => (-end, end),
+        };
+        let step = wrap_rad / elements.max(1) as f64;
+        let mut corners = inside.clone();
+        corners.dedup_by(|a, b| (*a - *b).abs() < SAME_RAD);
+        for corner in [-end, end, -half, half, span.0, span.1] {
+            if corners.iter().all(|c| (c - corner).abs() > SHORTEST * step) {
+                corners.push(corner);
+            }
+        }
+        corners.sort_by(f64::total_cmp);
+        Self { angles_rad: corners, inside, span, reach }
     }
 }
 

@@ -16,10 +16,12 @@ mod fit;
 mod grid;
 pub mod hypotheses;
 mod line_search;
+mod made;
 mod march;
 mod pair;
 mod profile;
 mod switch;
+mod threshold;
 
 #[cfg(test)]
 mod tests;
@@ -31,5 +33,6 @@ pub use error::PhysicsError;
 pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
 };
+pub use made::{Dimension, MadeDimensions};
 pub use profile::{ContactProfile, contact_profile, contact_profiles};
 pub use switch::{PhysicsSwitch, Sensitivities};

@@ -7,11 +7,13 @@ use super::coupled::{Exponents, MAX_PASSES, Workspace};
 use super::equilibrium::Supports;
 use super::error::PhysicsError;
 use super::grid::{self, Grid};
+use super::made::MadeDimensions;
 use super::march::{Slide, Sliding, pins_alone_exponent, pins_alone_slope, polygon_turns_rad, slide};
 use super::pair::Pair;
 use crate::bed::Bed;
 use crate::capstan::{Direction, capstan_tension_n};
-use crate::contact::Contact;
+use crate::contact::{Contact, ContactError};
+use crate::pattern::PinPattern;
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
 
@@ -37,7 +39,12 @@ pub struct PhysicsSwitch {
     contact: Contact,
     bed: Bed,
     constants: Constants,
+    elements: usize,
     grid: Grid,
+    /// Deviation of the height of each pin, mm; empty if all pins are nominal.
+    heights_mm: Vec<f64>,
+    /// The same of the pins of the grid.
+    reached_heights_mm: Vec<f64>,
 }
 
 impl PhysicsSwitch {
@@ -50,7 +57,61 @@ impl PhysicsSwitch {
     /// Creates the switch with another bed and another number of elements over the wrap.
     pub fn with_elements(contact: &Contact, bed: Bed, constants: Constants, elements: usize) -> Self {
         let grid = Grid::new(contact.wrap_rad(), contact.all_pins().angles_rad(), &bed, elements);
-        Self { contact: contact.clone(), bed, constants, grid }
+        Self {
+            contact: contact.clone(),
+            bed,
+            constants,
+            elements,
+            grid,
+            heights_mm: Vec::new(),
+            reached_heights_mm: Vec::new(),
+        }
+    }
+
+    /// Returns the same switch as it was made, on as many nodes, so that friction is smooth in the
+    /// dimensions.
+    ///
+    /// # Errors
+    /// [`ContactError`] if the wrap is invalid.
+    pub fn made(&self, dimensions: &MadeDimensions) -> Result<Self, ContactError> {
+        let MadeDimensions { wrap_rad, bed, pin_angles_rad, pin_heights_mm } = dimensions;
+        let mut pins: Vec<(f64, f64)> =
+            pin_angles_rad.iter().copied().zip(pin_heights_mm.iter().copied()).collect();
+        pins.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let angles_rad: Vec<f64> = pins.iter().map(|(angle, _)| *angle).collect();
+        let grid = self
+            .grid
+            .moved(*wrap_rad, &angles_rad, bed, self.elements)
+            .unwrap_or_else(|| Grid::new(*wrap_rad, &angles_rad, bed, self.elements));
+        let end = wrap_rad / 2.0 + grid.reach_rad;
+        let contact = Contact::new(self.contact.substrate(), PinPattern::new(angles_rad), *wrap_rad)?;
+        Ok(Self {
+            contact: contact.with_bed(*bed),
+            bed: *bed,
+            constants: self.constants,
+            elements: self.elements,
+            grid,
+            reached_heights_mm: pins.iter().filter(|(angle, _)| angle.abs() < end).map(|p| p.1).collect(),
+            heights_mm: pins.iter().map(|(_, height)| *height).collect(),
+        })
+    }
+
+    /// Returns the dimensions of the switch.
+    pub(super) fn dimensions(&self) -> MadeDimensions {
+        let nominal = MadeDimensions::nominal(&self.contact);
+        let pin_heights_mm =
+            if self.heights_mm.is_empty() { nominal.pin_heights_mm } else { self.heights_mm.clone() };
+        MadeDimensions { bed: self.bed, pin_heights_mm, ..nominal }
+    }
+
+    /// Returns the contact.
+    pub(super) fn contact(&self) -> &Contact {
+        &self.contact
+    }
+
+    /// Returns the constants for the published bed.
+    pub(super) fn constants(&self) -> &Constants {
+        &self.constants
     }
 
     /// Returns the same switch with other constants.
@@ -105,13 +166,13 @@ impl PhysicsSwitch {
     }
 
     /// Returns the supports of the tendon.
-    fn supports(&self) -> Supports<'_> {
+    pub(super) fn supports(&self) -> Supports<'_> {
         let flush_force_n = self.constants.flush_force_n * self.bed.flush_force_ratio();
-        Supports { grid: &self.grid, bed: &self.bed, flush_force_n }
+        Supports { grid: &self.grid, bed: &self.bed, flush_force_n, heights_mm: &self.reached_heights_mm }
     }
 
     /// Returns the arrays for the loads of a curve; `None` if its friction has a closed form.
-    fn workspace(&self) -> Option<Workspace> {
+    pub(super) fn workspace(&self) -> Option<Workspace> {
         let is_rigid = self.contact.substrate() == Substrate::Abs;
         let is_bare = self.contact.all_pins().angles_rad().is_empty();
         (!is_rigid && !is_bare).then(|| Workspace::new(&self.supports()))
@@ -155,7 +216,7 @@ impl PhysicsSwitch {
     }
 
     /// Computes the state at one load, from those at the loads before.
-    fn state_from(
+    pub(super) fn state_from(
         &self,
         load_n: f64,
         workspace: Option<&mut Workspace>,

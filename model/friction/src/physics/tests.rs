@@ -11,6 +11,7 @@ use super::equilibrium::Supports;
 use super::fit::{fit, fit_maxima, leave_one_condition_out, leave_one_layout_out, published_maxima};
 use super::grid::Grid;
 use super::hypotheses::{self, hypotheses};
+use super::made::Dimension;
 use super::march::{self, Slide};
 use super::switch::PhysicsSwitch;
 use crate::bed::{Bed, OutsidePins};
@@ -58,7 +59,8 @@ fn regression_values_are_reproduced() {
     for (i, (forces, share)) in expected.iter().enumerate() {
         // A few hundred nodes, as in `model/doc/friction-laws.md`.
         let grid = Grid::new(published::wrap_angle_rad(), layout(i).angles_rad(), &bed, 400);
-        let supports = Supports { grid: &grid, bed: &bed, flush_force_n: 200.0 * bed.protrusion_mm() };
+        let supports =
+            Supports { grid: &grid, bed: &bed, flush_force_n: 200.0 * bed.protrusion_mm(), heights_mm: &[] };
         let solved = supports.equilibrium(&vec![HEAVIEST_N; grid.len()], None).unwrap();
         for (n, expected) in solved.pin_n.iter().zip(*forces) {
             assert!((n - expected).abs() < 0.06, "{}: {:?}", LAYOUTS[i].name, solved.pin_n);
@@ -76,7 +78,7 @@ fn uniform_material_gives_the_capstan() {
     let bed = regression_bed();
     let wrap = published::wrap_angle_rad();
     let grid = Grid::new(wrap, &[], &bed, 200);
-    let supports = Supports { grid: &grid, bed: &bed, flush_force_n: 8.5 };
+    let supports = Supports { grid: &grid, bed: &bed, flush_force_n: 8.5, heights_mm: &[] };
     for direction in [Direction::Eccentric, Direction::Concentric] {
         let constants = Constants::published();
         let sliding = sliding_state(supports, &constants, wrap, 30.0, direction);
@@ -307,7 +309,7 @@ proptest! {
         let contact = device(pins).with_bed(Bed { outside, bending_n_mm2: bending, ..Bed::published() });
         let wrap = contact.wrap_rad();
         let grid = Grid::new(wrap, contact.pins().angles_rad(), contact.bed(), 120);
-        let supports = Supports { grid: &grid, bed: contact.bed(), flush_force_n: 8.5 };
+        let supports = Supports { grid: &grid, bed: contact.bed(), flush_force_n: 8.5, heights_mm: &[] };
         for direction in [Direction::Eccentric, Direction::Concentric] {
             let state = sliding_state(supports, &Constants::published(), wrap, load, direction);
             let turn: f64 = state.silicone_turn_rad + state.pin_turn_rad.iter().sum::<f64>();
@@ -339,7 +341,7 @@ proptest! {
         let at = |p: PinPattern| {
             let contact = device(p);
             let grid = Grid::new(contact.wrap_rad(), contact.pins().angles_rad(), contact.bed(), 120);
-            let supports = Supports { grid: &grid, bed: contact.bed(), flush_force_n: 8.5 };
+            let supports = Supports { grid: &grid, bed: contact.bed(), flush_force_n: 8.5, heights_mm: &[] };
             supports.equilibrium(&vec![load; grid.len()], None).unwrap()
         };
         let (a, b) = (at(pins), at(mirrored));
@@ -437,4 +439,77 @@ proptest! {
             }
         }
     }
+}
+
+/// Uneven switch with a pin beyond the wrap, and every dimension on which its friction depends.
+fn uneven_switch() -> (PhysicsSwitch, Vec<Dimension>) {
+    let pins = PinPattern::new(vec![-0.35, -0.02, 0.21, 0.575]);
+    let switch = PhysicsSwitch::new(&device(pins), Constants::published());
+    let each = |of: fn(usize) -> Dimension| (0..4).map(of);
+    let mut all = vec![
+        Dimension::Wrap,
+        Dimension::ContactRadius,
+        Dimension::TendonRadius,
+        Dimension::PinDiameter,
+        Dimension::GrooveRadius,
+        Dimension::Layer,
+        Dimension::LayerWidth,
+        Dimension::Modulus,
+    ];
+    all.extend(each(Dimension::PinAngle).chain(each(Dimension::PinHeight)));
+    (switch, all)
+}
+
+/// Returns the threshold of a switch with one dimension changed.
+fn moved_threshold_n(switch: &PhysicsSwitch, dimension: Dimension, by: f64) -> f64 {
+    let mut dimensions = switch.dimensions();
+    dimensions.add(dimension, by);
+    switch.made(&dimensions).unwrap().threshold_n((3.0, 80.0)).unwrap().unwrap()
+}
+
+/// The implicit derivatives of the threshold agree with central differences of thresholds that are
+/// computed from scratch.
+#[test]
+fn threshold_slopes_match_differences() {
+    let (switch, all) = uneven_switch();
+    let threshold_n = switch.threshold_n((3.0, 80.0)).unwrap().unwrap();
+    let slopes = switch.threshold_slopes(threshold_n, &all).unwrap();
+    for (dimension, slope) in all.iter().zip(slopes) {
+        let step = match dimension {
+            Dimension::PinAngle(_) | Dimension::PinHeight(_) => 1e-5,
+            _ => 1e-5 * switch.dimensions().get(*dimension),
+        };
+        let difference = (moved_threshold_n(&switch, *dimension, step)
+            - moved_threshold_n(&switch, *dimension, -step))
+            / (2.0 * step);
+        assert!(
+            (slope - difference).abs() < 1e-4 * difference.abs() + 1e-3,
+            "{dimension:?}: {slope} for {difference}"
+        );
+    }
+}
+
+/// Pins that are all higher by the same amount are pins in shallower grooves.
+#[test]
+fn equal_pin_heights_act_like_the_bed() {
+    let (switch, _) = uneven_switch();
+    let mut higher = switch.dimensions();
+    higher.pin_heights_mm.fill(0.05);
+    let mut shallower = switch.dimensions();
+    shallower.bed.groove_radius_mm -= 0.05;
+    let thresholds_n = [higher, shallower]
+        .map(|dimensions| switch.made(&dimensions).unwrap().threshold_n((3.0, 80.0)).unwrap().unwrap());
+    assert!((thresholds_n[0] / thresholds_n[1] - 1.0).abs() < 2e-3, "{thresholds_n:?}");
+}
+
+/// The threshold from a similar switch is that of the scan.
+#[test]
+fn thresholds_do_not_depend_on_the_start() {
+    let (switch, _) = uneven_switch();
+    let threshold_n = switch.threshold_n((3.0, 80.0)).unwrap().unwrap();
+    for near_n in [10.0, 0.9 * threshold_n, 1.2 * threshold_n, 70.0] {
+        let near = switch.threshold_near_n(near_n, (3.0, 80.0)).unwrap().unwrap();
+        assert!((near / threshold_n - 1.0).abs() < 1e-6, "{near} for {threshold_n} from {near_n}");
+    }
+    assert_eq!(switch.threshold_near_n(threshold_n, (3.0, 0.9 * threshold_n)).unwrap(), None);
 }

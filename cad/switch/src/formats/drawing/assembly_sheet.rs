@@ -1,6 +1,8 @@
-//! The sheet of the assembly: front view, view from above and section, with balloons and the parts list.
+//! The sheet of the assembly: front view, view from above and section, with balloons, overall dimensions, the wrap, and the
+//! parts list; an isometric and an exploded view in the free space.
 
 use super::assembly_hardware;
+use super::assembly_pictures::{Picture, pictures};
 use super::parts_list::{Item, items};
 use super::words;
 use crate::built::Built;
@@ -11,8 +13,8 @@ use pinswitch_drafting::view::{
     draw_section_mark, draw_strokes, elevation, joined, legible, stacked_plan,
 };
 use pinswitch_drafting::{
-    ABOVE_ASSEMBLY_MM, ABOVE_MM, Callout, Draft, Extent, Layer, Layout, Leader, Linear, Paper, Point,
-    Projection, Shape, Sheet, Sizes, Table, TitleBlock, assembly_formats, lettering, number,
+    ABOVE_ASSEMBLY_MM, ABOVE_MM, Angular, Callout, Draft, Extent, Layer, Layout, Leader, Linear, Paper,
+    Point, Projection, Shape, Sheet, Sizes, Table, TitleBlock, assembly_formats, lettering, number,
 };
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
@@ -34,6 +36,7 @@ struct Assembly<'a> {
     cut_x: f64,
     faces: Vec<Face>,
     behind: Elevation,
+    pictures: Vec<Picture>,
 }
 
 /// Returns the sheet of the assembly, on `paper` or a larger one; `None` if it is too large for any paper.
@@ -57,13 +60,16 @@ pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, paper: Paper) -> 
         cut_x,
         faces: from_side.iter().map(|body| Face::new(body, cut)).collect(),
         behind: elevation(&from_side, Some(cut)),
+        pictures: pictures(built, &bodies),
         bodies,
         title,
         z_mm,
     };
-    assembly_formats(paper)
-        .into_iter()
-        .find_map(|(paper, scale, columns)| assembly.attempt(paper, scale, columns))
+    // On a sheet without space for them, the pictures are left out.
+    [true, false].into_iter().find_map(|has_pictures| {
+        let mut formats = assembly_formats(paper).into_iter();
+        formats.find_map(|(paper, scale, columns)| assembly.attempt(paper, scale, columns, has_pictures))
+    })
 }
 
 /// The x of the pin nearest to the middle.
@@ -73,6 +79,11 @@ fn cut_x(design: &Design) -> f64 {
     xs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
+/// Formats an overall length, which follows from the dimensions of the parts, in tenths of a millimetre.
+fn auxiliary(mm: f64) -> String {
+    format!("({})", number((mm * 10.0).round() / 10.0))
+}
+
 /// The bodies viewed from a side, the lowest at z = 0.
 fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
     let place = |pose: &Pose| Pose { z_mm: pose.z_mm - lowest_mm, ..*pose };
@@ -80,7 +91,7 @@ fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
 }
 
 impl Assembly<'_> {
-    fn attempt(&self, paper: Paper, scale: f64, columns: usize) -> Option<Sheet> {
+    fn attempt(&self, paper: Paper, scale: f64, columns: usize, has_pictures: bool) -> Option<Sheet> {
         let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
         let projection = title.projection;
         let mut draft = Draft::new(paper, &title);
@@ -131,11 +142,14 @@ impl Assembly<'_> {
             return None;
         }
         let is_placed = self.draw_overall(&mut draft, section)
+            && self.draw_size(&mut draft, &place, front, lowest)
+            && self.draw_wrap(&mut draft, &place, lowest)
             && self
                 .items
                 .iter()
                 .all(|item| self.draw_balloon(&mut draft, item, &place, &inside, &[front, section]))
-            && self.draw_legend(&mut draft, lowest);
+            && self.draw_legend(&mut draft, lowest)
+            && (!has_pictures || self.pictures.iter().all(|picture| picture.place(&mut draft, scale)));
         is_placed.then(|| draft.into_sheet("assembly", scale))
     }
 
@@ -256,6 +270,89 @@ impl Assembly<'_> {
         self.title.projection == Projection::First
     }
 
+    /// Draws length and height of all parts but the tendon; returns whether there is space.
+    fn draw_size(&self, draft: &mut Draft, place: &Place, front: Extent, lowest: Extent) -> bool {
+        let solid = self.bodies.iter().filter(|(part, _)| part.role != Role::Tendon);
+        let corners = solid.filter_map(|(part, pose)| {
+            let (low, high) = part.solid.bounds()?;
+            let (left, right) = if pose.flipped { (-high.x, -low.x) } else { (low.x, high.x) };
+            Some([left, right, low.y, high.y])
+        });
+        let ends = corners.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])]);
+        let Some([left, right, low, high]) = ends else { return true };
+        let at = |x: f64, y: f64| place.at(Point2::new(x, y));
+        let (foot, top) = (at(left, low), at(left, high));
+        let height = Linear {
+            key: "overall height".to_owned(),
+            text: auxiliary(high - low),
+            from: foot,
+            to: top,
+            upright: true,
+            edge_mm: front.low.x,
+            outward: -1.0,
+            room_mm: f64::INFINITY,
+            clear_of: [foot.y, top.y],
+        };
+        let (from, to) = (at(left, low).x, at(right, low).x);
+        let length = Linear {
+            key: "overall length".to_owned(),
+            text: auxiliary(right - left),
+            from: Point::new(from, lowest.low.y),
+            to: Point::new(to, lowest.low.y),
+            upright: false,
+            edge_mm: lowest.low.y,
+            outward: -1.0,
+            room_mm: f64::INFINITY,
+            clear_of: [from, to],
+        };
+        height.place(draft) && length.place(draft)
+    }
+
+    /// Draws the wrap angle and the radius of the contact, or their text below the views; returns whether there is space.
+    fn draw_wrap(&self, draft: &mut Draft, place: &Place, lowest: Extent) -> bool {
+        let (wrap_deg, radius_mm) =
+            (self.design.configuration().layout.wrap_angle_deg, self.design.contact_radius_mm());
+        let half = wrap_deg.to_radians() / 2.0;
+        let angle = Angular {
+            key: "wrap angle".to_owned(),
+            text: format!("wrap {}\u{b0}", number(wrap_deg)),
+            centre: place.origin,
+            from_rad: FRAC_PI_2 - half,
+            to_rad: FRAC_PI_2 + half,
+            begins_mm: radius_mm * place.scale,
+            edge_mm: self.design.support_radius_mm() * place.scale,
+            is_inside: false,
+            is_exact: false,
+        };
+        let leaders = [-0.95, -0.8, -0.6, -0.4, 0.4, 0.6, 0.8, 0.95].into_iter().flat_map(|share| {
+            let tip = place.at(polar(radius_mm, share * half));
+            let outward = (tip - place.origin).unit();
+            [-0.5, 0.0, 0.5].map(|turn: f64| Leader {
+                tip,
+                direction: Point::towards(outward.angle_rad() + turn),
+                cost_mm: 0.0,
+            })
+        });
+        let radius = Callout {
+            key: "contact radius".to_owned(),
+            lines: vec![format!("contact R{}", number(radius_mm))],
+            leaders: leaders.collect(),
+            is_balloon: false,
+            avoid: Vec::new(),
+            around: None,
+            indicators: Vec::new(),
+            datum: None,
+        };
+        let mut words = Vec::new();
+        if half >= std::f64::consts::PI || !angle.place(draft) {
+            words.push(angle.text);
+        }
+        if !radius.place(draft) {
+            words.extend(radius.lines);
+        }
+        words.is_empty() || draft.place_title("wrap", &words.join(", "), LEGEND_MM, lowest, false)
+    }
+
     /// Draws the width over both supports; returns whether there is space.
     fn draw_overall(&self, draft: &mut Draft, section: Extent) -> bool {
         let corner = Point::new(section.high.x, section.low.y);
@@ -347,6 +444,8 @@ impl Assembly<'_> {
             is_balloon: true,
             avoid: views.to_vec(),
             around: None,
+            indicators: Vec::new(),
+            datum: None,
         };
         balloon.place(draft)
     }

@@ -5,7 +5,8 @@ use crate::design::{
     BEARING_SEAT_MM, Design, Hole, Recess, STOP_SCREW, axle_recess, clearance, clearance_grade, stop_recess,
 };
 use crate::parts::{Part, Role, keys};
-use pinswitch_drafting::{Fit, Fits, RoundFit, number};
+use crate::tolerances::{ChainDimension, link};
+use pinswitch_drafting::{FaceDatum, Fit, Fits, Indicator, RadialSize, RadiusFit, RoundFit, number};
 use pinswitch_solid::profile::{Point2, polar};
 
 /// For bought parts, which must go in without play.
@@ -27,13 +28,103 @@ pub(super) fn fits(design: &Design, part: &Part) -> Fits {
     } else {
         String::new()
     };
+    let is_support = matches!(part.role, Role::Support { .. });
+    let slots = Fit::new(CLOSE, purpose);
     Fits {
         holes: holes(design, part),
         bosses: bosses(design, part),
-        // Pins go into slots and grooves; ribs form grooves.
-        slots: Fit::new(CLOSE, purpose),
-        half_rounds: Fit::new(CLOSE, ""),
+        slots: if is_support {
+            slots.with_indicator(position(design, ChainDimension::SlotPosition, &datums(design)))
+        } else {
+            slots
+        },
+        half_rounds: half_rounds(design, part),
+        radii: radii(design, part),
+        sizes: thickness(design, part).into_iter().collect(),
+        height_tolerance: match part.role {
+            Role::Layer => plus_minus(link(design, ChainDimension::LayerWidth).drawing),
+            _ => String::new(),
+        },
+        face: face(design, part),
     }
+}
+
+/// Formats a symmetric tolerance with two decimal places at most, rounded down, so that it is not wider than computed.
+fn plus_minus(tolerance_mm: f64) -> String {
+    format!("\u{b1}{}", number(hundredths(tolerance_mm)))
+}
+
+/// Rounds down to hundredths, and keeps what is smaller.
+fn hundredths(mm: f64) -> f64 {
+    let steps = (mm * 100.0 + 1e-9).floor();
+    if steps >= 1.0 { steps / 100.0 } else { mm }
+}
+
+/// Returns the position tolerance of a dimension of the chain: the zone is twice its tolerance.
+fn position(design: &Design, dimension: ChainDimension, datums: &[char]) -> Indicator {
+    Indicator::position(number(hundredths(2.0 * link(design, dimension).drawing)), datums)
+}
+
+/// Letters of the datums of shell and supports: the face between them, and the holes that locate them, if any.
+fn datums(design: &Design) -> Vec<char> {
+    let is_located = design.configuration().fasteners.count > 0 || design.dowel_hole_radius_mm().is_some();
+    if is_located { vec!['A', 'B'] } else { vec!['A'] }
+}
+
+/// Fit of grooves and ribs. Pins go into grooves, and ribs form the grooves of the silicone, whose depth is in the chain
+/// from dimensions to threshold.
+fn half_rounds(design: &Design, part: &Part) -> Fit {
+    let position = |datums: &[char]| position(design, ChainDimension::GroovePosition, datums);
+    match part.role {
+        Role::Layer | Role::Mould => {
+            let [all, each] = [ChainDimension::GrooveDepth, ChainDimension::PinHeight];
+            let tolerance = libm::hypot(link(design, all).drawing, link(design, each).drawing);
+            Fit::new(plus_minus(tolerance), "").with_indicator(position(&['A']))
+        }
+        Role::Shell => Fit::new(CLOSE, "").with_indicator(position(&datums(design))),
+        _ => Fit::new(CLOSE, ""),
+    }
+}
+
+/// Fits of the radii that determine the thickness of the layer and the radius of the contact.
+fn radii(design: &Design, part: &Part) -> Vec<RadiusFit> {
+    let of = |radius_mm, fit| RadiusFit { radius_mm, fit };
+    match part.role {
+        Role::Shell => {
+            let tolerance = plus_minus(link(design, ChainDimension::ShellRadius).drawing);
+            vec![of(design.shell_radius_mm(), Fit::new(tolerance, ""))]
+        }
+        Role::Layer => vec![of(design.shell_radius_mm(), Fit::default().with_datum('A'))],
+        Role::Mould => {
+            // Two faces of the mould share the tolerance of the layer between them.
+            let tolerance = plus_minus(link(design, ChainDimension::LayerThickness).drawing / 2.0);
+            let scale = 1.0 / (1.0 - design.configuration().mould.shrinkage_pct / 100.0);
+            [design.shell_radius_mm(), design.contact_radius_mm()]
+                .map(|radius_mm| of(scale * radius_mm, Fit::new(tolerance.clone(), "")))
+                .to_vec()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The thickness of the layer.
+fn thickness(design: &Design, part: &Part) -> Option<RadialSize> {
+    (part.role == Role::Layer).then(|| RadialSize {
+        key: "layer thickness".to_owned(),
+        inner_mm: design.shell_radius_mm(),
+        outer_mm: design.contact_radius_mm(),
+        tolerance: plus_minus(link(design, ChainDimension::LayerThickness).drawing),
+    })
+}
+
+/// The datum A of shell and supports is the face between them; that of a mould, its face on the bed.
+fn face(design: &Design, part: &Part) -> Option<FaceDatum> {
+    let (z_mm, is_upper) = match (part.role, part.name.as_str()) {
+        (Role::Shell, _) | (Role::Mould, "mould-ring" | "mould-tray") => (0.0, false),
+        (Role::Support { .. }, _) => (design.configuration().support.plate_mm, true),
+        _ => return None,
+    };
+    Some(FaceDatum { letter: 'A', z_mm, is_upper })
 }
 
 /// Returns whether a part measures the machine that makes it.
@@ -111,8 +202,24 @@ fn fasteners(design: &Design, part: &Part) -> Vec<RoundFit> {
     let on = |angle: &f64| polar(design.fastener_radius_mm(), *angle);
     let grade = clearance_grade(thread, f.hole_diameter_mm);
     let mut all = Vec::new();
+    let is_switch = matches!(part.role, Role::Shell | Role::Support { .. });
+    // Dowels locate the parts better than screws.
+    let has_dowels = design.dowel_hole_radius_mm().is_some();
+    let located = |fit: Fit, zone_mm: Option<f64>, is_datum: bool| match zone_mm.filter(|_| is_switch) {
+        None => fit,
+        Some(zone_mm) => {
+            let zone = format!("\u{d8}{}", number(hundredths(zone_mm)));
+            let datums: &[char] = if is_datum { &['A'] } else { &['A', 'B'] };
+            let fit = fit.with_indicator(Indicator::position(zone, datums));
+            if is_datum { fit.with_datum('B') } else { fit }
+        }
+    };
+    // Half of the play of a screw in its hole is for each of two parts.
+    let shank_mm = thread.and_then(|name| name.strip_prefix('M')?.parse::<f64>().ok());
+    let play_mm = shank_mm.map(|shank| (f.hole_diameter_mm - shank) / 2.0).filter(|play| *play > 0.0);
     for centre in design.fastener_angles_rad().iter().map(on) {
-        all.push(at(centre, f.hole_diameter_mm / 2.0, Fit::new(grade, format!("for {name}"))));
+        let fit = located(Fit::new(grade, format!("for {name}")), play_mm, !has_dowels);
+        all.push(at(centre, f.hole_diameter_mm / 2.0, fit));
         match part.role {
             Role::Shell => all.extend(fastening.insert_mm.map(|[bore, _]| {
                 at(centre, bore / 2.0, Fit::new(CLOSE, format!("for heat-set insert {name}")))
@@ -126,7 +233,8 @@ fn fasteners(design: &Design, part: &Part) -> Vec<RoundFit> {
     }
     let purpose = format!("for dowel {}", number(f.dowel_diameter_mm));
     all.extend(design.dowel_hole_radius_mm().into_iter().flat_map(|half_mm| {
-        let fit = Fit::new(CLOSE, purpose.clone());
+        let zone_mm = 2.0 * half_mm - f.dowel_diameter_mm;
+        let fit = located(Fit::new(CLOSE, purpose.clone()), Some(zone_mm).filter(|zone| *zone > 0.0), true);
         design.dowel_angles_rad().into_iter().map(move |angle| at(on(&angle), half_mm, fit.clone()))
     }));
     all

@@ -4,6 +4,7 @@
 //! its bought hardware, and its assembly.
 
 mod assembly_hardware;
+mod assembly_pictures;
 mod assembly_sheet;
 mod fits;
 mod part_sheet;
@@ -63,15 +64,23 @@ pub fn sheets(built: &Built) -> Vec<Sheet> {
     let parts: Vec<&Part> = printed.chain(layer).chain(&pin).collect();
     let number_of_sheets = parts.len() + 1;
     let mut all = Vec::with_capacity(number_of_sheets);
-    let title = |number: usize, name: &str, material: String, tolerance: &str| {
-        title_block(built, c, (number, number_of_sheets), name, material, tolerance)
+    let title = |number: usize, name: &str, material: String| {
+        title_block(built, c, (number, number_of_sheets), name, material)
     };
-    let first = title(1, "assembly", "see parts list".to_owned(), "see parts");
+    let first = TitleBlock {
+        document_type: "Assembly drawing".to_owned(),
+        general_tolerance: "see the sheets of the parts".to_owned(),
+        ..title(1, "assembly", "see parts list".to_owned())
+    };
     all.extend(assembly_sheet::assembly_sheet(built, first, paper));
     for (i, part) in parts.iter().enumerate() {
         let material = part.material();
         let name = words::material(built.design(), material);
-        let block = title(i + 2, &part.name, name, words::general_tolerance(material));
+        let block = TitleBlock {
+            general_tolerance: words::general_tolerance(material),
+            surface_texture: words::surface_texture(part).to_owned(),
+            ..title(i + 2, &part.name, name)
+        };
         all.extend(part_sheet(built.design(), part, &block, paper));
     }
     all
@@ -83,7 +92,6 @@ fn title_block(
     sheet: (usize, usize),
     name: &str,
     material: String,
-    tolerance: &str,
 ) -> TitleBlock {
     TitleBlock {
         product: ("Switch".to_owned(), c.switch.name.to_string()),
@@ -91,8 +99,8 @@ fn title_block(
         title: designation(name),
         part_number: part_number(built, name),
         material,
-        general_tolerance: tolerance.to_owned(),
-        scale: String::new(),
+        status: "Not approved".to_owned(),
+        revision: "A".to_owned(),
         projection: match c.drawing.projection {
             config::Projection::First => Projection::First,
             config::Projection::Third => Projection::Third,
@@ -100,6 +108,7 @@ fn title_block(
         date: (!c.drawing.date.is_empty()).then(|| c.drawing.date.clone()),
         sheet,
         generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
+        ..TitleBlock::default()
     }
 }
 

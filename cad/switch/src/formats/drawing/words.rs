@@ -17,12 +17,29 @@ pub(super) fn material(design: &Design, material: Material) -> String {
     }
 }
 
-/// The general tolerance in the title block.
-pub(super) const fn general_tolerance(material: Material) -> &'static str {
+/// Width of the zone of the general profile of surfaces of printed parts, mm: twice the tolerance of printed heights,
+/// 0.254 mm + 0.1 % of some 30 mm, rounded.
+const GENERAL_PROFILE_MM: f64 = 0.6;
+
+/// The general tolerances in the title block: of sizes by ISO 2768-1, of geometry by ISO 22081, and of cast parts by
+/// ISO 3302-1.
+pub(super) fn general_tolerance(material: Material) -> String {
     match material {
-        Material::Abs => "ISO 2768-c printed, -m machined",
-        Material::Silicone => "as the mould, ISO 2768-c",
-        Material::Steel => "ISO 2768-m",
+        Material::Abs => {
+            format!("ISO 2768-1 c (milled: m); profile of surfaces {GENERAL_PROFILE_MM} (ISO 22081)")
+        }
+        Material::Silicone => "ISO 3302-1 M3, cast".to_owned(),
+        Material::Steel => "ISO 2768-1 m".to_owned(),
+    }
+}
+
+/// The surface texture in the title block; empty without a requirement.
+pub(super) fn surface_texture(part: &Part) -> &'static str {
+    match part.role {
+        // The silicone copies the walls of its mould.
+        Role::Layer | Role::Mould => "Ra 12.5 where it forms the layer",
+        Role::Pin { .. } => "Ra 0.8",
+        _ => "",
     }
 }
 

@@ -193,7 +193,8 @@ function update(data) {
   current = data;
   byId('name').textContent = data.manifest.name;
   const f = data.manifest.friction;
-  byId('summary').textContent = `Layout ${data.layout}. Friction ${f.friction_n.toFixed(2)} N (${f.band_n[0].toFixed(2)} to ${f.band_n[1].toFixed(2)} N, ${f.trust}) at a load of ${f.load_n.toFixed(2)} N.`;
+  const switches = f.threshold_n ? ` Switches at ${f.threshold_n.toFixed(1)} N.` : '';
+  byId('summary').textContent = `Layout ${data.layout}.${switches} Friction ${f.friction_n.toFixed(2)} N (${f.band_n[0].toFixed(2)} to ${f.band_n[1].toFixed(2)} N, ${f.trust}) at a load of ${f.load_n.toFixed(2)} N.`;
   byId('maker').textContent = `Made by ${data.manifest.generator}.`;
   fillBodies(data);
   fillTables(data);

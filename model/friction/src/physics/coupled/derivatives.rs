@@ -1,11 +1,11 @@
-//! Derivatives of the friction exponents with respect to the constants, by the implicit function theorem: a
+//! Derivatives of the friction exponents with respect to constants and dimensions, by the implicit function theorem: a
 //! back-substitution for each pass of the fixed point over shape and tension.
 
-// A constant is the index into several arrays at once.
+// A parameter is the index into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
 use super::elimination::middle_row;
-use super::{CONSTANTS, Workspace};
+use super::{CONSTANTS, Explicit, Workspace};
 use crate::bed::Bed;
 use crate::physics::constants::Constants;
 use crate::physics::equilibrium::Supports;
@@ -17,9 +17,19 @@ const DERIVATIVE_TOLERANCE: f64 = 1e-8;
 /// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
 pub(in crate::physics) const MAX_PASSES: usize = 60;
 
-/// Arrays of derivatives with respect to the logarithms of the constants.
+/// Derivatives of the friction exponents with respect to parameters, as many as there are constants.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::physics) struct ExponentSlopes {
+    /// Of the whole exponent.
+    pub(in crate::physics) total: [Pair; CONSTANTS],
+    /// Of the silicone's part.
+    pub(in crate::physics) silicone: [Pair; CONSTANTS],
+}
+
+/// Arrays of derivatives with respect to as many parameters as there are constants.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Derivatives {
+    explicit: [Explicit; CONSTANTS],
     right: Vec<[Pair; CONSTANTS]>,
     turn: Vec<[Pair; CONSTANTS]>,
     pin_turn: Vec<[Pair; CONSTANTS]>,
@@ -39,18 +49,53 @@ impl Workspace {
         constants: &Constants,
         wrap_rad: f64,
     ) -> Option<[Pair; CONSTANTS]> {
-        let (n, mu) = (self.nodes.len(), constants.mu_silicone);
-        let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
+        if !self.refactor(supports) {
+            return None;
+        }
+        let mut explicit = std::mem::take(&mut self.derivatives.explicit);
+        explicit[0].log_kappa = 1.0;
+        explicit[1].log_mu = 1.0;
+        explicit[2].pin_n.clone_from(&self.pin_n);
+        explicit[3].silicone_n.clear();
+        explicit[3]
+            .silicone_n
+            .extend(self.silicone_turn.iter().zip(&self.tension_n).map(|(turn, t)| *turn * *t));
+        let foundation_n = explicit[3].silicone_n.clone();
+        explicit[3].node_n = foundation_n;
+        let slopes = self.slopes(supports, constants, wrap_rad, &explicit);
+        self.derivatives.explicit = explicit;
+        slopes.map(|slopes| slopes.total)
+    }
+
+    /// Linearises and factorises the balance of forces at the last load. Returns `false` if the
+    /// matrix is not positive definite.
+    pub(in crate::physics) fn refactor(&mut self, supports: &Supports<'_>) -> bool {
         let bending = self.bending_n_mm2(supports.bed);
         self.supports_at_gap(supports);
         if !self.solve(bending) {
-            return None;
+            return false;
         }
-        for i in 0..n {
+        for i in 0..self.nodes.len() {
             let stiffness = self.nodes[i].silicone_n_mm;
             let force = self.gap_mm[i].where_negative(self.gap_mm[i] * -stiffness);
             self.silicone_turn[i] = force / self.tension_n[i];
         }
+        true
+    }
+
+    /// Computes the derivatives of the friction exponents with respect to parameters, from their
+    /// explicit derivatives, after [`Workspace::refactor`]. `None` if a derivative does not
+    /// converge.
+    pub(in crate::physics) fn slopes(
+        &mut self,
+        supports: &Supports<'_>,
+        constants: &Constants,
+        wrap_rad: f64,
+        explicit: &[Explicit; CONSTANTS],
+    ) -> Option<ExponentSlopes> {
+        let (n, mu) = (self.nodes.len(), constants.mu_silicone);
+        let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
+        let bending = self.bending_n_mm2(supports.bed);
         let turned = self.turned();
         let closure = Pair::both(wrap_rad) / turned;
         let lowest = self.lowest_tension();
@@ -64,11 +109,11 @@ impl Workspace {
         d.log_tension.fill(zero);
         let mut result = None;
         for _ in 0..MAX_PASSES {
-            self.derivative_of_gap(&mut d, lowest, bending_slope);
-            self.derivative_of_turns(&mut d, closure, turned);
-            let (exponents, change) = self.derivative_of_tension(&mut d, mu, kappa, closure);
+            self.derivative_of_gap(&mut d, explicit, lowest, bending_slope);
+            self.derivative_of_turns(&mut d, explicit, closure, turned);
+            let (slopes, change) = self.derivative_of_tension(&mut d, explicit, [mu, kappa], closure);
             if change <= DERIVATIVE_TOLERANCE {
-                result = Some(exponents);
+                result = Some(slopes);
                 break;
             }
         }
@@ -93,7 +138,13 @@ impl Workspace {
     }
 
     /// Solves the linearised balance of forces for the derivatives of the gap, into `d.right`.
-    fn derivative_of_gap(&self, d: &mut Derivatives, lowest: [usize; 2], bending_slope: Pair) {
+    fn derivative_of_gap(
+        &self,
+        d: &mut Derivatives,
+        explicit: &[Explicit; CONSTANTS],
+        lowest: [usize; 2],
+        bending_slope: Pair,
+    ) {
         let n = self.nodes.len();
         let u = &self.gap_mm;
         let bent: [Pair; CONSTANTS] = std::array::from_fn(|k| {
@@ -127,11 +178,13 @@ impl Workspace {
                 d.right[i][k] = Pair::both(0.0) - force;
             }
         }
-        for (node, force) in self.pins.iter().zip(&self.pin_n) {
-            d.right[*node][2] = d.right[*node][2] + *force;
-        }
-        for (i, turn) in self.silicone_turn.iter().enumerate() {
-            d.right[i][3] = d.right[i][3] + *turn * self.tension_n[i];
+        for (k, explicit) in explicit.iter().enumerate() {
+            for (node, force) in self.pins.iter().zip(&explicit.pin_n) {
+                d.right[*node][k] = d.right[*node][k] + *force;
+            }
+            for (right, force) in d.right.iter_mut().zip(&explicit.node_n) {
+                right[k] = right[k] + *force;
+            }
         }
         self.substitute(&mut d.right);
     }
@@ -187,15 +240,22 @@ impl Workspace {
         }
     }
 
-    /// Computes the derivatives of the turns from those of gap and tension. They sum to zero.
-    fn derivative_of_turns(&self, d: &mut Derivatives, closure: Pair, turned: Pair) {
+    /// Computes the derivatives of the turns from those of gap and tension. They sum to that of the
+    /// wrap.
+    fn derivative_of_turns(
+        &self,
+        d: &mut Derivatives,
+        explicit: &[Explicit; CONSTANTS],
+        closure: Pair,
+        turned: Pair,
+    ) {
         let mut sum = [Pair::both(0.0); CONSTANTS];
         for i in 0..self.nodes.len() {
             let (t, turn) = (self.tension_n[i], self.silicone_turn[i]);
             let stiffness =
                 self.gap_mm[i].map(|u| if u < 0.0 { self.nodes[i].silicone_n_mm } else { 0.0 }) / t;
             for k in 0..CONSTANTS {
-                let own = if k == 3 { turn } else { Pair::both(0.0) };
+                let own = explicit[k].silicone_n.get(i).map_or(Pair::both(0.0), |force| *force / t);
                 let by = own - stiffness * d.right[i][k] - turn * d.log_tension[i][k];
                 d.turn[i][k] = by;
                 sum[k] = sum[k] + by;
@@ -205,13 +265,16 @@ impl Workspace {
             let t = self.tension_n[node];
             let (turn, stiffness) = (self.pin_n[p] / t, self.pin_n_mm[p] / t);
             for k in 0..CONSTANTS {
-                let own = if k == 2 { turn } else { Pair::both(0.0) };
+                let own = explicit[k].pin_n.get(p).map_or(Pair::both(0.0), |force| *force / t);
                 let by = own - stiffness * d.right[node][k] - turn * d.log_tension[node][k];
                 d.pin_turn[p][k] = by;
                 sum[k] = sum[k] + by;
             }
         }
-        let closing = sum.map(|sum| sum / turned);
+        let mut closing = sum.map(|sum| sum / turned);
+        for (closing, explicit) in closing.iter_mut().zip(explicit) {
+            *closing = *closing - Pair::both(explicit.log_wrap);
+        }
         for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
             for k in 0..CONSTANTS {
                 by[k] = (by[k] - *turn * closing[k]) * closure;
@@ -230,14 +293,15 @@ impl Workspace {
     fn derivative_of_tension(
         &self,
         d: &mut Derivatives,
-        mu: f64,
-        kappa: f64,
+        explicit: &[Explicit; CONSTANTS],
+        [mu, kappa]: [f64; 2],
         closure: Pair,
-    ) -> ([Pair; CONSTANTS], f64) {
+    ) -> (ExponentSlopes, f64) {
+        let mut silicone = [Pair::both(0.0); CONSTANTS];
         for (turn, by) in self.silicone_turn.iter().zip(&mut d.turn) {
-            by[1] = by[1] + *turn * closure;
-            for by in by.iter_mut() {
-                *by = *by * mu;
+            for k in 0..CONSTANTS {
+                by[k] = (by[k] + *turn * closure * explicit[k].log_mu) * mu;
+                silicone[k] = silicone[k] + by[k];
             }
         }
         for (p, &node) in self.pins.iter().enumerate() {
@@ -246,9 +310,8 @@ impl Workspace {
             let root = (t * theta).sqrt() * kappa;
             let ploughing = root * theta;
             for k in 0..CONSTANTS {
-                let own = if k == 0 { ploughing } else { Pair::both(0.0) };
                 d.turn[node][k] = d.turn[node][k]
-                    + own
+                    + ploughing * explicit[k].log_kappa
                     + ploughing * d.log_tension[node][k] * 0.5
                     + root * d.pin_turn[p][k] * 1.5;
             }
@@ -257,7 +320,8 @@ impl Workspace {
         let (mut change, mut largest) = (0.0f64, 0.0f64);
         for (rise, log) in d.turn.iter().zip(&mut d.log_tension) {
             for k in 0..CONSTANTS {
-                let here = (sum[k] + rise[k] * 0.5) * Pair::new([-1.0, 1.0]);
+                let risen = (sum[k] + rise[k] * 0.5) * Pair::new([-1.0, 1.0]);
+                let here = risen + Pair::both(explicit[k].log_load);
                 sum[k] = sum[k] + rise[k];
                 let moved = (here - log[k]).abs();
                 change = change.max(moved.lane(0)).max(moved.lane(1));
@@ -265,6 +329,7 @@ impl Workspace {
                 log[k] = here;
             }
         }
-        (sum, if largest > 0.0 { change / largest } else { change })
+        let slopes = ExponentSlopes { total: sum, silicone };
+        (slopes, if largest > 0.0 { change / largest } else { change })
     }
 }

@@ -6,13 +6,16 @@
 //! A load that does not converge this way is left to [`slide`](super::march::slide), which searches
 //! along each step.
 //!
-//! At a solution the linearised equations give the derivatives of both friction exponents (implicit
+//! At a solution the linearised equations give the derivatives of both friction exponents with
+//! respect to the constants, and to any dimension by its [`Explicit`] derivatives (implicit
 //! function theorem): the factors of the stiffness matrix are computed once, and every pass of the
 //! fixed point over shape and tension is a back-substitution.
 
 mod derivatives;
 mod elimination;
+mod explicit;
 mod extrapolation;
+mod forces;
 
 use super::constants::Constants;
 use super::equilibrium::{BALANCE, Supports};
@@ -24,6 +27,7 @@ use elimination::{Elimination, middle_row, substitute_back};
 use extrapolation::{HISTORY, State};
 
 pub(super) use derivatives::MAX_PASSES;
+pub(super) use explicit::Explicit;
 
 /// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
 const MAX_SWEEPS: usize = 24;
@@ -282,7 +286,7 @@ impl Workspace {
         self.pin_load.fill(Pair::both(0.0));
         for (k, &node) in self.pins.iter().enumerate() {
             let gap = self.gap_mm[node];
-            let (force, stiffness) = pin_support(supports, gap);
+            let (force, stiffness) = pin_support(supports, k, gap);
             self.spring[node] = self.spring[node] + stiffness;
             self.pin_load[node] = self.pin_load[node] + force + stiffness * gap;
             (self.pin_n[k], self.pin_n_mm[k]) = (force, stiffness);
@@ -404,7 +408,7 @@ impl Workspace {
             for (p, &node) in self.pins.iter().enumerate() {
                 let (from, by) = (self.gap_mm[node].lane(lane), step(node));
                 let linear = self.pin_n[p].lane(lane) - self.pin_n_mm[p].lane(lane) * share * by;
-                missed += (linear - supports.pin(from + share * by).force_n) * by;
+                missed += (linear - supports.pin(p, from + share * by).force_n) * by;
             }
             (1.0 - share) * falling + missed
         };
@@ -429,7 +433,7 @@ impl Workspace {
         for (k, &node) in self.pins.iter().enumerate() {
             let step = self.next_gap_mm[node] - self.gap_mm[node];
             let linear = self.pin_n[k] - self.pin_n_mm[k] * step;
-            (self.pin_n[k], self.pin_n_mm[k]) = pin_support(supports, self.next_gap_mm[node]);
+            (self.pin_n[k], self.pin_n_mm[k]) = pin_support(supports, k, self.next_gap_mm[node]);
             missed = missed.max((self.pin_n[k] - linear).abs());
         }
         std::mem::swap(&mut self.gap_mm, &mut self.next_gap_mm);
@@ -477,10 +481,10 @@ impl Workspace {
     }
 }
 
-/// Returns force and stiffness of a pin at this gap.
+/// Returns force and stiffness of the pin of this index at this gap.
 #[inline(always)]
-fn pin_support(supports: &Supports<'_>, gap_mm: Pair) -> (Pair, Pair) {
-    let (a, b) = (supports.pin(gap_mm.lane(0)), supports.pin(gap_mm.lane(1)));
+fn pin_support(supports: &Supports<'_>, pin: usize, gap_mm: Pair) -> (Pair, Pair) {
+    let (a, b) = (supports.pin(pin, gap_mm.lane(0)), supports.pin(pin, gap_mm.lane(1)));
     (Pair::new([a.force_n, b.force_n]), Pair::new([a.stiffness_n_mm, b.stiffness_n_mm]))
 }
 

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::super::part_sheet::drawn_solid;
 use super::{built, known};
 use crate::built::Built;
 use crate::parts::Part;
@@ -148,7 +149,7 @@ pub(super) fn is_moved(a: &Contour, b: &Contour) -> bool {
 
 /// Returns the dimensions that the sheet of a part does not have.
 fn missing_dimensions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
-    let solid = part.drawn.as_ref().unwrap_or(&part.solid);
+    let solid = &drawn_solid(part).0;
     let (low, high) = solid.bounds().unwrap();
     let rings: Vec<(&Contour, f64)> = solid.rings().collect();
     let letters = lettering(solid);
@@ -256,7 +257,7 @@ fn through_holes_are_open() {
         super::text_of(sheet, "hole 1")
     };
     let trap = text_of_hole("[layout]\npins = [5, 8, 11]\n", "support-right");
-    for words in ["hexagon AF 5.7", "far face", "closed skin 0.4", "near face, for M3"] {
+    for words in ["hexagon AF 5.7", "far face", "web 0.4", "near face, for M3"] {
         assert!(trap.contains(words), "{words} is not in {trap:?}");
     }
     assert!(!trap.contains("through"), "{trap}");

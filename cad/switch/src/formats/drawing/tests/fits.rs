@@ -4,7 +4,7 @@ use super::{built, text_of};
 use pinswitch_drafting::Sheet;
 
 /// All tolerances.
-const TOLERANCES: [&str; 6] = ["+0.1/0", "+0.2/0", "0/-0.2", "H12", "H13", "H14"];
+const TOLERANCES: [&str; 7] = ["+0.1/0", "+0.2/0", "0/-0.2", "\u{b1}0.07", "H12", "H13", "H14"];
 /// Holes without a mating part: the bore for the inner ring of the bearing, and the vents of the lid.
 const FREE: [(&str, &str); 2] = [("guide-pulley", "\u{d8}18 through"), ("mould-lid", "\u{d8}")];
 
@@ -56,7 +56,9 @@ fn missing_fits(sheet: &Sheet) -> Vec<String> {
             Some("groove") => sheet.name != "coupon" && line.contains(" R") && !line.contains(" on R"),
             _ => false,
         };
-        let of_lines = a.text.lines().filter(|l| meets(l) && !has_tolerance(l) && !is_free(l));
+        // The zone of a position has no tolerance of its own.
+        let sizes = a.text.lines().filter(|l| !l.starts_with("position "));
+        let of_lines = sizes.filter(|l| meets(l) && !has_tolerance(l) && !is_free(l));
         missing.extend(of_lines.map(|l| format!("{}, {}: {l:?}", sheet.name, a.key)));
         let is_fitted = is_hole && has_tolerance(&a.text);
         if is_fitted && !a.text.contains("for ") {
@@ -113,7 +115,8 @@ fn fits_match_the_mating_parts() {
         ("[fasteners]\ndowel_diameter_mm = 2.0\n", "support-left", "\u{d8}2.1 +0.1/0, 1.5 deep"),
         ("", "support-right", "hexagon AF 5.7 +0.2/0, 1.5 deep, far face\nfor nut M3"),
         ("", "shell", "groove R0.5 +0.1/0"),
-        ("", "mould-ring", "rib R0.5 +0.1/0"),
+        ("", "mould-ring", "rib R0.5 \u{b1}0.07"),
+        ("", "silicone-layer", "groove R0.5 \u{b1}0.07"),
         (
             "",
             "mould-core",

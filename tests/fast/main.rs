@@ -36,6 +36,7 @@ mod predict_rows;
 mod provenance;
 mod readme;
 mod reference_shell;
+mod rig_set;
 mod segment_raw;
 mod several_sessions;
 mod slicing;

@@ -32,6 +32,7 @@ pub mod parts;
 pub mod plates;
 pub mod prediction;
 pub mod request;
+pub mod rig;
 pub mod scene;
 pub mod set;
 pub mod templates;

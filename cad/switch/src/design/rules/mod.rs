@@ -8,6 +8,7 @@ mod mould;
 mod mount;
 mod pins;
 mod print;
+mod rig;
 mod shell;
 mod support;
 
@@ -120,7 +121,7 @@ pub(crate) struct Violation {
 
 /// Returns all rules; errors in the order in which a reader would fix them.
 pub fn rules() -> impl Iterator<Item = &'static Rule> {
-    [shell::RULES, pins::RULES, support::RULES, mould::RULES, mount::RULES, print::RULES]
+    [shell::RULES, pins::RULES, support::RULES, mould::RULES, mount::RULES, rig::RULES, print::RULES]
         .into_iter()
         .flatten()
 }

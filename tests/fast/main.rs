@@ -38,6 +38,7 @@ mod process;
 mod provenance;
 mod readme;
 mod reference_shell;
+mod rig_set;
 mod segment_raw;
 mod several_sessions;
 mod slicing;

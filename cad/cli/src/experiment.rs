@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
     let mut files = vec![
         file("next-runs.csv", write_runs(&proposal.runs).into_bytes()),
-        file("run-sheet.html", run_sheet(&name, &proposal).into_bytes()),
+        file("run-sheet.html", run_sheet(&name, &proposal, &rig).into_bytes()),
         file("experiment.json", to_json(&proposal)?),
     ];
     // The plan carries the form that it tests, so that a calibration of its runs can report the result.

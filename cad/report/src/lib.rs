@@ -14,6 +14,7 @@
 //! | [`friction_words`], [`reported_clause`], [`effect_clause`], [`constants_words`] | friction and effects in words |
 //! | [`published_plot`], [`published_page`] | figure and page of the calibration with the paper's seven maxima |
 //! | [`run_sheet`] | the runs of a proposed experiment, to print |
+//! | [`rig`] | bill, files, run sheet and wiring of a test rig |
 //!
 //! [`html`] contains the parts of pages that other crates share: templates, escapes and the
 //! Content-Security-Policy.
@@ -68,6 +69,7 @@ mod pareto;
 mod pareto_front;
 mod plot_error;
 mod published_page;
+pub mod rig;
 mod run_sheet;
 mod scale;
 mod text_size;

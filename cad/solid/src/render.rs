@@ -42,8 +42,10 @@ const MARGIN: f64 = 0.06;
 const BACKGROUND: [f32; 3] = [250.0, 250.0, 248.0];
 /// Depth of a background sample.
 const NOTHING: f32 = f32::NEG_INFINITY;
-/// Difference in depth, mm, above which an edge is drawn.
+/// Difference in depth, mm, above which an edge is drawn; for large scenes, in sizes of a sample, so
+/// that oblique faces have none.
 const EDGE_MM: f32 = 0.35;
+const EDGE_SAMPLES: f64 = 2.5;
 /// Brightness of an edge relative to its face.
 const EDGE_SHADE: f32 = 0.35;
 
@@ -78,9 +80,10 @@ impl Picture {
 /// ```
 pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
-    let faces = visible_faces(bodies, view, columns, rows);
+    let (faces, sample_mm) = visible_faces(bodies, view, columns, rows);
     let mut pixels = Vec::with_capacity(width as usize * height as usize * 3);
-    let mut band = Band::new(columns);
+    #[allow(clippy::cast_possible_truncation)]
+    let mut band = Band::new(columns, EDGE_MM.max((EDGE_SAMPLES * sample_mm) as f32));
     for (number, faces_of_band) in by_band(&faces, rows).into_iter().enumerate() {
         let first = number * BAND_SAMPLES;
         let last = (first + BAND_SAMPLES).min(rows);
@@ -106,8 +109,8 @@ struct Face {
     colour: [f32; 3],
 }
 
-/// The triangles that face the camera, placed in the picture.
-fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> Vec<Face> {
+/// The triangles that face the camera, placed in the picture, and the size of a sample, mm.
+fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> (Vec<Face>, f64) {
     let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
     let tilt =
         Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::x()), (view.rise_deg - 90.0).to_radians());
@@ -117,7 +120,7 @@ fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> Ve
     let Some((low, high)) =
         seen.iter().flatten().map(|p| (*p, *p)).reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
     else {
-        return Vec::new();
+        return (Vec::new(), 0.0);
     };
     let size = high - low;
     let room = 1.0 - 2.0 * MARGIN;
@@ -136,10 +139,10 @@ fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> Ve
         Face::new([a, b, c].map(place), colour.map(|v| f32::from(v) * brightness))
     };
     let each = bodies.iter().zip(&seen);
-    each.flat_map(|(body, positions)| {
+    let faces = each.flat_map(|(body, positions)| {
         body.mesh.triangles.iter().filter_map(move |t| face(positions, t, body.colour))
-    })
-    .collect()
+    });
+    (faces.collect(), scale.recip())
 }
 
 /// Indices of the faces in each band of rows, ascending.
@@ -204,6 +207,7 @@ impl Face {
 /// A band of rows: the depth of each sample, and the index of its face.
 struct Band {
     columns: usize,
+    edge_mm: f32,
     first_row: usize,
     rows: usize,
     depths: Vec<f32>,
@@ -211,8 +215,8 @@ struct Band {
 }
 
 impl Band {
-    fn new(columns: usize) -> Self {
-        Self { columns, first_row: 0, rows: 0, depths: Vec::new(), faces: Vec::new() }
+    fn new(columns: usize, edge_mm: f32) -> Self {
+        Self { columns, edge_mm, first_row: 0, rows: 0, depths: Vec::new(), faces: Vec::new() }
     }
 
     fn clear(&mut self, first_row: usize, end_row: usize) {
@@ -278,7 +282,8 @@ impl Band {
                 faces[self.faces[(row + i) * self.columns + j] as usize].colour
             };
             let right = lines[i].get(j + 1).copied().unwrap_or(depth);
-            let is_edge = is_step(depth, right) || is_step(depth, lines[i + 1][j]);
+            let is_edge =
+                is_step(depth, right, self.edge_mm) || is_step(depth, lines[i + 1][j], self.edge_mm);
             let share = if is_edge { EDGE_SHADE } else { 1.0 } / (SAMPLES * SAMPLES) as f32;
             (0..3).for_each(|k| sum[k] += colour[k] * share);
         }
@@ -287,9 +292,9 @@ impl Band {
 }
 
 /// Whether there is an edge between samples of these depths: one is background, or they differ by
-/// more than [`EDGE_MM`].
-fn is_step(a: f32, b: f32) -> bool {
-    a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > EDGE_MM)
+/// more than `edge_mm`.
+fn is_step(a: f32, b: f32, edge_mm: f32) -> bool {
+    a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > edge_mm)
 }
 
 /// Rounds a colour between 0 and 255.

@@ -6,6 +6,7 @@ use crate::config::MountKind;
 use crate::design::{AXLE_HEAD_MM, Design, Hole, Recess, STOP_SCREW, Thread, axle_recess, stop_recess};
 use crate::documents::{AXLE_NUT_MM, BEARING_MM, bill_of_materials};
 use crate::parts::spacer_mm;
+use crate::rig::rig_hardware;
 use pinswitch_solid::profile::{Contour, Point2, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -43,6 +44,34 @@ pub enum HardwareKind {
     Washer,
     /// The nut on its bolt.
     BoltNut,
+    /// A bolt through board and foot of the rig.
+    FootBolt,
+    /// Its washers.
+    FootWasher,
+    /// Its nut.
+    FootNut,
+    /// A bolt of the splice of the board.
+    SpliceBolt,
+    /// Its nut.
+    SpliceNut,
+    /// The load cell.
+    Cell,
+    /// A bolt between cell and cell mount.
+    CellBolt,
+    /// The eye bolt of the cell.
+    EyeBolt,
+    /// Tendon beyond the guide pulleys.
+    Line,
+    /// The linear actuator.
+    Actuator,
+    /// A bolt of the drive.
+    DriveBolt,
+    /// Its nut.
+    DriveNut,
+    /// The hook.
+    Hook,
+    /// The weights.
+    Weight,
 }
 
 impl HardwareKind {
@@ -58,6 +87,33 @@ impl HardwareKind {
             Self::Bearing => "bearing",
             Self::Washer => "washer",
             Self::BoltNut => "bolt-nut",
+            Self::FootBolt => "foot-bolt",
+            Self::FootWasher => "foot-washer",
+            Self::FootNut => "foot-nut",
+            Self::SpliceBolt => "splice-bolt",
+            Self::SpliceNut => "splice-nut",
+            Self::Cell => "load-cell",
+            Self::CellBolt => "cell-bolt",
+            Self::EyeBolt => "eye-bolt",
+            Self::Line => "line",
+            Self::Actuator => "actuator",
+            Self::DriveBolt => "drive-bolt",
+            Self::DriveNut => "drive-nut",
+            Self::Hook => "hook",
+            Self::Weight => "weight",
+        }
+    }
+}
+
+impl HardwareKind {
+    /// Returns the colour in pictures: red, green, blue.
+    pub const fn colour(self) -> [u8; 3] {
+        match self {
+            Self::Line => [72, 82, 96],
+            Self::Cell => [120, 160, 205],
+            Self::Actuator => [92, 100, 112],
+            Self::Weight => [196, 160, 84],
+            _ => [158, 160, 164],
         }
     }
 }
@@ -84,7 +140,8 @@ pub fn hardware(design: &Design) -> Vec<Hardware> {
     fasteners(design, &mut add);
     dowels(design, &mut add);
     in_the_plate(design, &mut add);
-    on_the_bolt(design, &mut add);
+    on_the_bolts(design, &mut add);
+    rig_hardware(design, &mut add);
     let mut named: Vec<Hardware> = Vec::with_capacity(all.len());
     for (kind, from_right, solid) in all {
         let number = named.iter().filter(|body| body.kind == kind).count() + 1;
@@ -150,11 +207,12 @@ fn faces_mm(design: &Design) -> [f64; 2] {
     [-(c.support.plate_mm + c.mount.plate_mm), -c.support.plate_mm]
 }
 
-/// Adds the bolt of the axle, and screws and nuts of the sheath stop.
+/// Adds the bolts of the axles, and screws and nuts of the sheath stop.
 fn in_the_plate(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
     let (Some(mounting), Some(bill)) = (design.mounting(), bill_of_materials(design).mount) else { return };
     let [outer, inner] = faces_mm(design);
-    if let (Some(Hole { centre, .. }), Some(length_mm)) = (mounting.axle, bill.axle_length_mm) {
+    for (Hole { centre, .. }, length_mm) in mounting.axles().zip(std::iter::repeat(bill.axle_length_mm)) {
+        let Some(length_mm) = length_mm else { continue };
         let [flats, high] = AXLE_HEAD_MM;
         let seat = outer + axle_recess().depth_mm;
         let head = hexagon(centre, flats);
@@ -178,9 +236,14 @@ fn in_the_plate(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option
     }
 }
 
-/// Adds bearing, washer and nut on the bolt of the axle.
-fn on_the_bolt(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
-    let Some(axle) = design.mounting().and_then(|m| m.axle) else { return };
+/// Adds bearing, washer and nut on the bolt of each guide pulley.
+fn on_the_bolts(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    for axle in design.mounting().iter().flat_map(|m| m.axles()) {
+        on_the_bolt(design, axle, add);
+    }
+}
+
+fn on_the_bolt(design: &Design, axle: Hole, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
     let bearing = faces_mm(design)[1] + spacer_mm(design);
     let washer = bearing + BEARING_MM;
     let nut = washer + WASHER_HIGH_MM;
@@ -200,7 +263,7 @@ fn radius_mm(thread: &Thread) -> Option<f64> {
     thread.name.strip_prefix('M')?.parse::<f64>().ok().map(|diameter| diameter / 2.0)
 }
 
-fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
+pub(crate) fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
     let corner =
         |i: u32| middle + polar(flats_mm / 3f64.sqrt(), f64::from(i) * std::f64::consts::FRAC_PI_3).coords;
     // Angles of `polar` run clockwise.
@@ -208,7 +271,7 @@ fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
 }
 
 /// A body between two heights, with a bore or without; `None` for an outline without area.
-fn prism(outline: &Contour, bore: Option<Contour>, [from_mm, to_mm]: [f64; 2]) -> Option<Solid> {
+pub(crate) fn prism(outline: &Contour, bore: Option<Contour>, [from_mm, to_mm]: [f64; 2]) -> Option<Solid> {
     let holes: Vec<Contour> = bore.into_iter().collect();
     Solid::prism(outline, &holes, from_mm, to_mm, 0.0).ok()
 }
@@ -221,7 +284,7 @@ fn screw(at: Point2, [shank_mm, head_mm]: [f64; 2], face_mm: f64, length_mm: f64
 }
 
 /// A head between two heights, and a thinner shank of signed length, up from its upper or down from its lower face.
-fn stepped(head: &Contour, [low_mm, high_mm]: [f64; 2], shank: &Contour, length_mm: f64) -> Solid {
+pub(crate) fn stepped(head: &Contour, [low_mm, high_mm]: [f64; 2], shank: &Contour, length_mm: f64) -> Solid {
     let mut solid = Solid::new();
     let (bottom, top) = solid.extrude(head, low_mm, high_mm);
     if length_mm > 0.0 {
@@ -270,7 +333,7 @@ mod tests {
             assert_eq!(count(&all, HardwareKind::Insert), fasteners.inserts, "{text}");
             assert_eq!(count(&all, HardwareKind::Dowel), bill.dowels.map_or(0, |d| d.number), "{text}");
             let mount = bill.mount;
-            let bearings = mount.as_ref().and_then(|m| m.bearing).iter().count();
+            let bearings = mount.as_ref().map_or(0, |m| m.pulleys);
             for kind in
                 [HardwareKind::Bearing, HardwareKind::Bolt, HardwareKind::Washer, HardwareKind::BoltNut]
             {

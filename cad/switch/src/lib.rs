@@ -34,6 +34,7 @@ pub mod plates;
 pub mod prediction;
 pub mod process;
 pub mod request;
+pub mod rig;
 pub mod scene;
 pub mod set;
 pub mod templates;

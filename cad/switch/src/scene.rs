@@ -3,29 +3,54 @@
 mod stage;
 
 use crate::built::{Built, BuiltPart};
+use crate::hardware::hardware;
 use crate::output::SetError;
 use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
+use pinswitch_solid::profile::{Contour, Point2};
 use pinswitch_solid::render::{Body, render};
+use pinswitch_solid::solid::Solid;
 
-use stage::grooves_up;
+use stage::{RIG_VIEW, grooves_up};
 pub use stage::{Stage, stage_scene, stage_view};
 
-/// Returns the bodies of the assembly, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
+/// Returns the bodies of the assembly, with the bought ones and the table of a rig, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
 /// up, so that engraved text is upright in the views of [`stage_view`].
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
-    built
-        .assembly()
-        .filter_map(|body| {
-            let role = body.part.role;
-            let placed = body.part.pose?.apply(body.mesh.clone());
-            Some(Body {
-                mesh: grooves_up(placed.translated(role.explode_offset_mm() * explosion)),
-                colour: role.colour(),
-            })
+    let parts = built.assembly().filter_map(|body| {
+        let role = body.part.role;
+        let placed = body.part.pose?.apply(body.mesh.clone());
+        Some(Body {
+            mesh: grooves_up(placed.translated(role.explode_offset_mm() * explosion)),
+            colour: role.colour(),
         })
-        .collect()
+    });
+    parts.chain(rig_surroundings(built)).collect()
+}
+
+/// Thickness of the table in pictures, its depth on both sides of the board, and its end beyond the drive, mm.
+const TABLE_MM: f64 = 18.0;
+const TABLE_DEPTH_MM: [f64; 2] = [-120.0, 70.0];
+const TABLE_END_MM: f64 = 60.0;
+/// Colour of the table.
+const TABLE_COLOUR: [u8; 3] = [222, 210, 190];
+
+/// Returns the bought bodies of a rig and its table.
+fn rig_surroundings(built: &Built) -> Vec<Body> {
+    let design = built.design();
+    let Some(layout) = design.rig_layout() else { return Vec::new() };
+    let mesh = |solid: &Solid| solid.mesh(design.tolerance()).ok().map(grooves_up);
+    let bought = hardware(design);
+    let bodies =
+        bought.iter().filter_map(|body| Some(Body { mesh: mesh(&body.solid)?, colour: body.kind.colour() }));
+    let (x, y) = ([layout.edge_x_mm, layout.drive.x + TABLE_END_MM], layout.table_y_mm);
+    let corners = [(x[0], y - TABLE_MM), (x[1], y - TABLE_MM), (x[1], y), (x[0], y)];
+    let top = Contour::polygon(corners.map(|(x, y)| Point2::new(x, y)).to_vec());
+    let [back, front] = TABLE_DEPTH_MM;
+    let table = Solid::prism(&top, &[], back, front, 0.0).ok();
+    let table = table.as_ref().and_then(mesh).map(|mesh| Body { mesh, colour: TABLE_COLOUR });
+    bodies.chain(table).collect()
 }
 
 /// Distance of beds, mm.
@@ -65,8 +90,10 @@ fn bed(side_mm: f64) -> Mesh {
 
 /// Pixels of the picture of the exploded assembly, across and up.
 const EXPLODED_PIXELS: (u32, u32) = (900, 675);
+/// The same for the picture of a rig.
+const RIG_PIXELS: (u32, u32) = (1600, 900);
 
-/// Returns the exploded assembly as PNG. It is rendered once for each [`Built`].
+/// Returns the exploded assembly, or the assembled rig, as PNG. It is rendered once for each [`Built`].
 ///
 /// # Errors
 /// [`SetError::Encoding`] if the picture cannot be encoded.
@@ -75,8 +102,11 @@ pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
         return Ok(png);
     }
     // The tendon is the last step, and its view shows all bodies.
-    let view = stage_view(built.design(), Stage::Tendon);
-    let (width, height) = EXPLODED_PIXELS;
-    let png = render(&assembled(built, 1.0), view, width, height).png().map_err(SetError::encoding)?;
+    // The rig is shown assembled: its parts are far from each other.
+    let is_rig = built.design().rig_layout().is_some();
+    let usual = stage_view(built.design(), Stage::Tendon);
+    let (view, (width, height), explosion) =
+        if is_rig { (RIG_VIEW, RIG_PIXELS, 0.0) } else { (usual, EXPLODED_PIXELS, 1.0) };
+    let png = render(&assembled(built, explosion), view, width, height).png().map_err(SetError::encoding)?;
     Ok(built.exploded_png().get_or_init(|| png))
 }

@@ -14,7 +14,8 @@ pub use error::{ConfigError, ValueError, syntax_error};
 pub use name::Name;
 pub use parameter::{Choice, Origin};
 pub use parameters::{
-    Configuration, FastenerKind, MouldKind, MouldTable, MountKind, Paper, Projection, SlotKind, Slots,
+    CellKind, Configuration, DriveKind, FastenerKind, MouldKind, MouldTable, MountKind, Paper, Projection,
+    SlotKind, Slots,
 };
 pub use pinswitch_diagnostic::{Change, Diagnostic, Location};
 pub(crate) use read::shown;

@@ -57,8 +57,10 @@ impl<C> Parameter<C> {
 
     /// Returns the unit that the key ends in; empty for dimensionless numbers, texts, choices and lists.
     pub fn unit(&self) -> &'static str {
-        const UNITS: [(&str, &str); 8] = [
+        const UNITS: [(&str, &str); 10] = [
             ("_g_cm3", "g/cm3"),
+            ("_mm_s", "mm/s"),
+            ("_hz", "Hz"),
             ("_mm", "mm"),
             ("_deg", "deg"),
             ("_pct", "%"),

@@ -80,8 +80,28 @@ choice! {
         Flange = "flange",
         /// A finger link with two bores at a given distance.
         FingerLink = "finger-link",
-        /// The plate of a test rig, with the guide pulley.
+        /// The upright board of a test rig, with guide pulleys, feet, cell mount and drive.
         Rig = "rig",
+    }
+}
+
+choice! {
+    /// Type of the load cell of the rig.
+    CellKind {
+        /// An S-beam cell, in line with the tendon, with a threaded hole at each end.
+        SBeam = "s-beam",
+        /// A bar cell, across the tendon, with two threaded holes at each end.
+        Bar = "bar",
+    }
+}
+
+choice! {
+    /// Drive of the rig.
+    DriveKind {
+        /// A linear actuator with a clevis at each end.
+        Actuator = "actuator",
+        /// A hand crank on a printed drum with a locking pin.
+        Crank = "crank",
     }
 }
 
@@ -180,13 +200,39 @@ configuration! {
         /// The mounting plate next to the left support, fastened by the same screws.
         mount: MountTable {
             kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; with none, the two screws fasten the switch to a user-defined support";
-            plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolt";
+            plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolts";
             hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273)";
             rim_mm: f64 = 3.0, 1.0..=20.0, Chosen, "wall around every hole of the plate";
             bore_distance_mm: f64 = 45.0, 5.0..=300.0, Chosen, "finger-link: distance between the two bores";
             bore_axis_deg: f64 = 0.0, -180.0..=180.0, Chosen, "finger-link: direction from the first bore to the second, 0 along the tendon at the middle of the wrap";
             bore_offset_mm: f64 = 0.0, -100.0..=100.0, Chosen, "finger-link: from the pulley's axis to the line between the bores, towards the wrap";
-            pulley_distance_mm: f64 = 70.0, 20.0..=500.0, Chosen, "rig: from the switch's axis to that of the guide pulley, along the tendon";
+            pulley_distance_mm: f64 = 70.0, 20.0..=500.0, Chosen, "rig: straight tendon between the switch and each guide pulley";
+        }
+        /// The test rig (`mount.kind = "rig"`): stand, load, cell and drive.
+        rig: RigTable {
+            tendon_height_mm: f64 = 60.0, 45.0..=120.0, Chosen, "height of the tendon above the table between guide pulley and drive; the axis of the drive";
+            weight_diameter_mm: f64 = 120.0, 10.0..=300.0, Chosen, "largest diameter of the weights; the table's edge clears them by 10 mm";
+            hook_mass_g: f64 = published::HOOK_MASS_G, 0.0..=1000.0, Published, "hook between tendon and weights; it is part of every load";
+            cell: CellKind = CellKind::SBeam, (), Chosen, "s-beam is in line with the tendon; bar is cheaper and needs a longer bracket";
+            cell_limit_n: f64 = 98.0, 1.0..=1000.0, Chosen, "range of the load cell: 10 kg, the smallest common one above the paper's largest reading of 62.6 N";
+            s_beam_thread_mm: f64 = 8.0, 4.0..=12.0, Assumed, "s-beam: metric thread at both ends; M6 and M8 are common";
+            s_beam_length_mm: f64 = 63.5, 20.0..=120.0, Assumed, "s-beam: length between the faces with the threads; measure it";
+            s_beam_width_mm: f64 = 50.8, 12.0..=80.0, Assumed, "s-beam: width across the tendon; measure it";
+            s_beam_thickness_mm: f64 = 12.7, 5.0..=26.0, Assumed, "s-beam: thickness; measure it";
+            bar_length_mm: f64 = 80.0, 50.0..=150.0, Chosen, "bar: length (TAL220 and YZC-133: 80)";
+            bar_side_mm: f64 = 12.7, 6.0..=26.0, Chosen, "bar: side of the square section (TAL220: 12.7)";
+            bar_hole_inset_mm: f64 = 5.0, 3.0..=15.0, Chosen, "bar: from each end to the outer hole (TAL220: 5)";
+            bar_hole_spacing_mm: f64 = 15.0, 8.0..=25.0, Chosen, "bar: between the two holes of an end (TAL220: 15)";
+            bar_screw_mm: f64 = 5.0, 3.0..=6.0, Chosen, "bar: metric thread at the fixed end (TAL220: M5)";
+            bar_load_thread_mm: f64 = 4.0, 3.0..=6.0, Chosen, "bar: metric thread at the load end, for the eye bolt (TAL220: M4)";
+            sample_rate_hz: f64 = 80.0, 1.0..=100000.0, Chosen, "rate of the logger; 80 is the fast setting of the HX711 amplifier";
+            drive: DriveKind = DriveKind::Actuator, (), Chosen, "actuator moves at a known speed; crank needs no supply";
+            stroke_mm: f64 = published::STROKE_MM, 10.0..=400.0, Published, "stroke of the drive";
+            full_speed_mm_s: f64 = 50.8, 0.1..=1000.0, Chosen, "speed of the actuator at 100 %, 2 in/s; measure it with the heaviest load";
+            retracted_mm: f64 = 292.4, 60.0..=900.0, Chosen, "actuator: distance of its two holes when retracted; PA-14: the stroke and 5.51 in";
+            clevis_pin_mm: f64 = 6.0, 4.0..=10.0, Chosen, "actuator: metric bolt through its two holes; M6 passes the holes of 6.35 of a PA-14";
+            clevis_mm: f64 = 10.0, 4.0..=20.0, Assumed, "actuator: thickness of its eyes along the bolt; measure it";
+            body_mm: f64 = 38.1, 15.0..=64.0, Chosen, "actuator: diameter of its body (PA-14: 1.5 in)";
         }
         /// Optional parts.
         parts: PartsTable {

@@ -71,7 +71,8 @@ fn read_into(reading: &mut ClampedReading, text: &str, file: &str) -> Result<(),
         text.parse().map_err(|e: toml_edit::TomlError| syntax_error(at(e.span()), e.message()))?;
     for (table, item) in document.as_table().iter() {
         let location = at(key_span(document.as_table(), table));
-        let entries = item.as_table_like().filter(|_| sections().contains(&table)).ok_or_else(|| {
+        let is_ours = sections().contains(&table) && !is_of_a_run(document.as_table(), table);
+        let entries = item.as_table_like().filter(|_| is_ours).ok_or_else(|| {
             other_kind_of_file(document.as_table(), file)
                 .unwrap_or_else(|| not_a_table(table, item))
                 .or_at(&location)
@@ -196,6 +197,8 @@ fn not_a_table(name: &str, item: &Item) -> Diagnostic {
         .with_help(format!("write it as a table: [{name}]"))
 }
 
+/// The list of logs of a run, which has another table `rig`.
+const SERIES: &str = "series";
 /// Names that only another kind of file has at its top level, the kind, and the command that reads it.
 const OTHER_KINDS: [(&[&str], &str, &str); 8] = [
     (&["column", "directions"], "a map of an import", "run `pinswitch import SOURCE --map FILE`"),
@@ -207,7 +210,7 @@ const OTHER_KINDS: [(&[&str], &str, &str); 8] = [
         "a rig to simulate",
         "run `pinswitch simulate FILE`",
     ),
-    (&["series", "rig"], "a run with its logs", "run `pinswitch segment FILE`"),
+    (&[SERIES], "a run with its logs", "run `pinswitch segment FILE`"),
     (
         &["loads_g", "minutes_per_load_change", "minutes_per_mount_change"],
         "the description of a rig",
@@ -220,9 +223,16 @@ const OTHER_KINDS: [(&[&str], &str, &str); 8] = [
     ),
 ];
 
+/// Whether a table is that of a run with logs, which has the name of a table of configurations.
+fn is_of_a_run(document: &dyn TableLike, table: &str) -> bool {
+    table == "rig" && document.contains_key(SERIES)
+}
+
 /// The error of a file of another kind; `None` for a file with a table of a configuration, where a single name is wrong.
 fn other_kind_of_file(document: &dyn TableLike, file: &str) -> Option<Diagnostic> {
-    let has_table = |section: &&str| document.get(section).is_some_and(Item::is_table_like);
+    let has_table = |section: &&str| {
+        !is_of_a_run(document, section) && document.get(section).is_some_and(Item::is_table_like)
+    };
     if sections().iter().any(has_table) {
         return None;
     }

@@ -95,6 +95,10 @@ mod tests {
                 "a.toml:1:1: noise: not a configuration: this is a rig to simulate; run `pinswitch simulate a.toml`",
             ),
             (
+                "[rig]\nwrap_angle_deg = 60\n[[series]]\nfile = \"a.csv\"\n",
+                "a.toml:1:2: series: not a configuration: this is a run with its logs; run `pinswitch segment a.toml`",
+            ),
+            (
                 "[support]\nslots = \"some\"\n",
                 "a.toml:2:9: support.slots = \"some\": unknown value; give \"all\" or \"occupied\"",
             ),

@@ -6,6 +6,7 @@ mod fastening;
 pub(crate) mod mould_keys;
 pub(crate) mod mould_tray;
 mod mounting;
+pub(crate) mod rig;
 pub mod rules;
 mod tendon_ends;
 
@@ -22,6 +23,7 @@ pub(crate) use fastening::{AXLE_HEAD_MM, STOP_SCREW, axle_recess, stop_recess};
 pub use fastening::{Fastening, Recess, Thread};
 pub(crate) use mounting::{BEARING_SEAT_MM, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 pub use mounting::{Hole, Mounting, SheathStop};
+pub use rig::{Joint, RigLayout};
 
 /// A configuration that satisfies all rules, with its [`Dimensions`], the tolerance of its meshes, and the contact of the
 /// tendon.

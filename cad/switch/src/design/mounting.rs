@@ -74,18 +74,27 @@ impl SheathStop {
     }
 }
 
+impl Mounting {
+    /// Returns the axles of the guide pulleys, that on the side of the load first.
+    pub fn axles(&self) -> impl Iterator<Item = Hole> {
+        self.axle.into_iter().chain(self.drive_axle)
+    }
+}
+
 /// A mounting plate with its holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mounting {
     /// Holes for the screws of the plate, or bores of a link.
     pub holes: Vec<Hole>,
-    /// Axle of the guide pulley, on the rig.
+    /// Axle of the guide pulley on the side of the load, on the rig.
     pub axle: Option<Hole>,
+    /// Axle of the guide pulley on the side of the drive, on the rig without a sheath.
+    pub drive_axle: Option<Hole>,
     /// The sheath stop.
     pub sheath: Option<SheathStop>,
     /// Areas of all holes, including those of the fasteners, with their recesses.
     pub taken: Vec<Hole>,
-    /// Discs whose convex hull is the plate.
+    /// Discs whose convex hull is the plate, or the left part of a board in two parts.
     pub discs: Vec<Disc>,
 }
 
@@ -113,34 +122,42 @@ impl Dimensions {
         let m = &c.mount;
         let radius_mm = m.hole_diameter_mm / 2.0;
         let hole = |centre: Point2| Hole { centre, radius_mm };
-        let (holes, axle) = match m.kind {
+        let rig = self.rig_layout();
+        let holes = match m.kind {
             MountKind::None => return None,
-            MountKind::Flange => (self.flange_holes().map(hole).to_vec(), None),
-            MountKind::FingerLink => (self.link_bores().map(hole).to_vec(), None),
+            MountKind::Flange => self.flange_holes().map(hole).to_vec(),
+            MountKind::FingerLink => self.link_bores().map(hole).to_vec(),
             MountKind::Rig => {
-                let (middle, holes) = self.rig();
-                let axle = Hole { centre: middle, radius_mm: AXLE_HOLE_MM / 2.0 };
-                (holes.map(hole).to_vec(), Some(axle))
+                let joint = rig.iter().filter_map(|rig| rig.joint.as_ref());
+                let joint = joint.flat_map(|joint| joint.left.into_iter().chain(joint.right));
+                rig.iter().flat_map(|rig| rig.foot_bolts).chain(joint).collect()
             }
         };
+        let pulley = |centre: Point2| Hole { centre, radius_mm: AXLE_HOLE_MM / 2.0 };
+        let axle = rig.as_ref().map(|rig| pulley(rig.load_axle));
+        let drive_axle = rig.as_ref().filter(|_| self.has_drive_pulley()).map(|rig| pulley(rig.drive_axle));
         let sheath = self.sheath_stop();
         let rim = m.rim_mm;
-        let all = self.taken(&holes, axle, sheath.as_ref());
-        let discs = all.iter().map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect();
-        Some(Mounting { holes, axle, sheath, taken: all, discs })
+        let axles: Vec<Hole> = axle.into_iter().chain(drive_axle).collect();
+        let all = self.taken(&holes, &axles, sheath.as_ref());
+        let discs = match &rig {
+            Some(rig) => self.board_parts(rig).swap_remove(0),
+            None => all.iter().map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect(),
+        };
+        Some(Mounting { holes, axle, drive_axle, sheath, taken: all, discs })
     }
 
     /// Returns the areas of all holes with their recesses: those of the plate, the axle, the
     /// fasteners and the sheath stop.
-    fn taken(&self, holes: &[Hole], axle: Option<Hole>, sheath: Option<&SheathStop>) -> Vec<Hole> {
+    fn taken(&self, holes: &[Hole], axles: &[Hole], sheath: Option<&SheathStop>) -> Vec<Hole> {
         let fasteners = self
             .fastener_angles_rad()
             .into_iter()
             .map(|a| Hole { centre: polar(self.fastener_radius_mm(), a), radius_mm: self.mount_along_mm() });
-        let axle = axle.map(|h| Hole { radius_mm: axle_recess().along_mm, ..h });
+        let axles = axles.iter().map(|h| Hole { radius_mm: axle_recess().along_mm, ..*h });
         let screws = sheath.map_or(Vec::new(), |s| s.screws.to_vec()).into_iter();
         let screws = screws.map(|h| Hole { radius_mm: stop_recess().along_mm, ..h });
-        holes.iter().copied().chain(axle).chain(fasteners).chain(screws).collect()
+        holes.iter().copied().chain(axles).chain(fasteners).chain(screws).collect()
     }
 
     /// Returns the distance of a point from the supports, mm; 0 within them.
@@ -182,26 +199,8 @@ impl Dimensions {
         [middle - along * (m.bore_distance_mm / 2.0), middle + along * (m.bore_distance_mm / 2.0)]
     }
 
-    /// Returns the axis of the guide pulley on the load side, around which the tendon continues in
-    /// the same sense, and the four holes of the rig around switch and pulley.
-    fn rig(&self) -> (Point2, [Point2; 4]) {
-        let m = &self.configuration().mount;
-        let leaves = -self.half_wrap_rad();
-        let outwards = polar(1.0, leaves).coords;
-        // The direction away from the wrap is that of decreasing angles.
-        let along = Vector2::new(-outwards.y, outwards.x);
-        let drop = self.tendon_axis_radius_mm() - PULLEY_RADIUS_MM - self.tendon_diameter_mm() / 2.0;
-        let middle = Point2::from(outwards * drop + along * m.pulley_distance_mm);
-        let aside = self.support_radius_mm() + m.rim_mm + m.hole_diameter_mm / 2.0;
-        let at = |base: Point2, up: f64| base + outwards * up;
-        let behind = Point2::origin() - along * aside;
-        let beyond =
-            middle + along * (pulley_outer_mm(self.tendon_diameter_mm()) + m.rim_mm + m.hole_diameter_mm);
-        (middle, [at(behind, 0.0), at(behind, aside), at(beyond, -aside / 2.0), at(beyond, aside / 2.0)])
-    }
-
     /// Returns the sheath stop on the side away from the load; `None` without a sheath.
-    fn sheath_stop(&self) -> Option<SheathStop> {
+    pub(super) fn sheath_stop(&self) -> Option<SheathStop> {
         let sheath = self.configuration().tendon.sheath_diameter_mm;
         if sheath <= 0.0 {
             return None;

@@ -85,14 +85,17 @@ impl Dimensions {
     }
 
     /// Returns the least length of tendon for the set, rounded up to a millimetre: the wrap, on the
-    /// rig the distance to the guide pulley and half a turn around it, the sheath stop, and two
-    /// free ends to grip.
+    /// rig the distances to the guide pulleys, half a turn around each and the way of the load, the
+    /// sheath stop, and two free ends to grip.
     pub(super) fn least_tendon_mm(&self) -> f64 {
         let c = self.configuration();
         let wrap = 2.0 * self.half_wrap_rad() * self.tendon_axis_radius_mm();
         let pulley = match c.mount.kind {
             MountKind::Rig => {
-                c.mount.pulley_distance_mm + PI * (PULLEY_RADIUS_MM + self.tendon_diameter_mm() / 2.0)
+                // Half a turn at most over each pulley, and the way of the load to the table.
+                let turn = PI * (PULLEY_RADIUS_MM + self.tendon_diameter_mm() / 2.0);
+                let down = c.rig.tendon_height_mm + c.rig.stroke_mm;
+                2.0 * (c.mount.pulley_distance_mm + turn) + down
             }
             _ => 0.0,
         };
@@ -101,6 +104,13 @@ impl Dimensions {
             (stop.start - other.start).norm() + stop.length_mm
         });
         (wrap + pulley + stop + 2.0 * SHOWN_MM).ceil()
+    }
+
+    /// Returns the length of tendon to cut, mm: the configured one, and on the rig at least what its ways need.
+    pub(crate) fn tendon_length_mm(&self) -> f64 {
+        let c = self.configuration();
+        let least = if c.mount.kind == MountKind::Rig { self.least_tendon_mm() } else { 0.0 };
+        c.tendon.length_mm.max(least)
     }
 
     /// Returns the distance beyond the wrap at which the two ends cross, mm; `None` if they do not

@@ -6,13 +6,9 @@ use crate::config::{MouldKind, MountKind};
 use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
 use crate::process::{Cure, Process, mix_ratio, silicone_density_g_cm3};
+use crate::rig::bolt_mm;
 use pinswitch_friction::Substrate;
 
-/// Lengths of fully threaded hexagon bolts M8, mm (ISO 4017).
-const BOLT_LENGTHS_MM: [f64; 20] = [
-    16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 80.0, 90.0, 100.0, 110.0, 120.0,
-    130.0, 140.0, 150.0,
-];
 /// Bearing of the guide pulley.
 const BEARING: &str = "608";
 /// Number of screws of the sheath stop.
@@ -111,9 +107,12 @@ pub struct MountHardware {
     pub holes: usize,
     /// Diameter of these holes, mm.
     pub hole_diameter_mm: f64,
-    /// Bearing of the guide pulley, on the rig.
+    /// Number of guide pulleys, on the rig.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub pulleys: usize,
+    /// Bearing of each guide pulley, on the rig.
     pub bearing: Option<&'static str>,
-    /// Bolt through the bearing.
+    /// Bolt through each bearing.
     pub axle: Option<String>,
     /// Screws and nuts of the sheath stop.
     pub sheath_stop: Option<String>,
@@ -188,13 +187,18 @@ pub fn bill_of_materials(design: &Design) -> Bill {
         tendon: Tendon {
             rope_diameter_mm: c.tendon.rope_diameter_mm,
             outer_diameter_mm: design.tendon_diameter_mm(),
-            length_mm: c.tendon.length_mm,
+            length_mm: design.tendon_length_mm(),
         },
         fasteners: fasteners(design),
         dowels: dowels(design),
         pulley_bearing: (c.parts.guide_pulley && c.mount.kind != MountKind::Rig).then_some(BEARING),
         mount: mount(design),
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(number: &usize) -> bool {
+    *number == 0
 }
 
 fn fasteners(design: &Design) -> Option<Fasteners> {
@@ -225,9 +229,7 @@ fn mount(design: &Design) -> Option<MountHardware> {
     let mounting = design.mounting()?;
     // The head is in the plate; spacer, bearing and nut follow.
     let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
-    let axle_length_mm = mounting
-        .axle
-        .map(|_| BOLT_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(BOLT_LENGTHS_MM[19]));
+    let axle_length_mm = mounting.axle.map(|_| bolt_mm(stack));
     let axle = axle_length_mm.map(|length| format!("M8 x {length} hexagon bolt (ISO 4017), washer and nut"));
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
     let stop_screw_length_mm = mounting.sheath.and_then(|_| STOP_SCREW.at_least_mm(stack));
@@ -236,7 +238,8 @@ fn mount(design: &Design) -> Option<MountHardware> {
         stop_screw.as_ref().map(|screw| format!("{STOP_SCREWS} screws {screw} (ISO 4762) and nuts"));
     Some(MountHardware {
         holes: mounting.holes.len(),
-        hole_diameter_mm: c.mount.hole_diameter_mm,
+        hole_diameter_mm: mounting.holes.first().map_or(c.mount.hole_diameter_mm, |h| 2.0 * h.radius_mm),
+        pulleys: mounting.axles().count(),
         bearing: mounting.axle.map(|_| BEARING),
         axle,
         sheath_stop,

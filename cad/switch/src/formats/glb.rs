@@ -17,8 +17,6 @@ pub(super) const FORMAT: Format = Format {
     make,
 };
 
-/// Colour of bought steel: red, green, blue.
-const STEEL: [u8; 3] = [158, 160, 164];
 /// Opacity of silicone.
 const SILICONE_OPACITY: f64 = 0.78;
 
@@ -41,7 +39,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
     for body in &bought {
         let mesh = body.solid.mesh(built.design().tolerance());
         let mesh = mesh.map_err(SetError::encoding)?;
-        let material = GlbMaterial { name: "steel", colour: STEEL, opacity: 1.0, metal: true };
+        let material = GlbMaterial { name: "steel", colour: body.kind.colour(), opacity: 1.0, metal: true };
         placed.push((&body.name, mesh, material));
     }
     let bodies: Vec<GlbBody<'_>> =

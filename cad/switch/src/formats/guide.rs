@@ -12,7 +12,7 @@ use self::plates_section::plates_section;
 use super::markdown::escape;
 use super::{Format, Inclusion, png};
 use crate::built::Built;
-use crate::config::MouldKind;
+use crate::config::{MouldKind, MountKind};
 use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
@@ -71,7 +71,8 @@ fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (
     let picture = |text: &mut String, alt: &str, file: &str| {
         let _ = writeln!(text, "![{alt}]({file})\n");
     };
-    picture(&mut text, "Exploded view of the assembly", "assembly.png");
+    let view = if c.mount.kind == MountKind::Rig { "The rig" } else { "Exploded view of the assembly" };
+    picture(&mut text, view, "assembly.png");
     print_section(&mut text, built, manifest);
     text.push_str(&plates_section(design, manifest, plates));
     let casts = c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None;
@@ -388,6 +389,7 @@ mod tests {
         assert!(alone.contains("Press a 608 bearing into `guide-pulley`"), "{alone}");
         let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
         assert_eq!(rig.matches("608").count(), 1, "{rig}");
+        assert!(rig.contains("each of the two guide pulleys"), "{rig}");
         assert!(rig.contains("Put `pulley-spacer` on the bolt (M8 x "), "{rig}");
     }
 }

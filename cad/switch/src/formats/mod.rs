@@ -56,6 +56,7 @@ formats! {
     glb,
     drawing,
     dxf,
+    rig,
     guide,
     page,
 }

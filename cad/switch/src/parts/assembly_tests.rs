@@ -220,6 +220,202 @@ fn screws_and_dowels_pass_on_one_axis() {
     }
 }
 
+/// Boards, feet and splice of rigs, in one part and in two.
+const RIGS: [&[&str]; 6] = [
+    &["mount.kind=rig", "layout.pins=[5, 8, 11]"],
+    &["mount.kind=rig", "print.bed_mm=165", "rig.drive=crank"],
+    &["mount.kind=rig", "rig.cell=bar", "rig.weight_diameter_mm=300", "print.bed_mm=350"],
+    &[
+        "mount.kind=rig",
+        "rig.cell=bar",
+        "rig.tendon_height_mm=45",
+        "rig.drive=crank",
+        "rig.weight_diameter_mm=10",
+    ],
+    &["mount.kind=rig", "layout.wrap_angle_deg=150", "segment.span_deg=160", "mount.pulley_distance_mm=90"],
+    &["mount.kind=rig", "tendon.sheath_diameter_mm=4", "rig.tendon_height_mm=120"],
+];
+
+/// Axes of the bought bodies that pass through parts of a rig, with half of their width.
+fn bolts(design: &Design) -> Vec<(Point2, f64, [f64; 2])> {
+    use crate::hardware::{HardwareKind, hardware};
+    let is_bolt = |kind| {
+        matches!(
+            kind,
+            HardwareKind::FootBolt | HardwareKind::SpliceBolt | HardwareKind::DriveBolt | HardwareKind::Bolt
+        )
+    };
+    let of = |body: crate::hardware::Hardware| {
+        // The shank is the thinnest section.
+        let (low, high) = body.solid.bounds().unwrap();
+        let middle = nalgebra::center(&low, &high);
+        let ends = [low.z + 1e-3, high.z - 1e-3].map(|z| {
+            let section = body.solid.section(z);
+            let (a, b) = section[0].bounds();
+            (b.x - a.x) / 2.0
+        });
+        (middle.xy(), ends[0].min(ends[1]), [low.z, high.z])
+    };
+    hardware(design).into_iter().filter(|body| is_bolt(body.kind)).map(of).collect()
+}
+
+/// Every bolt of a rig passes through holes that are on its axis, in every part at its height.
+#[test]
+fn rig_bolts_pass_on_one_axis() {
+    for set in RIGS {
+        let design = design(set);
+        let parts = assembled(&design);
+        let bolts = bolts(&design);
+        assert!(bolts.len() >= 7, "{set:?}: {}", bolts.len());
+        for (axis, radius, [low, high]) in bolts {
+            let mut passed = 0;
+            for part in parts.iter().filter(|p| matches!(p.role, Role::Mount | Role::Stand | Role::Accessory))
+            {
+                let mut heights = heights_mm(part);
+                heights.sort_by(f64::total_cmp);
+                for w in heights.windows(2).filter(|w| w[1] - w[0] > 1e-6) {
+                    let z = f64::midpoint(w[0], w[1]);
+                    if z < low || z > high || w[1] - w[0] < design.membrane_mm() + 1e-6 {
+                        continue;
+                    }
+                    let here = section(part, z);
+                    let near = here.distance_mm(axis);
+                    if here.contains(axis) {
+                        panic!("{set:?}: {} blocks the bolt at {axis}, z = {z}", part.name);
+                    }
+                    // A hole around the bolt is round about its axis: its outline is near on all sides.
+                    if near < 8.0 {
+                        let hole =
+                            here.exact.iter().find(|c| (c.distance_mm(axis) - near).abs() < 1e-9).unwrap();
+                        let (a, b) = hole.bounds();
+                        let is_round = hole.area_mm2() < 0.0;
+                        assert!(near >= radius - 1e-9, "{set:?}: {} touches the bolt at {axis}", part.name);
+                        if is_round {
+                            let off = (nalgebra::center(&a, &b) - axis).norm();
+                            assert!(off < 1e-9, "{set:?}: {} is off the axis by {off}", part.name);
+                            passed += 1;
+                        }
+                    }
+                }
+            }
+            assert!(passed >= 1, "{set:?}: the bolt at {axis} passes no hole");
+        }
+    }
+}
+
+/// The hanging tendon clears every body; the weights clear the table, and no body is below the table's top beyond its edge.
+#[test]
+fn the_load_of_a_rig_hangs_free() {
+    use crate::hardware::{HardwareKind, hardware};
+    for set in RIGS {
+        let design = design(set);
+        let layout = design.rig_layout().unwrap();
+        let c = design.configuration();
+        let half = c.rig.weight_diameter_mm / 2.0;
+        assert!(layout.edge_x_mm - layout.load_x_mm >= half + 9.999, "{set:?}");
+        assert!(layout.table_y_mm < layout.load_axle.y, "{set:?}");
+        let z = c.shell.width_mm / 2.0;
+        for part in assembled(&design).iter().filter(|p| p.role != Role::Tendon) {
+            // Nothing is under the table's top, where the weights move.
+            let (low, _) = part.solid.bounds().unwrap();
+            assert!(low.y >= layout.table_y_mm - 1e-9, "{set:?}: {} at {}", part.name, low.y);
+            let here = section(part, z);
+            for step in 0..200 {
+                let y = layout.load_axle.y - f64::from(step) * 0.5;
+                let p = Point2::new(layout.load_x_mm, y);
+                let air = if y > layout.load_axle.y - 0.1 { 0.8 } else { 0.849 };
+                let free = here.exact.is_empty() || (!here.contains(p) && here.distance_mm(p) >= air);
+                assert!(free, "{set:?}: {} touches the tendon at {p}", part.name);
+            }
+        }
+        for body in hardware(&design) {
+            let (low, high) = body.solid.bounds().unwrap();
+            let is_load = matches!(body.kind, HardwareKind::Hook | HardwareKind::Weight | HardwareKind::Line);
+            if is_load && low.y < layout.table_y_mm {
+                assert!(high.x < layout.edge_x_mm - 9.999 + 1e-6, "{set:?}: {} at {}", body.name, high.x);
+            } else {
+                assert!(low.y >= layout.table_y_mm - 1e-9, "{set:?}: {} at {}", body.name, low.y);
+            }
+        }
+    }
+}
+
+/// No two bodies of a rig overlap, bought ones included. Threads and rings that are put together are left out.
+#[test]
+fn bodies_of_a_rig_do_not_overlap() {
+    use crate::hardware::hardware;
+    for set in RIGS {
+        let design = design(set);
+        let parts = assembled(&design);
+        assert_eq!(overlap(&parts), None, "{set:?}");
+        let large = ["load-cell", "actuator", "weight", "eye-bolt", "foot-washer", "bolt-nut", "bearing"];
+        let bought =
+            hardware(&design).into_iter().filter(|b| large.iter().any(|name| b.name.starts_with(name)));
+        let stand: Vec<Part> =
+            parts.into_iter().filter(|p| matches!(p.role, Role::Mount | Role::Stand)).collect();
+        for body in bought {
+            let twin = stand[0].with_solid(body.solid);
+            let twin =
+                Part { name: body.name, pose: Some(pinswitch_solid::pose::Pose::upright(0.0)), ..twin };
+            for part in &stand {
+                assert_eq!(overlap(&[part.clone(), twin.clone()]), None, "{set:?}");
+            }
+        }
+    }
+}
+
+/// Nothing of a rig's stand needs support: each layer is on the one below it, except for skins over pockets and slopes.
+#[test]
+fn stands_print_without_support() {
+    for set in RIGS {
+        let design = design(set);
+        for part in printed(&design).unwrap().iter().filter(|p| p.role == Role::Stand) {
+            let mut levels = part.solid.heights_mm();
+            levels.sort_by(f64::total_cmp);
+            let upright = Part { pose: Some(pinswitch_solid::pose::Pose::upright(0.0)), ..part.clone() };
+            let at: Vec<Section> = levels
+                .windows(2)
+                .filter(|w| w[1] - w[0] > 1e-6)
+                .map(|w| section(&upright, f64::midpoint(w[0], w[1])))
+                .collect();
+            for pair in at.windows(2) {
+                let [below, above] = pair else { continue };
+                for p in above.polygons.iter().flatten() {
+                    // A slope of 45 degrees reaches half of its height beyond the middle of the layer below.
+                    let is_carried = below.contains(*p) || below.distance_mm(*p) < 3.01;
+                    assert!(is_carried, "{set:?}: {} at {p}", part.name);
+                }
+            }
+        }
+    }
+}
+
+/// Both guide pulleys have the paper's radius, and the tendon leaves them horizontally and vertically.
+#[test]
+fn both_guide_pulleys_lead_the_tendon() {
+    let design = design(RIGS[0]);
+    let layout = design.rig_layout().unwrap();
+    let parts = assembled(&design);
+    let z = design.configuration().shell.width_mm / 2.0;
+    for (name, axle) in [("guide-pulley", layout.load_axle), ("guide-pulley-2", layout.drive_axle)] {
+        let pulley = parts.iter().find(|p| p.name == name).unwrap();
+        let groove = section(pulley, z);
+        let outline = groove.exact.iter().max_by(|a, b| a.area_mm2().total_cmp(&b.area_mm2())).unwrap();
+        assert!(((outline.area_mm2() / std::f64::consts::PI).sqrt() - 22.0).abs() < 1e-9, "{name}");
+        let (low, high) = outline.bounds();
+        assert!((nalgebra::center(&low, &high) - axle).norm() < 1e-9, "{name}");
+    }
+    let outwards = polar(1.0, design.half_wrap_rad());
+    let reach = layout.drive_axle.coords.dot(&outwards.coords);
+    assert!((reach - design.tendon_axis_radius_mm() - 22.85).abs() < 1e-9);
+    assert!((layout.drive_axle.y - layout.line_y_mm - 22.85).abs() < 1e-9);
+    assert!((layout.load_axle.x - layout.load_x_mm - 22.85).abs() < 1e-9);
+    let tendon = parts.iter().find(|p| p.role == Role::Tendon).unwrap();
+    let (low, high) = tendon.solid.bounds().unwrap();
+    assert!((low.x - (layout.load_x_mm - 0.85)).abs() < 0.03, "{}", low.x);
+    assert!((high.x - (layout.drive_axle.x + 20.0)).abs() < 1e-9, "{}", high.x);
+}
+
 /// Nuts and heads fit into their recesses and cannot rotate; inserts have a hole at both ends of the shell.
 #[test]
 fn hardware_fits_its_recesses() {

@@ -51,11 +51,13 @@ fn smaller(part: &Part) -> &'static [Direction] {
     const BED: Direction = Raise("print.bed_mm");
     match (part.role, part.name.as_str()) {
         (_, "coupon") => &[BED, Set("parts.coupon", "false")],
-        (_, "guide-pulley") => &[BED, Set("parts.guide_pulley", "false"), Set("mount.kind", "\"none\"")],
+        (_, "guide-pulley" | "guide-pulley-2") => {
+            &[BED, Set("parts.guide_pulley", "false"), Set("mount.kind", "\"none\"")]
+        }
         (Role::Mould, "mould-tray") => {
             &[BED, Lower("mould.layers"), Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")]
         }
-        (Role::Mount, _) => &[
+        (Role::Mount | Role::Stand, _) => &[
             BED,
             Lower("mount.bore_distance_mm"),
             Lower("mount.pulley_distance_mm"),

@@ -11,9 +11,21 @@ const SEAT_MM: f64 = 7.0;
 /// Radius of the bore under the seat: the ledge carries the outer ring, and the inner ring turns freely.
 const LEDGE_RADIUS_MM: f64 = 9.0;
 
+/// The pulley on the side of the drive of the rig.
+pub(super) fn drive_pulley(design: &Design) -> Result<Part, ConfigError> {
+    let axle = design.mounting().and_then(|m| m.drive_axle).map(|a| a.centre);
+    pulley(design, "guide-pulley-2", axle)
+}
+
+/// The pulley on the side of the load of the rig, or a separate one.
+pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
+    let axle = design.mounting().and_then(|m| m.axle).map(|a| a.centre);
+    pulley(design, "guide-pulley", axle)
+}
+
 /// The pulley. From below: rim, slope of 45 degrees into the groove, flat bottom, slope, rim. On the rig, its bearing faces the
 /// plate, and its axis is that of the axle.
-pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
+fn pulley(design: &Design, name: &str, axle: Option<Point2>) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let tendon = design.tendon_diameter_mm();
     let outer = pulley_outer_mm(tendon);
@@ -22,7 +34,6 @@ pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     let width = pulley_width_mm(tendon);
     let rim = (width - 2.0 * depth - flat) / 2.0;
     let chamfer = c.print.elephant_foot_mm;
-    let axle = design.mounting().and_then(|m| m.axle).map(|a| a.centre);
     // Its pose rotates it by 180 degrees about y.
     let middle = axle.map_or(Point2::origin(), |p| Point2::new(-p.x, p.y));
     let circle = |radius: f64| Contour::circle(middle, radius);
@@ -42,5 +53,5 @@ pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Up, seat_foot, &[bore_head]);
     solid.cap(Facing::Up, top, &[seat_head]);
     let pose = axle.map(|_| Pose { flipped: true, z_mm: c.shell.width_mm / 2.0 + width / 2.0 });
-    Ok(Part::new("guide-pulley", Role::Accessory, solid, pose))
+    Ok(Part::new(name, Role::Accessory, solid, pose))
 }

@@ -13,13 +13,14 @@ mod mould;
 mod mount;
 mod omission;
 mod part;
+mod rig;
 mod sector;
 mod shell;
 mod stroke_font;
 mod support;
 mod tendon;
 
-use crate::config::{ConfigError, Configuration, Location, MouldKind, MountKind, field_location};
+use crate::config::{ConfigError, Configuration, DriveKind, Location, MouldKind, MountKind, field_location};
 use crate::design::Design;
 use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
@@ -35,7 +36,9 @@ pub(crate) use mount::SPACER;
 pub use mount::spacer_mm;
 pub use omission::LeftOut;
 pub use part::{Material, Part, Role};
+pub(crate) use rig::{cell_bolts, cell_length_mm, front_mm, middle_mm, stand_holes};
 pub use sector::Sector;
+pub(crate) use tendon::RIG_END_MM;
 pub use tendon::{Touch, touches};
 
 /// A printed part: which configurations have it, and how it is built.
@@ -60,8 +63,13 @@ pub const PRINTED_PARTS: &[PrintedPart] = &[
     PrintedPart { name: "coupon", is_wanted: |c| c.parts.coupon, build: coupon::coupon },
     PrintedPart {
         name: "guide-pulley",
-        is_wanted: |c| c.parts.guide_pulley || mount::has_plate(c, MountKind::Rig),
+        is_wanted: |c| c.parts.guide_pulley || rig::is_rig(c),
         build: guide_pulley::guide_pulley,
+    },
+    PrintedPart {
+        name: "guide-pulley-2",
+        is_wanted: rig::has_drive_pulley,
+        build: guide_pulley::drive_pulley,
     },
     PrintedPart {
         name: "base-flange",
@@ -73,12 +81,34 @@ pub const PRINTED_PARTS: &[PrintedPart] = &[
         is_wanted: |c| mount::has_plate(c, MountKind::FingerLink),
         build: mount::plate,
     },
+    PrintedPart { name: "rig-plate", is_wanted: rig::is_rig, build: rig::left_board },
+    PrintedPart { name: "rig-plate-2", is_wanted: rig::has_joint, build: rig::right_board },
+    PrintedPart { name: "rig-splice", is_wanted: rig::has_joint, build: rig::splice },
+    PrintedPart { name: SPACER, is_wanted: rig::is_rig, build: mount::spacer },
+    PrintedPart { name: "pulley-spacer-2", is_wanted: rig::has_drive_pulley, build: mount::drive_spacer },
+    PrintedPart { name: "rig-foot-left", is_wanted: rig::is_rig, build: rig::left_foot },
+    PrintedPart { name: "rig-foot-right", is_wanted: rig::is_rig, build: rig::right_foot },
+    PrintedPart { name: "cell-mount", is_wanted: rig::is_rig, build: rig::cell_mount },
     PrintedPart {
-        name: "rig-plate",
-        is_wanted: |c| mount::has_plate(c, MountKind::Rig),
-        build: mount::plate,
+        name: "actuator-foot",
+        is_wanted: |c| rig::has_drive(c, DriveKind::Actuator),
+        build: rig::actuator_foot,
     },
-    PrintedPart { name: SPACER, is_wanted: |c| mount::has_plate(c, MountKind::Rig), build: mount::spacer },
+    PrintedPart {
+        name: "crank-foot",
+        is_wanted: |c| rig::has_drive(c, DriveKind::Crank),
+        build: rig::crank_foot,
+    },
+    PrintedPart {
+        name: "crank-drum",
+        is_wanted: |c| rig::has_drive(c, DriveKind::Crank),
+        build: rig::crank_drum,
+    },
+    PrintedPart {
+        name: "crank-knob",
+        is_wanted: |c| rig::has_drive(c, DriveKind::Crank),
+        build: rig::crank_knob,
+    },
     PrintedPart { name: "sheath-stop", is_wanted: mount::has_sheath_stop, build: mount::sheath_stop },
 ];
 

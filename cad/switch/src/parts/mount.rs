@@ -4,7 +4,7 @@
 use super::omission::LeftOut;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, Configuration, MountKind, field_location};
-use crate::design::{Design, Hole, SheathStop, axle_recess, pulley_width_mm, stop_recess};
+use crate::design::{Design, Hole, SheathStop, pulley_width_mm, stop_recess};
 use pinswitch_solid::profile::{Contour, Point2, Vector2, hull};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -19,15 +19,14 @@ const SETBACK_MM: f64 = 0.5;
 /// Distance of a jaw from a hole, with the wall beyond the hole, mm: space for the head of an M3 screw.
 const JAW_AIR_MM: f64 = 3.5;
 
-/// Name of the spacer under the pulley of the rig.
+/// Name of the spacer under the pulley on the side of the load, and begin of the name of the other one.
 pub(crate) const SPACER: &str = "pulley-spacer";
 
-/// Returns the name of the plate of a kind of mount.
+/// Returns the name of the plate of a kind of mount other than the rig.
 fn name(kind: MountKind) -> &'static str {
     match kind {
         MountKind::FingerLink => "finger-link",
-        MountKind::Rig => "rig-plate",
-        MountKind::Flange | MountKind::None => "base-flange",
+        MountKind::Flange | MountKind::Rig | MountKind::None => "base-flange",
     }
 }
 
@@ -60,9 +59,8 @@ pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     let mut solid = Solid::new();
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, thickness, chamfer).map_err(&foot)?;
     let mut mouths = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
-    let axle = mounting.axle.iter().map(|h| (*h, axle_recess()));
     let screws = mounting.sheath.iter().flat_map(|s| s.screws).map(|h| (h, stop_recess()));
-    for (hole, recess) in axle.chain(screws) {
+    for (hole, recess) in screws {
         let (outline, seat) = (circle(&hole), (hole.centre, recess));
         fastening::seated_hole(&mut mouths, &mut solid, design, &outline, seat, thickness);
     }
@@ -94,10 +92,18 @@ pub fn spacer_mm(design: &Design) -> f64 {
     c.support.plate_mm + c.shell.width_mm / 2.0 - pulley_width_mm(design.tendon_diameter_mm()) / 2.0
 }
 
-/// The spacer under the pulley of the rig.
+/// The spacer under the pulley on the side of the load.
 pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
-    let mounting = design.mounting().ok_or_else(no_plate)?;
-    let axle = mounting.axle.ok_or_else(no_plate)?;
+    spacer_on(design, SPACER, design.mounting().and_then(|m| m.axle))
+}
+
+/// The spacer under the pulley on the side of the drive.
+pub(super) fn drive_spacer(design: &Design) -> Result<Part, ConfigError> {
+    spacer_on(design, "pulley-spacer-2", design.mounting().and_then(|m| m.drive_axle))
+}
+
+fn spacer_on(design: &Design, name: &str, axle: Option<Hole>) -> Result<Part, ConfigError> {
+    let axle = axle.ok_or_else(no_plate)?;
     let chamfer = design.configuration().print.elephant_foot_mm;
     let about = |centre: Point2| {
         let ring = Contour::circle(centre, SPACER_RADIUS_MM);
@@ -106,7 +112,7 @@ pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
             .map_err(offset_error("print.elephant_foot_mm"))
     };
     let pose = Some(Pose::upright(face_mm(design)));
-    let part = Part::new(SPACER, Role::Mount, about(axle.centre)?, pose);
+    let part = Part::new(name, Role::Mount, about(axle.centre)?, pose);
     Ok(Part { drawn: Some(about(Point2::origin())?), ..part })
 }
 

@@ -52,6 +52,8 @@ pub enum Role {
     Tendon,
     /// A mounting part.
     Mount,
+    /// A part of the rig on its table: a foot, the cell mount, or a part of the drive.
+    Stand,
     /// A separate part: coupon, guide pulley.
     Accessory,
 }
@@ -72,6 +74,7 @@ impl Role {
             Self::Pin { .. } => [205, 210, 218],
             Self::Tendon => [72, 82, 96],
             Self::Mount => [168, 158, 140],
+            Self::Stand => [140, 158, 168],
             Self::Layer => [120, 190, 225],
             Self::Support { .. } => [236, 178, 74],
             Self::Mould => [150, 178, 126],
@@ -88,7 +91,7 @@ impl Role {
             Self::Pin { .. } => Vector3::new(0.0, 14.0, 0.0),
             Self::Tendon => Vector3::new(0.0, 20.0, 0.0),
             Self::Mount => Vector3::new(0.0, 0.0, -24.0),
-            Self::Shell | Self::Mould | Self::Accessory => Vector3::zeros(),
+            Self::Shell | Self::Mould | Self::Accessory | Self::Stand => Vector3::zeros(),
         }
     }
 }

@@ -3,15 +3,17 @@
 //! Its axis is a string around discs: one of the silicone and one for each pin, with half of the tendon added to their radii.
 //! It consists of lines and arcs; each arc is a contact with a pin or with the silicone.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Part, Pose, Role};
-use crate::design::Design;
+use crate::design::{Design, PULLEY_RADIUS_MM, RigLayout};
 use pinswitch_solid::profile::{Contour, Disc, HullArc, Pen, Point2, Vector2, hull_arcs, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
 /// Number of sides of the section: a polygon inside the circle, so that it does not overlap bodies that the circle touches.
 const SIDES: u32 = 12;
+/// Length of the ends beyond the guide pulleys of a rig, mm. The rest is drawn with the bought bodies.
+pub(crate) const RIG_END_MM: f64 = 20.0;
 /// Shorter arcs are left out, radians.
 const SAME_RAD: f64 = 1e-9;
 
@@ -69,13 +71,18 @@ pub(super) fn tendon(design: &Design) -> Part {
     let radius = design.tendon_diameter_mm() / 2.0;
     let (discs, arcs, _) = string(design);
     let [load_side, other_side] = design.shown_ends_mm();
-    // The side of the load is at the largest angle.
-    let leads = [other_side, load_side];
+    let ends = Ends {
+        // The side of the load is at the largest angle.
+        leads_mm: [other_side, load_side],
+        rig: design.rig_layout(),
+        has_drive_pulley: design.has_drive_pulley(),
+        groove_mm: PULLEY_RADIUS_MM + radius,
+    };
     let mut solid = Solid::new();
     let mut below = None;
     for k in 0..SIDES / 2 {
         let angle = (f64::from(k) + 0.5) / f64::from(SIDES) * TAU;
-        let outline = strip(&discs, &arcs, leads, radius * libm::sin(angle));
+        let outline = strip(&discs, &arcs, &ends, radius * libm::sin(angle));
         let ring = solid.ring(outline, -radius * libm::cos(angle));
         match below {
             None => solid.cap(Facing::Down, ring, &[]),
@@ -90,18 +97,59 @@ pub(super) fn tendon(design: &Design) -> Part {
     Part::new("tendon", Role::Tendon, solid, Some(Pose::upright(middle)))
 }
 
+/// The ends of the tendon beyond the wrap: straight, or over the guide pulleys of a rig.
+struct Ends {
+    leads_mm: [f64; 2],
+    rig: Option<RigLayout>,
+    has_drive_pulley: bool,
+    /// Radius of the axis of the tendon on a guide pulley.
+    groove_mm: f64,
+}
+
+impl Ends {
+    /// Adds the way from the wrap, which it leaves outward of `from_rad`, over the guide pulley of the load and down, on one
+    /// side of the axis; then the way back on the other side, to the wrap.
+    fn load_side(&self, pen: Pen, from_rad: f64, half_mm: f64) -> Option<Pen> {
+        let axle = self.rig.as_ref()?.load_axle;
+        let on = |angle: f64, by: f64| {
+            axle + Vector2::new(libm::cos(angle), libm::sin(angle)) * (self.groove_mm + by)
+        };
+        let down = |by: f64| on(PI, by) - Vector2::y() * RIG_END_MM;
+        let out =
+            pen.line_to(on(from_rad, half_mm)).arc_to(axle, on(PI, half_mm), true).line_to(down(half_mm));
+        Some(out.line_to(down(-half_mm)).line_to(on(PI, -half_mm)).arc_to(
+            axle,
+            on(from_rad, -half_mm),
+            false,
+        ))
+    }
+
+    /// The points of the way from the drive to the wrap, on one side of the axis: the end, the foot and the head of the arc
+    /// on the guide pulley, and its centre. The tendon leaves the wrap outward of `to_rad`.
+    fn drive_side(&self, to_rad: f64, by_mm: f64) -> Option<[Point2; 4]> {
+        let axle = self.rig.as_ref().filter(|_| self.has_drive_pulley)?.drive_axle;
+        let on =
+            |angle: f64| axle - Vector2::new(libm::cos(angle), libm::sin(angle)) * (self.groove_mm - by_mm);
+        let foot = on(FRAC_PI_2);
+        Some([foot + Vector2::x() * RIG_END_MM, foot, on(to_rad), axle])
+    }
+}
+
 /// The outline of a string of width `2 * half_mm`, counter-clockwise.
-fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> Contour {
+fn strip(discs: &[Disc], arcs: &[HullArc], ends: &Ends, half_mm: f64) -> Contour {
     let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
     let onward = |angle: f64| Vector2::new(-libm::sin(angle), libm::cos(angle));
     let at = |arc: &HullArc, angle: f64, by: f64| {
         discs[arc.disc].centre + direction(angle) * (discs[arc.disc].radius_mm + by)
     };
     let (Some(first), Some(last)) = (arcs.first(), arcs.last()) else { return Contour::polygon(Vec::new()) };
-    let start = |by: f64| at(first, first.from_rad, by) - onward(first.from_rad) * leads_mm[0];
-    let end = |by: f64| at(last, last.to_rad, by) + onward(last.to_rad) * leads_mm[1];
+    let start = |by: f64| at(first, first.from_rad, by) - onward(first.from_rad) * ends.leads_mm[0];
+    let end = |by: f64| at(last, last.to_rad, by) + onward(last.to_rad) * ends.leads_mm[1];
     let is_arc = |arc: &&HullArc| arc.to_rad - arc.from_rad > SAME_RAD;
-    let mut pen = Pen::at(start(half_mm));
+    let mut pen = match ends.drive_side(first.from_rad, half_mm) {
+        Some([end, foot, head, axle]) => Pen::at(end).line_to(foot).arc_to(axle, head, false),
+        None => Pen::at(start(half_mm)),
+    };
     for arc in arcs.iter().filter(is_arc) {
         pen = pen.line_to(at(arc, arc.from_rad, half_mm)).arc_to(
             discs[arc.disc].centre,
@@ -109,7 +157,10 @@ fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> 
             true,
         );
     }
-    pen = pen.line_to(end(half_mm)).line_to(end(-half_mm));
+    pen = match ends.load_side(pen.clone(), last.to_rad, half_mm) {
+        Some(pen) => pen,
+        None => pen.line_to(end(half_mm)).line_to(end(-half_mm)),
+    };
     for arc in arcs.iter().rev().filter(is_arc) {
         pen = pen.line_to(at(arc, arc.to_rad, -half_mm)).arc_to(
             discs[arc.disc].centre,
@@ -117,5 +168,8 @@ fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> 
             false,
         );
     }
-    pen.line_to(start(-half_mm)).close()
+    match ends.drive_side(first.from_rad, -half_mm) {
+        Some([end, foot, head, axle]) => pen.line_to(head).arc_to(axle, foot, true).line_to(end).close(),
+        None => pen.line_to(start(-half_mm)).close(),
+    }
 }

@@ -30,16 +30,22 @@ pub enum Stage {
     Mount,
     /// Screws and nuts.
     Fasteners,
-    /// The guide pulley, next to the switch.
+    /// The guide pulleys, next to the switch.
     Pulley,
+    /// The feet of the rig.
+    Stand,
     /// The tendon.
     Tendon,
+    /// Cell, drive and load of the rig.
+    Drive,
 }
 
 /// Rotation of the switch, with grooves up, at which the outer face of the left support is visible.
 const TURN_DEG: f64 = 38.0;
 /// Elevation of the camera.
 const RISE_DEG: f64 = 32.0;
+/// The view of a rig with its table: from the front.
+pub(super) const RIG_VIEW: View = View { turn_deg: -66.0, rise_deg: 24.0 };
 
 /// Colours of present bodies, from the shell to the pins: neighbours have different greys.
 const SHELL_GREY: [u8; 3] = [224, 224, 222];
@@ -62,6 +68,8 @@ const MOUNT_APART_MM: f64 = 24.0;
 const SPACER_APART_MM: f64 = 26.0;
 const PULLEY_APART_MM: f64 = 32.0;
 const NUT_APART_MM: f64 = 44.0;
+/// Distance of the feet of the rig, mm.
+const FEET_APART_MM: f64 = 40.0;
 /// Distance of spare pins, mm.
 const SPARE_APART_MM: f64 = 5.0;
 /// Distance of small hardware from its position, mm.
@@ -78,8 +86,11 @@ struct Item {
 
 /// Returns the view of a step: from the side of the left support, unless a large plate would hide the added bodies.
 pub fn stage_view(design: &Design, stage: Stage) -> View {
+    if stage == Stage::Drive {
+        return RIG_VIEW;
+    }
     let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
-        && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Tendon);
+        && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Stand | Stage::Tendon);
     View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
@@ -117,7 +128,7 @@ fn placed(built: &Built, is_wanted: impl Fn(&Part) -> bool) -> impl Iterator<Ite
 
 /// Returns whether a part is added with the pulley, and not with the plate.
 fn is_spacer(part: &Part) -> bool {
-    part.name == SPACER
+    part.name.starts_with(SPACER)
 }
 
 /// Returns the bodies that a step adds.
@@ -158,8 +169,16 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
         }
         Stage::Mount => {
             let plate = mount(|part| !is_spacer(part), z(-MOUNT_APART_MM));
-            let is_in_plate =
-                |kind| matches!(kind, HardwareKind::Bolt | HardwareKind::StopScrew | HardwareKind::StopNut);
+            let is_in_plate = |kind| {
+                matches!(
+                    kind,
+                    HardwareKind::Bolt
+                        | HardwareKind::StopScrew
+                        | HardwareKind::StopNut
+                        | HardwareKind::SpliceBolt
+                        | HardwareKind::SpliceNut
+                )
+            };
             plate.chain(bought(design, is_in_plate, |_| -MOUNT_APART_MM)).collect()
         }
         Stage::Pulley => {
@@ -174,11 +193,48 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
             let bought = bought(design, is_on_bolt, apart);
             mount(is_spacer, z(SPACER_APART_MM)).chain(pulley).chain(bought).collect()
         }
+        Stage::Stand => {
+            let feet = stand(built, true, z(-FEET_APART_MM));
+            let is_of_feet = |kind| {
+                matches!(kind, HardwareKind::FootBolt | HardwareKind::FootWasher | HardwareKind::FootNut)
+            };
+            let apart = |body: &Hardware| match body.kind {
+                HardwareKind::FootBolt => FEET_APART_MM,
+                _ if body.from_right => SMALL_APART_MM,
+                _ => -2.0 * FEET_APART_MM,
+            };
+            feet.into_iter().chain(bought(design, is_of_feet, apart)).collect()
+        }
+        Stage::Drive => {
+            let is_of_drive = |kind| {
+                matches!(
+                    kind,
+                    HardwareKind::Cell
+                        | HardwareKind::CellBolt
+                        | HardwareKind::EyeBolt
+                        | HardwareKind::Line
+                        | HardwareKind::Actuator
+                        | HardwareKind::DriveBolt
+                        | HardwareKind::DriveNut
+                        | HardwareKind::Hook
+                        | HardwareKind::Weight
+                )
+            };
+            let parts = stand(built, false, Vector3::zeros());
+            parts.into_iter().chain(bought(design, is_of_drive, |_| 0.0)).collect()
+        }
         Stage::Tendon => of(|role| role == Role::Tendon, METAL_GREY, TENDON, y(TENDON_APART_MM)),
         Stage::Inserts => put_in(design, |kind| kind == HardwareKind::Insert),
         Stage::Dowels => put_in(design, |kind| kind == HardwareKind::Dowel),
         Stage::Fasteners => put_in(design, |kind| matches!(kind, HardwareKind::Screw | HardwareKind::Nut)),
     }
+}
+
+/// The feet of a rig, or its cell mount and drive.
+fn stand(built: &Built, are_feet: bool, apart: Vector3) -> Vec<Item> {
+    let is_wanted =
+        move |part: &Part| part.role == Role::Stand && part.name.starts_with("rig-foot") == are_feet;
+    placed(built, is_wanted).map(|mesh| Item { mesh, grey: PLATE_GREY, colour: MOUNT, apart }).collect()
 }
 
 /// Spare pins, next to the outermost pin.
@@ -225,7 +281,7 @@ mod tests {
     use super::*;
     use crate::config::read;
 
-    const ALL: [Stage; 11] = [
+    const ALL: [Stage; 13] = [
         Stage::CutPins,
         Stage::Bed,
         Stage::Inserts,
@@ -236,7 +292,9 @@ mod tests {
         Stage::Mount,
         Stage::Fasteners,
         Stage::Pulley,
+        Stage::Stand,
         Stage::Tendon,
+        Stage::Drive,
     ];
 
     fn built(text: &str) -> Built {
@@ -258,7 +316,8 @@ mod tests {
         }
         // Bodies that the configuration does not have are not drawn.
         let plain = built("");
-        for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley] {
+        for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley, Stage::Stand, Stage::Drive]
+        {
             assert!(items(&plain, stage).is_empty(), "{stage:?}");
         }
     }

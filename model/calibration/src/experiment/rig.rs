@@ -20,6 +20,9 @@ pub struct RigLimits {
     /// Lowest and highest speed of the actuator, in percent.
     #[serde(deserialize_with = "exactly_two")]
     pub speeds_pct: [f64; 2],
+    /// Speed of the actuator at 100 %, in millimetres per second; `None` if it is unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub full_speed_mm_s: Option<f64>,
     /// Shortest and longest pause before a reading, in seconds.
     #[serde(deserialize_with = "exactly_two")]
     pub dwells_s: [f64; 2],
@@ -57,6 +60,7 @@ impl Default for RigLimits {
         Self {
             loads_g: published::WEIGHTS_G.to_vec(),
             speeds_pct: [40.0, 70.0],
+            full_speed_mm_s: None,
             dwells_s: [0.3, 30.0],
             layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
             silicone: true,
@@ -180,6 +184,7 @@ impl RigLimits {
         let single = [
             ("wrap_angle_deg", self.wrap_angle_deg.unwrap_or(usual), MIN_WRAP_DEG, MAX_WRAP_DEG, WRAPS),
             ("hook_mass_g", self.hook_mass_g.unwrap_or(0.0), 0.0, 1e6, "outside 0 to 1000000 g"),
+            ("full_speed_mm_s", self.full_speed_mm_s.unwrap_or(1.0), 0.01, 1e4, "outside 0.01 to 10000 mm/s"),
             ("stroke_mm", self.stroke_mm, 1.0, 1e4, "outside 1 to 10000 mm"),
             ("seconds_per_repetition", self.seconds_per_repetition, 0.01, 600.0, "outside 0.01 to 600 s"),
             ("minutes_per_load_change", self.minutes_per_load_change, 0.0, 600.0, "outside 0 to 600 min"),
@@ -269,12 +274,20 @@ impl RigLimits {
     }
 
     /// Returns the load in newtons of a weight on a contact.
-    pub(super) fn load_n(&self, substrate: Option<Substrate>, mass_g: f64) -> f64 {
-        let hook_g = match substrate {
-            Some(_) => self.hook_mass_g.unwrap_or(published::HOOK_MASS_G),
-            None => self.hook_mass_g.unwrap_or(0.0),
-        };
-        (mass_g + hook_g) * 1e-3 * published::GRAVITY_M_S2
+    pub fn load_n(&self, substrate: Option<Substrate>, mass_g: f64) -> f64 {
+        (mass_g + self.hook_g(substrate)) * 1e-3 * published::GRAVITY_M_S2
+    }
+
+    /// Returns the mass of the hook in grams on a contact: by default the paper's on a switch, and none
+    /// on a `plain` contact.
+    pub fn hook_g(&self, substrate: Option<Substrate>) -> f64 {
+        let usual = if substrate.is_some() { published::HOOK_MASS_G } else { 0.0 };
+        self.hook_mass_g.unwrap_or(usual)
+    }
+
+    /// Returns a speed in millimetres per second; `None` if the full speed is unknown.
+    pub fn speed_mm_s(&self, speed_pct: f64) -> Option<f64> {
+        self.full_speed_mm_s.map(|full| full * speed_pct / 100.0)
     }
 
     /// Returns the rig with a wrap angle in degrees, unless its file gives one.
@@ -348,6 +361,7 @@ mod tests {
             ("layouts = []\nsilicone = false", "rig.toml:2:12: silicone = false: must be true"),
             ("plain_wraps_deg = [90, 800]", "rig.toml:1:19: plain_wraps_deg = 800: outside 1 to 720 degrees"),
             ("wrap_angle_deg = 0", "rig.toml:1:18: wrap_angle_deg = 0: outside 1 to 720 degrees"),
+            ("full_speed_mm_s = 0", "full_speed_mm_s = 0: outside 0.01 to 10000 mm/s"),
             ("stroke_mm = nan", "stroke_mm = NaN: outside"),
             ("cell_limit_n = 0", "cell_limit_n = 0: outside"),
             ("colour = 3", "rig.toml:1:1: unknown field `colour`"),

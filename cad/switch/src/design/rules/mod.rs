@@ -9,6 +9,7 @@ mod mount;
 mod pins;
 mod print;
 mod process;
+mod rig;
 mod shell;
 mod support;
 
@@ -121,9 +122,18 @@ pub(crate) struct Violation {
 
 /// Returns all rules; errors in the order in which a reader would fix them.
 pub fn rules() -> impl Iterator<Item = &'static Rule> {
-    [shell::RULES, pins::RULES, support::RULES, mould::RULES, mount::RULES, print::RULES, process::RULES]
-        .into_iter()
-        .flatten()
+    [
+        shell::RULES,
+        pins::RULES,
+        support::RULES,
+        mould::RULES,
+        mount::RULES,
+        rig::RULES,
+        print::RULES,
+        process::RULES,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 fn errors() -> impl Iterator<Item = &'static Rule> {

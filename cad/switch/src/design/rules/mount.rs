@@ -87,7 +87,7 @@ fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
     let all = &mounting.taken;
     let apart = |a: &Hole, b: &Hole| (a.centre - b.centre).norm() >= a.radius_mm + b.radius_mm + HOLE_WALL_MM;
     let pairs = all.iter().enumerate().all(|(k, a)| all[k + 1..].iter().all(|b| apart(a, b)));
-    let own = mounting.holes.iter().chain(&mounting.axle);
+    let own = mounting.holes.iter().chain(&mounting.axle).chain(&mounting.drive_axle);
     let clear = mounting
         .sheath
         .is_none_or(|stop| own.into_iter().all(|h| distance_to_stop_mm(h, &stop) >= HOLE_WALL_MM));
@@ -109,9 +109,11 @@ fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
 }
 
 fn pulley_beside_switch(i: &Inspection<'_>) -> Assessment {
-    let Some(axle) = i.mounting().and_then(|m| m.axle) else { return Assessment::NotApplicable };
+    let Some(mounting) = i.mounting().filter(|m| m.axle.is_some()) else {
+        return Assessment::NotApplicable;
+    };
     let least = i.support_radius_mm() + pulley_outer_mm(i.tendon_diameter_mm()) + PULLEY_AIR_MM;
-    let distance = axle.centre.coords.norm();
+    let distance = mounting.axles().map(|axle| axle.centre.coords.norm()).fold(f64::INFINITY, f64::min);
     require(distance >= least, || {
         (
             format!(

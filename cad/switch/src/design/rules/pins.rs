@@ -155,7 +155,7 @@ fn pins_within_wrap(i: &Inspection<'_>) -> Assessment {
 }
 
 fn tendon_reaches(i: &Inspection<'_>) -> Assessment {
-    let (length, least) = (i.configuration().tendon.length_mm, i.least_tendon_mm());
+    let (length, least) = (i.tendon_length_mm(), i.least_tendon_mm());
     advise(length >= least, || {
         (
             format!(

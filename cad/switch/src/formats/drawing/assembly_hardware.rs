@@ -18,7 +18,7 @@ pub(super) fn places(design: &Design, kind: &str) -> Vec<(Point2, f64)> {
         angles.into_iter().map(|a| (polar(design.fastener_radius_mm(), a), radius_mm)).collect()
     };
     let mounting = design.mounting();
-    let axle = |radius_mm| mounting.iter().filter_map(|m| m.axle).map(|h| (h.centre, radius_mm)).collect();
+    let axle = |radius_mm| mounting.iter().flat_map(|m| m.axles()).map(|h| (h.centre, radius_mm)).collect();
     let f = &design.configuration().fasteners;
     match kind {
         "screw" => around(design.fastener_angles_rad(), shown_mm(design).unwrap_or(f.hole_diameter_mm / 2.0)),

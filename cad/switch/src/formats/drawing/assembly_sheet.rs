@@ -41,7 +41,9 @@ struct Assembly<'a> {
 
 /// Returns the sheet of the assembly, on `paper` or a larger one; `None` if it is too large for any paper.
 pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, paper: Paper) -> Option<Sheet> {
-    let bodies: Vec<(&Part, Pose)> = built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
+    // Parts on the table would make the switch too small.
+    let shown = built.assembly().filter(|b| b.part.role != Role::Stand);
+    let bodies: Vec<(&Part, Pose)> = shown.filter_map(|b| Some((&b.part, b.part.pose?))).collect();
     let ends = bodies.iter().filter_map(|(part, pose)| {
         let (low, high) = part.solid.bounds()?;
         let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };

@@ -4,7 +4,7 @@
 use crate::design::{
     BEARING_SEAT_MM, Design, Hole, Recess, STOP_SCREW, axle_recess, clearance, clearance_grade, stop_recess,
 };
-use crate::parts::{Part, Role, keys};
+use crate::parts::{Part, Role, keys, stand_holes};
 use crate::tolerances::{ChainDimension, link};
 use pinswitch_drafting::{FaceDatum, Fit, Fits, Indicator, RadialSize, RadiusFit, RoundFit, number};
 use pinswitch_solid::profile::{Point2, polar};
@@ -149,12 +149,12 @@ fn at(centre: Point2, half_mm: f64, fit: Fit) -> RoundFit {
 fn holes(design: &Design, part: &Part) -> Vec<RoundFit> {
     match (part.role, part.name.as_str()) {
         (Role::Shell | Role::Support { .. }, _) => fasteners(design, part),
-        (_, "guide-pulley") => {
+        (_, "guide-pulley" | "guide-pulley-2") => {
             let fit = Fit::new(CLOSE, "for bearing 608");
             vec![RoundFit { centre: None, half_mm: BEARING_SEAT_MM / 2.0, fit }]
         }
         // Spacer and stop are drawn about their own axes.
-        (_, "pulley-spacer") => design
+        (_, "pulley-spacer" | "pulley-spacer-2") => design
             .mounting()
             .and_then(|m| m.axle)
             .map(|axle| screw(&Hole { centre: Point2::origin(), ..axle }))
@@ -164,6 +164,7 @@ fn holes(design: &Design, part: &Part) -> Vec<RoundFit> {
             .mounting()
             .and_then(|m| m.sheath)
             .map_or_else(Vec::new, |stop| stop.along_the_paper().screws.iter().map(screw).collect()),
+        (Role::Stand, name) => stand_holes(design, name).iter().map(screw).collect(),
         (Role::Mount, _) => mounting_plate(design, part),
         (Role::Mould, _) => key_holes(design),
         _ => Vec::new(),
@@ -250,10 +251,18 @@ fn mounting_plate(design: &Design, part: &Part) -> Vec<RoundFit> {
             screw(hole)
         }
     };
-    let mut all: Vec<RoundFit> = mounting.holes.iter().map(own).collect();
-    if let Some(axle) = &mounting.axle {
-        all.push(screw(axle));
+    let Some((low, high)) = part.solid.bounds() else { return Vec::new() };
+    let is_ours = |hole: &Hole| hole.centre.x > low.x && hole.centre.x < high.x;
+    let mut all: Vec<RoundFit> = mounting.holes.iter().filter(|h| is_ours(h)).map(own).collect();
+    if part.name == "rig-splice" {
+        return all;
+    }
+    for axle in mounting.axles().filter(is_ours) {
+        all.push(screw(&axle));
         all.push(recess(axle.centre, &axle_recess(), "for the bolt's head"));
+    }
+    if part.name == "rig-plate-2" {
+        return all;
     }
     for hole in mounting.sheath.iter().flat_map(|s| s.screws) {
         let mut round = screw(&hole);

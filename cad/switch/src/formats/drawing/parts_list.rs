@@ -4,6 +4,7 @@ use super::words;
 use crate::built::Built;
 use crate::documents::{STOP_SCREWS, bill_of_materials};
 use crate::parts::{Part, Role};
+use crate::rig::RigBolts;
 use pinswitch_drafting::number;
 
 /// A row of the parts list.
@@ -27,7 +28,7 @@ pub(super) fn part_number(built: &Built, part: &str) -> String {
 pub(super) fn items(built: &Built) -> Vec<Item> {
     let design = built.design();
     let bill = bill_of_materials(design);
-    let assembled: Vec<&Part> = built.assembly().map(|b| &b.part).collect();
+    let assembled: Vec<&Part> = built.assembly().map(|b| &b.part).filter(|p| p.role != Role::Stand).collect();
     let mut all = Vec::new();
     let mut add = |quantity: String, designation: String, number: String, material: String, shown: &str| {
         all.push(Item {
@@ -82,8 +83,15 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     }
     let mount = bill.mount.as_ref();
     let bearing = mount.and_then(|m| m.bearing).map(|b| format!("Bearing {b}"));
-    bearing.into_iter().for_each(|words| bought(1, words, "bearing"));
-    mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(1, words, "axle"));
+    let pulleys = mount.map_or(0, |m| m.pulleys);
+    bearing.into_iter().for_each(|words| bought(pulleys, words, "bearing"));
+    mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(pulleys, words, "axle"));
+    if let Some(bolts) = RigBolts::new(design) {
+        bought(4, format!("Bolt M6 \u{d7} {} with nut, feet", number(bolts.foot_mm)), "");
+        if let Some((thread, mm)) = bolts.splice {
+            bought(4, format!("Bolt M{} \u{d7} {} with nut, splice", number(thread), number(mm)), "");
+        }
+    }
     if let Some(screw) = mount.and_then(|m| m.stop_screw.as_ref()) {
         bought(STOP_SCREWS, format!("Screw {} with nut", screw.replace(" x ", " \u{d7} ")), "stop screw");
     }
@@ -96,7 +104,8 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     add("1".to_owned(), tendon, "bought".to_owned(), "Steel, polyamide 12".to_owned(), "tendon");
     for part in built.printed().iter().map(|p| p.part()) {
         if !assembled.iter().any(|a| a.name == part.name) {
-            let words = format!("{} (not in the assembly)", designation(&part.name));
+            let place = if part.role == Role::Stand { "on the table" } else { "not in the assembly" };
+            let words = format!("{} ({place})", designation(&part.name));
             add("1".to_owned(), words, part_number(built, &part.name), material(part), "");
         }
     }

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use super::step_picture;
-use crate::config::{FastenerKind, MouldKind, MountKind};
+use crate::config::{DriveKind, FastenerKind, MouldKind, MountKind};
 use crate::design::Design;
 use crate::documents::{Manifest, layout_text};
 use crate::parts::{LeftOut, printed, touches};
+use crate::rig::RigBolts;
 use crate::scene::Stage;
 use pinswitch_friction::{Substrate, pluralise};
 
@@ -142,6 +143,10 @@ pub(super) fn assembly_section(
         stages.push(Stage::Pulley);
         steps.push(step);
     }
+    if let Some(step) = stand_step(design) {
+        stages.push(Stage::Stand);
+        steps.push(step);
+    }
     stages.push(Stage::Tendon);
     steps.push(format!(
         "Put {} mm of tendon ({} mm with its coating) over the {}. It touches {:.2} deg.{}",
@@ -153,6 +158,10 @@ pub(super) fn assembly_section(
     ));
     if let (Some(pulley), Some(last)) = (pulley, steps.last_mut()) {
         last.insert_str(0, &format!("{pulley} "));
+    }
+    if let Some(step) = drive_step(design) {
+        stages.push(Stage::Drive);
+        steps.push(step);
     }
     let _ = write!(
         text,
@@ -219,11 +228,18 @@ fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
             "Put `finger-link` on the outer face of the left support. The same screws fasten it. Its two bores of {} mm are {} mm apart.",
             m.hole_diameter_mm, c.mount.bore_distance_mm
         ),
-        MountKind::Rig => format!(
-            "Put the bolt of the axle through `rig-plate` from below, with its head in the pocket, and put the plate on the outer face of \
-             the left support. The same screws fasten it. It has {} mounting holes of {} mm for the table. No head protrudes below it.",
-            m.holes, m.hole_diameter_mm
-        ),
+        MountKind::Rig => {
+            let (bolts, heads) = if m.pulleys == 1 { ("bolt", "its head") } else { ("bolts", "their heads") };
+            let joint = if design.has_joint() {
+                "Bolt `rig-plate`, `rig-plate-2` and `rig-splice` together, with the splice behind the joint. "
+            } else {
+                ""
+            };
+            format!(
+                "{joint}Put the {bolts} of the guide pulleys through the board (`rig-plate`) from behind, with {heads} in the pockets, and \
+                 put the board on the outer face of the left support. The same screws fasten it."
+            )
+        }
     };
     if let Some(hardware) = &m.sheath_stop {
         let _ = write!(
@@ -240,10 +256,16 @@ fn pulley_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let mount = bill.mount.as_ref();
     if let (Some(bearing), Some(axle)) = (mount.and_then(|m| m.bearing), mount.and_then(|m| m.axle.as_ref()))
     {
+        let both = design.has_drive_pulley();
+        let (number, drive) = if both {
+            ("each of the two guide pulleys", " `guide-pulley-2` leads it to the drive.")
+        } else {
+            ("`guide-pulley`", "")
+        };
         return Some(format!(
-            "Press the {bearing} bearing into `guide-pulley`. Put `pulley-spacer` on the bolt ({axle}), then the pulley with its bearing \
-             toward the plate, washer and nut. The pulley rotates freely on the side of the load, {} mm from the switch along the tendon, \
-             and leads the tendon to the load.",
+            "Press a {bearing} bearing into {number}. Put `pulley-spacer` on the bolt ({axle}), then the pulley with its bearing toward \
+             the board, washer and nut. A pulley turns freely, {} mm of tendon from the switch. `guide-pulley` leads the tendon to the \
+             load.{drive}",
             design.configuration().mount.pulley_distance_mm
         ));
     }
@@ -251,6 +273,48 @@ fn pulley_step(design: &Design, manifest: &Manifest) -> Option<String> {
     Some(format!(
         "Press a {bearing} bearing into `guide-pulley`, and mount it on an axle of 8 mm on the side of the load. The pulley leads the \
          tendon to the load."
+    ))
+}
+
+/// The step of the feet of the rig.
+fn stand_step(design: &Design) -> Option<String> {
+    let (layout, bolts) = (design.rig_layout()?, RigBolts::new(design)?);
+    Some(format!(
+        "Bolt `rig-foot-left` and `rig-foot-right` behind the board: 4 bolts M6 x {} from the front, with washers. Put the feet on the \
+         table, with the left end of the board {:.0} mm from its edge, so that the guide pulley of the load is beyond the edge. The load \
+         hangs {:.0} mm from the edge. Clamp both feet.",
+        bolts.foot_mm,
+        layout.board_x_mm[0] - layout.edge_x_mm,
+        layout.edge_x_mm - layout.load_x_mm
+    ))
+}
+
+/// The step of cell, drive and load of the rig.
+fn drive_step(design: &Design) -> Option<String> {
+    let c = design.configuration();
+    let (layout, bolts) = (design.rig_layout()?, RigBolts::new(design)?);
+    let (thread, number, mm) = bolts.cell;
+    let cell = format!(
+        "Bolt the load cell to `cell-mount` ({number} x M{thread} x {mm} in its open slots) and screw the eye bolt into its free end."
+    );
+    let along = layout.drive.x - layout.board_x_mm[1];
+    let drive = match c.rig.drive {
+        DriveKind::Actuator => format!(
+            "Bolt the actuator to `cell-mount` (M{0} x {1}, {2} washers under its eye) and to `actuator-foot` (M{0} x {3}). Clamp the foot \
+             with its bolt {along:.0} mm from the right end of the board.",
+            bolts.drive_thread_mm, bolts.pin_mm, layout.packing, bolts.axle_mm
+        ),
+        DriveKind::Crank => format!(
+            "Bolt `crank-drum` to `crank-foot` (M8 x {}) and `crank-knob` to its lever. Clamp the foot with the axle {along:.0} mm from the \
+             right end of the board. Tie a tendon from the bolt of `cell-mount` to the drum. The M5 bolt through a hole of the drum locks it.",
+            bolts.axle_mm
+        ),
+    };
+    Some(format!(
+        "{cell} {drive} Crimp the end of the tendon to the eye bolt, and the other end to the hook. With the load lifted, the weights \
+         stay below the table top; with the load lowered, they hang {} mm lower and clear the floor. `rig-bill.csv` lists everything to \
+         buy, `wiring.svg` shows the connections, and `run-sheet.html` lists the runs.",
+        c.rig.stroke_mm
     ))
 }
 

@@ -6,7 +6,8 @@ use pinswitch_drafting::Sheet;
 /// All tolerances.
 const TOLERANCES: [&str; 7] = ["+0.1/0", "+0.2/0", "0/-0.2", "\u{b1}0.07", "H12", "H13", "H14"];
 /// Holes without a mating part: the bore for the inner ring of the bearing, and the vents of the lid.
-const FREE: [(&str, &str); 2] = [("guide-pulley", "\u{d8}18 through"), ("mould-lid", "\u{d8}")];
+const FREE: [(&str, &str); 3] =
+    [("guide-pulley", "\u{d8}18 through"), ("guide-pulley-2", "\u{d8}18 through"), ("mould-lid", "\u{d8}")];
 
 /// Every kind of hardware on every mount, with other sizes than the defaults.
 fn sets() -> Vec<String> {
@@ -24,6 +25,7 @@ fn sets() -> Vec<String> {
         "kind = \"finger-link\"\nhole_diameter_mm = 6.0\n",
         "kind = \"rig\"\nhole_diameter_mm = 6.6\n[tendon]\nsheath_diameter_mm = 4.0\n",
         "kind = \"rig\"\n",
+        "kind = \"rig\"\n[rig]\ncell = \"bar\"\n[print]\nbed_mm = 165.0\n",
     ];
     let others = [
         "",
@@ -94,7 +96,7 @@ fn fits_match_the_mating_parts() {
     let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 4.0\n";
     let plate = texts_of(rig, "rig-plate");
     for words in [
-        "\u{d8}4.5 H13 through, for M4",
+        "\u{d8}6.6 H13 through, for M6",
         "hexagon AF 13.2 +0.2/0",
         "\u{d8}8.4 H12",
         "for M8",

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::finger::{
-    FingerPoint, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger, measured_gains,
-    over_joint,
+    FingerPoint, FlexionWrap, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger,
+    measured_gains, over_joint,
 };
 use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus};

@@ -15,7 +15,7 @@ const BASES: [&[&str]; 5] = [
     &[],
     &["mould.kind=one-piece", "label.engrave=false"],
     &["support.slot_kind=through", "parts.guide_pulley=true"],
-    &["fasteners.kind=insert", "mount.kind=finger-link", "tendon.sheath_diameter_mm=3"],
+    &["fasteners.kind=insert", "mount.kind=joint", "tendon.sheath_diameter_mm=3"],
     &["fasteners.dowel_diameter_mm=1.5", "mount.kind=rig", "mould.kind=one-piece"],
 ];
 

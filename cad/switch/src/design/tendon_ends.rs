@@ -45,8 +45,12 @@ impl Dimensions {
     }
 
     /// Returns the lengths of the ends in pictures, mm: on the load side, which on the rig extends
-    /// to the guide pulley, and on the other side. Ends that would meet are shortened.
+    /// to the guide pulley, and on the other side. Ends that would meet are shortened. On a joint
+    /// they extend beyond anchor and proximal link.
     pub fn shown_ends_mm(&self) -> [f64; 2] {
+        if let Some(joint) = self.joint() {
+            return joint.tendon_ends_mm();
+        }
         let pulley = (self.configuration().mount.kind == MountKind::Rig)
             .then_some(self.configuration().mount.pulley_distance_mm);
         if self.fits(pulley, SHOWN_MM) {
@@ -85,8 +89,8 @@ impl Dimensions {
     }
 
     /// Returns the least length of tendon for the set, rounded up to a millimetre: the wrap, on the
-    /// rig the distance to the guide pulley and half a turn around it, the sheath stop, and two
-    /// free ends to grip.
+    /// rig the distance to the guide pulley and half a turn around it, the lengths along the links
+    /// of a joint, the sheath stop, and two free ends to grip.
     pub(super) fn least_tendon_mm(&self) -> f64 {
         let c = self.configuration();
         let wrap = 2.0 * self.half_wrap_rad() * self.tendon_axis_radius_mm();
@@ -94,6 +98,7 @@ impl Dimensions {
             MountKind::Rig => {
                 c.mount.pulley_distance_mm + PI * (PULLEY_RADIUS_MM + self.tendon_diameter_mm() / 2.0)
             }
+            MountKind::Joint => self.joint().map_or(0.0, |joint| joint.tendon_ends_mm().iter().sum()),
             _ => 0.0,
         };
         let stop = self.mounting().and_then(|m| m.sheath).map_or(0.0, |stop| {

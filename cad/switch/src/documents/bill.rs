@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::config::{MouldKind, MountKind};
-use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
+use crate::design::{Design, Joint, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
 use pinswitch_friction::Substrate;
 
@@ -101,8 +101,11 @@ pub struct MountHardware {
     pub hole_diameter_mm: f64,
     /// Bearing of the guide pulley, on the rig.
     pub bearing: Option<&'static str>,
-    /// Bolt through the bearing.
+    /// Bolt through the bearing, or through both links of a joint.
     pub axle: Option<String>,
+    /// Sleeve that is crimped on the tendon behind its anchor, on a joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crimp_sleeve: Option<String>,
     /// Screws and nuts of the sheath stop.
     pub sheath_stop: Option<String>,
     /// Thread and length of these [`STOP_SCREWS`] screws.
@@ -212,6 +215,10 @@ fn mount(design: &Design) -> Option<MountHardware> {
         .axle
         .map(|_| BOLT_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(BOLT_LENGTHS_MM[19]));
     let axle = axle_length_mm.map(|length| format!("M8 x {length} hexagon bolt (ISO 4017), washer and nut"));
+    let joint = design.joint();
+    let axle = axle.or_else(|| joint.as_ref().and_then(axle_of_joint));
+    let axle_length_mm = axle_length_mm.or_else(|| joint.as_ref().and_then(|joint| joint.axle_length_mm));
+    let crimp_sleeve = joint.map(|_| format!("crimp sleeve for a rope of {} mm", c.tendon.rope_diameter_mm));
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
     let stop_screw_length_mm = mounting.sheath.and_then(|_| STOP_SCREW.at_least_mm(stack));
     let stop_screw = stop_screw_length_mm.map(|length| format!("{} x {length}", STOP_SCREW.name));
@@ -222,11 +229,19 @@ fn mount(design: &Design) -> Option<MountHardware> {
         hole_diameter_mm: c.mount.hole_diameter_mm,
         bearing: mounting.axle.map(|_| BEARING),
         axle,
+        crimp_sleeve,
         sheath_stop,
         stop_screw,
         axle_length_mm,
         stop_screw_length_mm,
     })
+}
+
+/// Describes the axle of a joint with its hardware.
+fn axle_of_joint(joint: &Joint) -> Option<String> {
+    let length = joint.axle_length_mm?;
+    let name = joint.axle.name;
+    Some(format!("{name} x {length} bolt (ISO 4014), 2 washers and lock nut"))
 }
 
 #[cfg(test)]

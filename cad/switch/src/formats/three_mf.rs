@@ -89,7 +89,7 @@ fn material(role: Role) -> BaseMaterial {
         Role::Mould => "mould",
         Role::Support { .. } => "support",
         Role::Proxy => "proxy",
-        Role::Mount => "mount",
+        Role::Mount | Role::DistalLink => "mount",
         Role::Accessory => "accessory",
         // Cast or bought, and not on a plate.
         Role::Layer | Role::Pin { .. } | Role::Tendon => "part",

@@ -25,9 +25,8 @@ pub(crate) const SPACER: &str = "pulley-spacer";
 /// Returns the name of the plate of a kind of mount.
 fn name(kind: MountKind) -> &'static str {
     match kind {
-        MountKind::FingerLink => "finger-link",
         MountKind::Rig => "rig-plate",
-        MountKind::Flange | MountKind::None => "base-flange",
+        MountKind::Flange | MountKind::Joint | MountKind::None => "base-flange",
     }
 }
 

@@ -52,6 +52,8 @@ pub enum Role {
     Tendon,
     /// A mounting part.
     Mount,
+    /// The distal link of a joint, outside the right support.
+    DistalLink,
     /// A separate part: coupon, guide pulley.
     Accessory,
 }
@@ -71,7 +73,7 @@ impl Role {
         match self {
             Self::Pin { .. } => [205, 210, 218],
             Self::Tendon => [72, 82, 96],
-            Self::Mount => [168, 158, 140],
+            Self::Mount | Self::DistalLink => [168, 158, 140],
             Self::Layer => [120, 190, 225],
             Self::Support { .. } => [236, 178, 74],
             Self::Mould => [150, 178, 126],
@@ -88,6 +90,7 @@ impl Role {
             Self::Pin { .. } => Vector3::new(0.0, 14.0, 0.0),
             Self::Tendon => Vector3::new(0.0, 20.0, 0.0),
             Self::Mount => Vector3::new(0.0, 0.0, -24.0),
+            Self::DistalLink => Vector3::new(0.0, 0.0, 36.0),
             Self::Shell | Self::Mould | Self::Accessory => Vector3::zeros(),
         }
     }

@@ -32,6 +32,8 @@ pub enum Stage {
     Fasteners,
     /// The guide pulley, next to the switch.
     Pulley,
+    /// The distal link of a joint, with washers and nut.
+    Joint,
     /// The tendon.
     Tendon,
 }
@@ -62,6 +64,9 @@ const MOUNT_APART_MM: f64 = 24.0;
 const SPACER_APART_MM: f64 = 26.0;
 const PULLEY_APART_MM: f64 = 32.0;
 const NUT_APART_MM: f64 = 44.0;
+/// The same on the axle of a joint: distal link, and washer with nut beyond it.
+const DISTAL_APART_MM: f64 = 34.0;
+const AXLE_NUT_APART_MM: f64 = 44.0;
 /// Distance of spare pins, mm.
 const SPARE_APART_MM: f64 = 5.0;
 /// Distance of small hardware from its position, mm.
@@ -78,8 +83,12 @@ struct Item {
 
 /// Returns the view of a step: from the side of the left support, unless a large plate would hide the added bodies.
 pub fn stage_view(design: &Design, stage: Stage) -> View {
-    let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
-        && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Tendon);
+    let is_hidden = match design.configuration().mount.kind {
+        MountKind::Rig | MountKind::Flange => matches!(stage, Stage::Mount | Stage::Pulley | Stage::Tendon),
+        // The distal link is outside the right support.
+        MountKind::Joint => matches!(stage, Stage::Mount | Stage::Joint | Stage::Tendon),
+        MountKind::None => false,
+    };
     View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
@@ -158,8 +167,12 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
         }
         Stage::Mount => {
             let plate = mount(|part| !is_spacer(part), z(-MOUNT_APART_MM));
-            let is_in_plate =
-                |kind| matches!(kind, HardwareKind::Bolt | HardwareKind::StopScrew | HardwareKind::StopNut);
+            let is_in_plate = |kind| {
+                matches!(
+                    kind,
+                    HardwareKind::Bolt | HardwareKind::Axle | HardwareKind::StopScrew | HardwareKind::StopNut
+                )
+            };
             plate.chain(bought(design, is_in_plate, |_| -MOUNT_APART_MM)).collect()
         }
         Stage::Pulley => {
@@ -173,6 +186,18 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
             };
             let bought = bought(design, is_on_bolt, apart);
             mount(is_spacer, z(SPACER_APART_MM)).chain(pulley).chain(bought).collect()
+        }
+        Stage::Joint => {
+            let is_on_axle = |kind| matches!(kind, HardwareKind::AxleWasher | HardwareKind::AxleNut);
+            // The first washer is between the links.
+            let middle_mm = design.configuration().shell.width_mm / 2.0;
+            let apart = |body: &Hardware| {
+                let is_between = body.solid.bounds().is_some_and(|(low, _)| low.z < middle_mm);
+                if is_between { SMALL_APART_MM } else { AXLE_NUT_APART_MM }
+            };
+            let mut all = of(|role| role == Role::DistalLink, PLATE_GREY, MOUNT, z(DISTAL_APART_MM));
+            all.extend(bought(design, is_on_axle, apart));
+            all
         }
         Stage::Tendon => of(|role| role == Role::Tendon, METAL_GREY, TENDON, y(TENDON_APART_MM)),
         Stage::Inserts => put_in(design, |kind| kind == HardwareKind::Insert),
@@ -256,9 +281,12 @@ mod tests {
             assert!(bodies.iter().any(|b| !is_grey(&b.colour)), "{:?} adds nothing", ALL[number - 1]);
             assert!(number == 1 || is_grey(&bodies[0].colour), "the shell is there");
         }
+        let joint = built("[mount]\nkind = \"joint\"\n");
+        let [plate, link] = [Stage::Mount, Stage::Joint].map(|stage| items(&joint, stage).len());
+        assert_eq!((plate, link), (2, 4), "link and axle, then link, washers and nut");
         // Bodies that the configuration does not have are not drawn.
         let plain = built("");
-        for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley] {
+        for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley, Stage::Joint] {
             assert!(items(&plain, stage).is_empty(), "{stage:?}");
         }
     }

@@ -4,6 +4,7 @@
 //! are the only place that decides whether a configuration is good. `cad/doc/dimensions.md` lists the rules for users.
 
 mod direction;
+mod joint;
 mod mould;
 mod mount;
 mod pins;
@@ -120,7 +121,7 @@ pub(crate) struct Violation {
 
 /// Returns all rules; errors in the order in which a reader would fix them.
 pub fn rules() -> impl Iterator<Item = &'static Rule> {
-    [shell::RULES, pins::RULES, support::RULES, mould::RULES, mount::RULES, print::RULES]
+    [shell::RULES, pins::RULES, support::RULES, mould::RULES, mount::RULES, joint::RULES, print::RULES]
         .into_iter()
         .flatten()
 }

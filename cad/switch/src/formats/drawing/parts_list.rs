@@ -84,6 +84,8 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     let bearing = mount.and_then(|m| m.bearing).map(|b| format!("Bearing {b}"));
     bearing.into_iter().for_each(|words| bought(1, words, "bearing"));
     mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(1, words, "axle"));
+    let sleeve = mount.and_then(|m| m.crimp_sleeve.as_deref()).map(designation);
+    sleeve.into_iter().for_each(|words| bought(1, words, ""));
     if let Some(screw) = mount.and_then(|m| m.stop_screw.as_ref()) {
         bought(STOP_SCREWS, format!("Screw {} with nut", screw.replace(" x ", " \u{d7} ")), "stop screw");
     }

@@ -12,6 +12,7 @@ const TEXT = {
   find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No matching parameter.',
   intro: 'A tendon runs over steel pins in silicone. As the load grows, the pins sink, the tendon meets the silicone, and friction rises.',
   explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
+  flexion: 'Flexion', flex: 'Play', flexionText: (flexion, wrap) => `${flexion}°, wrap ${wrap}°`,
   assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
   curve: 'Friction over load', load: 'Load', otherLaws: 'Other laws', keepCurve: 'Keep for comparison', clearComparison: 'Clear comparison',
   curveTable: 'The curve as a table', why: 'Prediction status and reasons',

@@ -36,6 +36,8 @@ export async function assembly(visit, site) {
   visit.findings.check('checks, materials, parts and print bed are filled', facts.every((n) => n > 2), facts);
 }
 
+const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
+
 // A joint turns between its stops with its slider and, unless motion is reduced, by itself.
 export async function jointTurns(visit, site, { pictures }) {
   await visit.open(site.address + '#v=1&layout.pins=5,8,11&mount.kind=joint');
@@ -50,6 +52,11 @@ export async function jointTurns(visit, site, { pictures }) {
     visit.findings.check('the flexion and its wrap are shown', text.startsWith(`${flexion}°, wrap `), text);
   }
   visit.findings.check('each flexion has its picture', seen.size === 4, seen.size);
+  for (const [width, height] of Object.values(WIDTHS)) {
+    await visit.look(width, height, false);
+    const wide = await visit.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    visit.findings.check(`controls and bill of a joint fit a width of ${width}`, wide <= 0, wide);
+  }
   await visit.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'no-preference' }]);
   await visit.click('#flex');
   await visit.check('the link turns by itself', (was) => Number(document.getElementById('flexion').value) < was, 74);
@@ -62,8 +69,6 @@ export async function jointTurns(visit, site, { pictures }) {
   await visit.open(site.address + START);
   visit.findings.check('a switch without a joint has no slider', !await visit.shown('#flexion'));
 }
-
-const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
 
 export async function widths(visit, site, { pictures }) {
   await visit.open(site.address + START);

@@ -350,8 +350,7 @@ mod tests {
         let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
         assert!(rig.contains("the pocket for the bolt in rig-plate"), "{rig}");
         assert!(!rig.contains("lower pins.diameter_mm"), "{rig}");
-        let joint =
-            guide("[mount]\nkind = \"joint\"\naxle_mm = 8.0\nplate_mm = 8.0\n[shell]\nwidth_mm = 18.0\n");
+        let joint = guide("[mount]\nkind = \"joint\"\naxle_mm = 8.0\n");
         assert!(joint.contains("the pocket for the axle in link-proximal"), "{joint}");
     }
 

@@ -38,6 +38,38 @@ export async function assembly(visit, site) {
 
 const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
 
+// A joint turns between its stops with its slider and, unless motion is reduced, by itself.
+export async function jointTurns(visit, site, { pictures }) {
+  await visit.open(site.address + '#v=1&layout.pins=5,8,11&mount.kind=joint');
+  const range = await visit.page.$eval('#flexion', (e) => [e.min, e.max, e.value].map(Number));
+  visit.findings.check('the slider goes from stop to stop, from the wrap of the layout', range.join() === '0,75,64', range);
+  const seen = new Set([await visit.picture('#view')]);
+  for (const flexion of [0, 40, 75]) {
+    await visit.slide('#flexion', flexion);
+    seen.add(await visit.picture('#view'));
+    await visit.page.screenshot({ path: `${pictures}/${site.name}-flexion-${flexion}.png` });
+    const text = await visit.text('#flexion-value');
+    visit.findings.check('the flexion and its wrap are shown', text.startsWith(`${flexion}°, wrap `), text);
+  }
+  visit.findings.check('each flexion has its picture', seen.size === 4, seen.size);
+  for (const [width, height] of Object.values(WIDTHS)) {
+    await visit.look(width, height, false);
+    const wide = await visit.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    visit.findings.check(`controls and bill of a joint fit a width of ${width}`, wide <= 0, wide);
+  }
+  await visit.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'no-preference' }]);
+  await visit.click('#flex');
+  await visit.check('the link turns by itself', (was) => Number(document.getElementById('flexion').value) < was, 74);
+  await visit.click('#flex');
+  const stopped = await visit.page.$eval('#flexion', (e) => e.value);
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  visit.findings.check('it stops', await visit.page.$eval('#flexion', (e) => e.value) === stopped);
+  await visit.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'reduce' }]);
+  visit.findings.check('with reduced motion only the slider is offered', await visit.shown('#flexion') && !await visit.shown('#flex'));
+  await visit.open(site.address + START);
+  visit.findings.check('a switch without a joint has no slider', !await visit.shown('#flexion'));
+}
+
 export async function widths(visit, site, { pictures }) {
   await visit.open(site.address + START);
   const invalid = await visit.page.$$eval('[data-text], [data-name]', (all) => all.map((e) => `${e.textContent} ${e.getAttribute('aria-label')}`).filter((text) => /=>|undefined/.test(text)));

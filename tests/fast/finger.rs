@@ -96,6 +96,60 @@ fn finger_writes_figure_table_report() {
     assert_eq!(report, json(folder.path(), &["finger", "three-double", "silicone-only", "--json"]));
 }
 
+const JOINT: &str = "[switch]\nname = \"jointed\"\n[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"joint\"\n";
+
+/// The wrap over the joint is that of the parts, between the stops, on one side of the segment.
+#[test]
+fn a_joint_determines_the_wrap() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("joint.toml"), JOINT).unwrap();
+    let report = json(folder.path(), &["finger", "joint.toml", "--json"]);
+    assert_eq!(report.get("joint_path"), None, "nothing about the path is assumed");
+    assert!(!report["assumptions"].to_string().contains("pins are centred"), "{report}");
+    let layout = &report["layouts"][0];
+    assert_eq!(layout["joint"]["flexion_deg"], serde_json::json!([0.0, 75.0]));
+    let points = layout["over_joint"][1]["points"].as_array().unwrap();
+    let of = |i: usize, key: &str| points[i].get(key).map_or(0.0, |v| v.as_f64().unwrap());
+    assert_eq!((points.len(), of(0, "joint_deg"), of(75, "joint_deg")), (76, 0.0, 75.0));
+    // Pins deflect the tendon by less than 3 degrees.
+    assert!((0..76).all(|i| (of(i, "wrap_deg") - of(i, "joint_deg")).abs() < 3.0));
+    assert!((0..76).all(|i| of(i, "joint_deg") > 60.0 || of(i, "wrap_middle_deg") > 0.0));
+    // The pins at 17.9, 0 and -17.9 degrees enter one after the other, from 31.9 degrees.
+    let pins: Vec<f64> = [10, 20, 40, 60].map(|i| of(i, "pins")).to_vec();
+    assert_eq!(pins, [0.0, 1.0, 2.0, 3.0]);
+    // At the flexion of the layout's wrap, the gains are those of the layout.
+    let at = json(folder.path(), &["finger", "joint.toml", "--joint", "63.89", "--json"]);
+    let straight = share(layout["points"].as_array().unwrap().last().unwrap(), "force_difference");
+    let bent = share(&at["layouts"][0]["over_joint"][1]["points"][0], "force_difference");
+    assert!(straight.iter().zip(bent).all(|(a, b)| (a - b).abs() < 1e-9), "{straight:?} {bent:?}");
+    let printed = done(folder.path(), &["-q", "finger", "joint.toml", "three-double", "--out", "a"]);
+    for words in
+        ["joint of jointed: at 0 to 75 deg", "moment arm", "assumed: three-double: the tendon runs straight"]
+    {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let svg = std::fs::read_to_string(folder.path().join("a/finger.svg")).unwrap();
+    assert!(svg.contains("jointed (joint as built)"));
+}
+
+#[test]
+fn assumptions_about_a_joint_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("joint.toml"), JOINT).unwrap();
+    for (arguments, words) in [
+        (&["--wrap-at-straight", "5"][..], "--wrap-at-straight = 5: joint.toml has a joint"),
+        (&["--wrap-per-flexion", "0.5"], "--wrap-per-flexion = 0.5: joint.toml has a joint"),
+        (&["--joint", "0..89"], "joint angle (deg) = 89: must be from 0 to 75"),
+    ] {
+        let all = [&["finger", "three-double", "joint.toml"], arguments, &["--out", "x"]].concat();
+        let output = pinswitch(folder.path(), &all);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
 #[test]
 fn invalid_fingers_are_refused() {
     let folder = tempfile::tempdir().unwrap();

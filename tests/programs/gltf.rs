@@ -15,8 +15,7 @@ fn assembly_passes_gltf_validator() {
     }
     let folder = tempfile::tempdir().unwrap();
     let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n";
-    let finger =
-        "[layout]\npins = [6, 8, 10]\n[mount]\nkind = \"finger-link\"\n[fasteners]\nkind = \"insert\"\n";
+    let finger = "[layout]\npins = [6, 8, 10]\n[mount]\nkind = \"joint\"\n[fasteners]\nkind = \"insert\"\n";
     let mut made = vec![];
     for (name, text) in [("rig.toml", rig), ("finger.toml", finger)] {
         std::fs::write(folder.path().join(name), text).unwrap();

@@ -11,11 +11,12 @@ use pinswitch_switch::output::BuildError;
 
 /// Assignments to which the value of a field is added; each enables rules that constrain other
 /// fields.
-const BASES: [&[&str]; 5] = [
+const BASES: [&[&str]; 6] = [
     &[],
     &["mould.kind=one-piece", "label.engrave=false"],
     &["support.slot_kind=through", "parts.guide_pulley=true"],
-    &["fasteners.kind=insert", "mount.kind=finger-link", "tendon.sheath_diameter_mm=3"],
+    &["fasteners.kind=insert", "mount.kind=flange", "tendon.sheath_diameter_mm=3"],
+    &["fasteners.kind=screw", "mount.kind=joint"],
     &["fasteners.dowel_diameter_mm=1.5", "mount.kind=rig", "mould.kind=one-piece"],
 ];
 

@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 const CHOICES: [(f64, &[&str]); 9] = [
     (0.5, &["fasteners.kind=screw", "fasteners.kind=nut-trap", "fasteners.kind=insert"]),
     (0.5, &["mould.kind=split", "mould.kind=one-piece", "mould.kind=none"]),
-    (0.5, &["mount.kind=flange", "mount.kind=finger-link", "mount.kind=rig"]),
+    (0.5, &["mount.kind=flange", "mount.kind=joint", "mount.kind=rig"]),
     (0.3, &["support.slot_kind=through", "support.slots=occupied"]),
     (0.2, &["tendon.sheath_diameter_mm=3", "tendon.sheath_diameter_mm=2.4"]),
     (0.2, &["fasteners.dowel_diameter_mm=1.5", "fasteners.dowel_diameter_mm=3"]),

@@ -13,6 +13,7 @@ const TEXT = {
   stripName: 'What the design does. Show the curve', clipboard: 'the clipboard', noField: 'No matching parameter.',
   intro: 'A friction switch is a pulley for the tendon of a robot or a machine: slippery at light loads, holding at heavy ones. The tendon runs over steel pins in silicone; as the load grows, the pins sink and it meets the silicone. Choose pins and sizes, watch the curve, then download parts, drawings and a guide.',
   explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
+  flexion: 'Flexion', flex: 'Play', flexionText: (flexion, wrap) => `${flexion}°, wrap ${wrap}°`,
   assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
   curve: 'Friction over load', load: 'Load', otherLaws: 'Other laws', keepCurve: 'Keep for comparison', clearComparison: 'Clear comparison',
   curveTable: 'The curve as a table', why: 'Prediction status and reasons',

@@ -15,6 +15,7 @@ class View {
     } catch {
       this.showNoWebgl();
     }
+    this.joint = new JointView((flexion) => this.assembly?.bend(flexion));
     for (const id of ['explode', 'turn', 'tilt', 'section', 'section-position']) byId(id).addEventListener('input', () => this.apply(id));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.assembly?.edges(); this.load(this.load_n); });
   }
@@ -35,6 +36,7 @@ class View {
     this.listBodies(data);
     this.apply('section');
     this.load(this.load_n ?? data.curve.load_n.at(-1));
+    this.joint.show(data);
     if (isFirst) this.apply('turn');
   }
 

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::finger::{
-    FingerPoint, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger, measured_gains,
-    over_joint,
+    FingerPoint, FlexionWrap, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger,
+    measured_gains, over_joint,
 };
 use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus};
 use pinswitch_report::{FingerLayout, finger_svg};
-use pinswitch_switch::design::Design;
+use pinswitch_switch::design::{Design, Joint};
 use pinswitch_switch::output::OutputFile;
 use serde::Serialize;
 
@@ -32,15 +32,35 @@ const MAX_LOAD_N: f64 = 1000.0;
 /// Most flexions of a curve over the joint, one degree apart.
 const MAX_FLEXIONS: u32 = 181;
 
-/// Lists the assumptions; `model/doc/finger.md` gives the reasons.
-fn assumptions(path: &JointPath) -> Vec<String> {
-    vec![
+/// Assumed flexions in degrees; the published segment allows a wrap of 89.45.
+const ASSUMED_FLEXIONS: Range<f64> = Range { from: 0.0, to: 89.0 };
+
+/// Lists the assumptions; `model/doc/finger.md` gives the reasons. Those about the path of the tendon apply to layouts
+/// without a joint, and one about guides to those with a joint.
+fn assumptions(path: &JointPath, layouts: &[Layout]) -> Vec<String> {
+    let mut all = vec![
         "motor mass is proportional to torque, on the same drum; the motor holds by torque alone, without a brake or a \
          self-locking gear"
             .to_owned(),
         "friction carries its full share of a held load".to_owned(),
-        format!("the tendon runs straight along both links, the pins are centred on it, and {path}"),
-    ]
+    ];
+    let is_mixed = layouts.iter().any(|l| l.joint.is_some()) && layouts.iter().any(|l| l.joint.is_none());
+    for layout in layouts {
+        let of = if is_mixed { format!("{}: ", layout.name) } else { String::new() };
+        let assumption = match &layout.joint {
+            None => format!(
+                "{of}the tendon runs straight along both links, the pins are centred on it, and {path}"
+            ),
+            Some(joint) => format!(
+                "{of}no friction in guide and anchor, where the tendon turns by at most {:.1} deg",
+                joint.guide_turn_deg.max(joint.anchor_turn_deg)
+            ),
+        };
+        if !all.contains(&assumption) {
+            all.push(assumption);
+        }
+    }
+    all
 }
 
 /// Compare the gains of layouts in a finger with the human finger.
@@ -50,26 +70,30 @@ fn assumptions(path: &JointPath) -> Vec<String> {
 /// Force difference, (T_c - T_e)/F: tension to pull minus tension to hold, as a share of the load; 9 to 12 % in the human
 /// finger. Extra holding, F/T_e - 1: load held beyond the motor's tension, about half the force difference. Motor mass is
 /// proportional to torque.
+///
+/// The wrap over the joint is computed from the parts of a configuration with `mount.kind = "joint"`, and assumed for every
+/// other one.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch finger
   pinswitch finger three-double my-switch.toml --json
   pinswitch finger --out out/finger
-  pinswitch finger three-double --joint 0..60 --wrap-at-straight 20")]
+  pinswitch finger three-double --joint 0..60 --wrap-at-straight 20
+  pinswitch finger my-joint.toml --out out/joint")]
 pub(super) struct Arguments {
     /// Configurations or templates [default: the published layouts and bare silicone].
     configs: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
-    /// Flexions of the joint in degrees; the published segment allows a wrap of 89.45.
-    #[arg(long, value_name = "A..B", default_value = "0..89")]
-    joint: Range<f64>,
-    /// Wrap angle of the tendon on the switch at the straight finger, in degrees.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0)]
-    wrap_at_straight: f64,
-    /// Increase of the wrap angle per degree of flexion, in degrees.
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
-    wrap_per_flexion: f64,
+    /// Flexions of the joint in degrees [default: between the stops of a joint, 0..89 without one].
+    #[arg(long, value_name = "A..B")]
+    joint: Option<Range<f64>>,
+    /// Assumed wrap angle at the straight finger, in degrees; not for a configuration with a joint [default: 0].
+    #[arg(long, value_name = "DEG")]
+    wrap_at_straight: Option<f64>,
+    /// Assumed increase of the wrap angle per degree of flexion, in degrees; not for a joint [default: 1].
+    #[arg(long, value_name = "SHARE")]
+    wrap_per_flexion: Option<f64>,
     /// Heavy load over the joint in newtons; the light load is a tenth of it [default: the heaviest of each curve].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     load: Option<f64>,
@@ -96,6 +120,40 @@ pub(super) struct Layout {
     pub(super) motor: Option<MotorSizing>,
     /// Gains over the joint, at the light and at the heavy load.
     pub(super) over_joint: Vec<JointCurve>,
+    /// The joint from whose parts the wrap is computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joint: Option<JointGeometry>,
+    /// Flexion of the measured points in degrees.
+    #[serde(skip)]
+    measured_joint_deg: Option<f64>,
+}
+
+/// Geometry of a joint between its stops.
+#[derive(Serialize)]
+pub(super) struct JointGeometry {
+    /// Flexion at the stops in degrees.
+    pub(super) flexion_deg: [f64; 2],
+    /// Wrap angle at the stops in degrees.
+    pub(super) wrap_deg: [f64; 2],
+    /// Least and largest moment arm of the tendon on the distal link in mm.
+    pub(super) moment_arm_mm: [f64; 2],
+    /// Largest turn of the tendon in its guide in degrees.
+    pub(super) guide_turn_deg: f64,
+    /// Largest turn of the tendon at its anchor in degrees.
+    pub(super) anchor_turn_deg: f64,
+}
+
+impl JointGeometry {
+    fn new(joint: &Joint) -> Self {
+        let [guide_turn_deg, anchor_turn_deg] = joint.largest_turns_rad().map(f64::to_degrees);
+        Self {
+            flexion_deg: joint.flexion_deg,
+            wrap_deg: joint.flexion_deg.map(|deg| joint.contact(deg).wrap_rad().to_degrees()),
+            moment_arm_mm: joint.moment_arms_mm(),
+            guide_turn_deg,
+            anchor_turn_deg,
+        }
+    }
 }
 
 /// The human finger, for comparison.
@@ -113,14 +171,21 @@ struct Human {
 pub(super) struct Report {
     human: Human,
     pub(super) assumptions: Vec<String>,
-    joint_path: JointPath,
+    /// Assumed wrap over the joint; absent if every layout has a joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint_path: Option<JointPath>,
     pub(super) layouts: Vec<Layout>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let path =
-        JointPath::new(arguments.wrap_at_straight, arguments.wrap_per_flexion).map_err(Failure::bad_input)?;
-    let joints_deg = flexions(arguments.joint, &path)?;
+    let path = JointPath::new(
+        arguments.wrap_at_straight.unwrap_or_default(),
+        arguments.wrap_per_flexion.unwrap_or(1.0),
+    )
+    .map_err(Failure::bad_input)?;
+    if let Some(range) = arguments.joint {
+        flexions(range, &path)?;
+    }
     if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && *load <= MAX_LOAD_N)) {
         return Err(Failure::bad_input(
             Diagnostic::new(format!("the load is outside 0 < load <= {MAX_LOAD_N}"))
@@ -134,8 +199,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.configs.iter().map(String::as_str).collect()
     };
     let out = arguments.out.as_deref().map(SetFolder::lock).transpose()?;
-    let layouts =
-        names.iter().map(|name| layout(name, arguments, &path, &joints_deg)).collect::<Result<_, _>>()?;
+    let layouts: Vec<Layout> =
+        names.iter().map(|name| layout(name, arguments, &path)).collect::<Result<_, _>>()?;
     let (low, high) = HUMAN_FORCE_DIFFERENCE;
     let report = Report {
         human: Human {
@@ -144,8 +209,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             largest_force_difference: HUMAN_PEAK_DIFFERENCE,
             largest_at_joint_deg: HUMAN_PEAK_JOINT_DEG,
         },
-        assumptions: assumptions(&path),
-        joint_path: path,
+        assumptions: assumptions(&path, &layouts),
+        joint_path: layouts.iter().any(|l| l.joint.is_none()).then_some(path),
         layouts,
     };
     if let Some(out) = out {
@@ -156,31 +221,50 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Returns the flexions of the range in degrees, one degree apart, and its upper end.
-fn flexions(range: Range<f64>, path: &JointPath) -> Result<Vec<f64>, Failure> {
+fn flexions(range: Range<f64>, path: &impl FlexionWrap) -> Result<Vec<f64>, Failure> {
     for end in [range.from, range.to] {
-        path.wrap_deg(end).map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file("--joint")))?;
+        path.wrap(end).map_err(|e| Failure::bad_input(Diagnostic::from(e).or_in_file("--joint")))?;
     }
     let whole = (0..MAX_FLEXIONS).map(|i| range.from + f64::from(i)).take_while(|deg| *deg < range.to);
     Ok(whole.chain([range.to]).collect())
 }
 
-fn layout(
-    name: &str,
-    arguments: &Arguments,
-    path: &JointPath,
-    joints_deg: &[f64],
-) -> Result<Layout, Failure> {
+/// Refuses an assumption about the wrap for a configuration with a joint.
+fn refuse_assumptions(arguments: &Arguments, name: &str) -> Result<(), Failure> {
+    let given = [
+        ("--wrap-at-straight", arguments.wrap_at_straight),
+        ("--wrap-per-flexion", arguments.wrap_per_flexion),
+    ];
+    match given.into_iter().find_map(|(option, value)| value.map(|value| (option, value))) {
+        None => Ok(()),
+        Some((option, value)) => Err(Failure::bad_input(
+            Diagnostic::new(format!("{name} has a joint, whose parts determine the wrap"))
+                .with_location(Location::field(option, value.to_string()))
+                .with_help("leave the option out, or compare configurations without a joint"),
+        )),
+    }
+}
+
+fn layout(name: &str, arguments: &Arguments, path: &JointPath) -> Result<Layout, Failure> {
     let design: Design = Source::new(name).design()?;
     let curve: FrictionCurve = arguments.law.prediction(&design)?.curve;
-    let contact = design.contact();
     let points = finger(&curve);
     let heavy_n = arguments.load.or(points.last().map(|p| p.load_n)).unwrap_or_default();
-    let predicted = |contact: &Contact, loads_n: &[f64]| arguments.law.curve(contact, loads_n);
-    let over_joint = [LIGHT_SHARE * heavy_n, heavy_n]
-        .into_iter()
-        .map(|load_n| over_joint(contact, path, joints_deg, load_n, predicted))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::bad_input)?;
+    let loads_n = [LIGHT_SHARE * heavy_n, heavy_n];
+    let joint = design.joint();
+    let (over_joint, measured_joint_deg) = match &joint {
+        Some(joint) => {
+            refuse_assumptions(arguments, name)?;
+            let [from, to] = joint.flexion_deg;
+            let range = arguments.joint.unwrap_or(Range { from, to });
+            (curves(design.contact(), arguments, joint, range, loads_n)?, joint.measured_joint_deg())
+        }
+        None => {
+            let range = arguments.joint.unwrap_or(ASSUMED_FLEXIONS);
+            (curves(design.contact(), arguments, path, range, loads_n)?, path.measured_joint_deg())
+        }
+    };
+    let contact = design.contact();
     Ok(Layout {
         name: design.configuration().switch.name.to_string(),
         law: curve.law,
@@ -191,7 +275,26 @@ fn layout(
         motor: MotorSizing::of(&points),
         points,
         over_joint,
+        joint: joint.as_ref().map(JointGeometry::new),
+        measured_joint_deg,
     })
+}
+
+/// Returns the gains over the joint at each load.
+fn curves(
+    contact: &Contact,
+    arguments: &Arguments,
+    path: &impl FlexionWrap,
+    range: Range<f64>,
+    loads_n: [f64; 2],
+) -> Result<Vec<JointCurve>, Failure> {
+    let joints_deg = flexions(range, path)?;
+    let predicted = |contact: &Contact, loads_n: &[f64]| arguments.law.curve(contact, loads_n);
+    loads_n
+        .into_iter()
+        .map(|load_n| over_joint(contact, path, &joints_deg, load_n, predicted))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::bad_input)
 }
 
 fn files(report: &Report) -> Result<Vec<OutputFile>, Failure> {
@@ -204,7 +307,8 @@ fn files(report: &Report) -> Result<Vec<OutputFile>, Failure> {
             over_load: &l.points,
             measured: &l.measured,
             over_joint: &l.over_joint,
-            measured_joint_deg: report.joint_path.measured_joint_deg(),
+            measured_joint_deg: l.measured_joint_deg,
+            has_joint: l.joint.is_some(),
         })
         .collect();
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };

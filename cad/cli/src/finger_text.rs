@@ -22,7 +22,7 @@ fn with_band(gain: Gain) -> String {
     format!("{:.1} % ({:.1} to {:.1})", percent(gain.value), percent(gain.low), percent(gain.high))
 }
 
-/// Formats the three tables, the human finger for comparison, the assumptions and the notes.
+/// Formats the three tables, the human finger for comparison, the joints, the assumptions and the notes.
 pub(super) fn table(report: &Report) -> String {
     let mut text = String::new();
     over_load(&mut text, &report.layouts);
@@ -43,6 +43,15 @@ pub(super) fn table(report: &Report) -> String {
         percent(extra_holding_of(low)),
         percent(extra_holding_of(high))
     );
+    for (name, joint) in report.layouts.iter().filter_map(|l| Some((&l.name, l.joint.as_ref()?))) {
+        let [[low, high], [least, most], [near, far]] =
+            [joint.flexion_deg, joint.wrap_deg, joint.moment_arm_mm];
+        let _ = writeln!(
+            text,
+            "joint of {name}: at {low} to {high} deg of flexion the wrap is {least:.1} to {most:.1} deg, on one side;\n  \
+             the moment arm of the tendon is {near:.2} to {far:.2} mm"
+        );
+    }
     for assumption in &report.assumptions {
         let _ = writeln!(text, "assumed: {assumption}");
     }

@@ -32,6 +32,8 @@ const COLOURS: [RGBColor; 6] = [
 ];
 /// Dash and gap in pixels, so that lines also differ without colour; a line without a gap is solid.
 const DASHES: [(u8, u8); 4] = [(1, 0), (9, 4), (4, 3), (12, 2)];
+/// Note on a layout whose wrap over the joint is computed.
+const JOINT_NOTE: &str = " (joint as built)";
 const HUMAN: RGBColor = RGBColor(230, 159, 0);
 /// Opacity of a band.
 const BAND: f64 = 0.13;
@@ -57,6 +59,8 @@ pub struct FingerLayout<'a> {
     pub over_joint: &'a [JointCurve],
     /// Flexion of the measured points, degrees.
     pub measured_joint_deg: Option<f64>,
+    /// Whether the wrap over the joint is computed from the parts of a joint.
+    pub has_joint: bool,
 }
 
 /// Draws the force differences of `layouts` as a self-contained SVG of two panels: over load and
@@ -303,6 +307,9 @@ fn legend_entries(layouts: &[FingerLayout<'_>]) -> Vec<Entry> {
             let mut text: String = layout.name.chars().take(NAME_LETTERS).collect();
             if text.len() < layout.name.len() {
                 text.push('…');
+            }
+            if layout.has_joint {
+                text.push_str(JOINT_NOTE);
             }
             entry(Sample::Line(index), text)
         })

@@ -72,6 +72,12 @@ pub enum HardwareKind {
     Hook,
     /// The weights.
     Weight,
+    /// The bolt on which the links of a joint turn.
+    Axle,
+    /// A washer on it.
+    AxleWasher,
+    /// The nut on it.
+    AxleNut,
 }
 
 impl HardwareKind {
@@ -87,6 +93,9 @@ impl HardwareKind {
             Self::Bearing => "bearing",
             Self::Washer => "washer",
             Self::BoltNut => "bolt-nut",
+            Self::Axle => "axle",
+            Self::AxleWasher => "axle-washer",
+            Self::AxleNut => "axle-nut",
             Self::FootBolt => "foot-bolt",
             Self::FootWasher => "foot-washer",
             Self::FootNut => "foot-nut",
@@ -141,6 +150,7 @@ pub fn hardware(design: &Design) -> Vec<Hardware> {
     dowels(design, &mut add);
     in_the_plate(design, &mut add);
     on_the_bolts(design, &mut add);
+    on_the_axle(design, &mut add);
     rig_hardware(design, &mut add);
     let mut named: Vec<Hardware> = Vec::with_capacity(all.len());
     for (kind, from_right, solid) in all {
@@ -258,6 +268,30 @@ fn on_the_bolt(design: &Design, axle: Hole, add: &mut impl FnMut(HardwareKind, b
     add(HardwareKind::BoltNut, true, prism(&outline, Some(bore), [nut, nut + AXLE_NUT_MM]));
 }
 
+/// Adds the axle of a joint, with washers on both sides of the distal link and a nut.
+fn on_the_axle(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
+    let Some(joint) = design.joint() else { return };
+    let Some(length_mm) = joint.axle_length_mm else { return };
+    let (bolt, levels, middle) = (&joint.axle, &joint.levels, Point2::origin());
+    let [flats, head_high] = bolt.head_mm;
+    let plate_mm = design.configuration().mount.plate_mm;
+    let seat = levels.proximal_mm - plate_mm + joint.head_recess().depth_mm;
+    let shank = Contour::circle(middle, bolt.diameter_mm / 2.0);
+    let head = hexagon(middle, flats);
+    add(HardwareKind::Axle, false, Some(stepped(&head, [seat - head_high, seat], &shank, length_mm)));
+    let [inner_mm, outer_mm, washer_high] = bolt.washer_mm;
+    let washer = |from: f64| {
+        let bore = Contour::circle(middle, inner_mm / 2.0).reversed();
+        prism(&Contour::circle(middle, outer_mm / 2.0), Some(bore), [from, from + washer_high])
+    };
+    let outer = levels.distal_mm + plate_mm;
+    add(HardwareKind::AxleWasher, true, washer(levels.proximal_mm));
+    add(HardwareKind::AxleWasher, true, washer(outer));
+    let (bore, nut) = (shank.reversed(), outer + washer_high);
+    let outline = hexagon(middle, flats);
+    add(HardwareKind::AxleNut, true, prism(&outline, Some(bore), [nut, nut + bolt.nut_mm]));
+}
+
 /// Radius of a metric thread, mm, from its name.
 fn radius_mm(thread: &Thread) -> Option<f64> {
     thread.name.strip_prefix('M')?.parse::<f64>().ok().map(|diameter| diameter / 2.0)
@@ -324,6 +358,8 @@ mod tests {
             "[fasteners]\nkind = \"screw\"\n",
             "[fasteners]\nkind = \"insert\"\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
             "[mount]\nkind = \"flange\"\n",
+            "[mount]\nkind = \"joint\"\n",
+            "[mount]\nkind = \"joint\"\naxle_mm = 6.0\n[fasteners]\nkind = \"insert\"\n",
         ] {
             let (design, all) = of(text);
             let bill = bill_of_materials(&design);
@@ -339,6 +375,15 @@ mod tests {
             {
                 assert_eq!(count(&all, kind), bearings, "{text} {kind:?}");
             }
+            let axles = design.joint().iter().count();
+            for (kind, each) in
+                [(HardwareKind::Axle, 1), (HardwareKind::AxleWasher, 2), (HardwareKind::AxleNut, 1)]
+            {
+                assert_eq!(count(&all, kind), each * axles, "{text} {kind:?}");
+            }
+            assert!(
+                axles == 0 || mount.as_ref().is_some_and(|m| m.axle.is_some() && m.crimp_sleeve.is_some())
+            );
             let stops = mount.and_then(|m| m.stop_screw_length_mm).map_or(0, |_| 2);
             assert_eq!(count(&all, HardwareKind::StopScrew), stops, "{text}");
             assert_eq!(count(&all, HardwareKind::StopNut), stops, "{text}");

@@ -122,7 +122,17 @@ impl Contact {
     /// # Errors
     /// [`ContactError`] as [`Contact::new`].
     pub fn at_wrap(&self, wrap_rad: f64) -> Result<Self, ContactError> {
-        let other = Self::new(self.substrate, self.all_pins.clone(), wrap_rad)?;
+        self.at_wrap_about(wrap_rad, 0.0)
+    }
+
+    /// Returns the same part with another wrap angle about another middle, in radians: the pins
+    /// move by `-middle_rad` relative to the wrap.
+    ///
+    /// # Errors
+    /// [`ContactError`] as [`Contact::new`].
+    pub fn at_wrap_about(&self, wrap_rad: f64, middle_rad: f64) -> Result<Self, ContactError> {
+        let pins = PinPattern::new(self.all_pins.angles_rad().iter().map(|a| a - middle_rad).collect());
+        let other = Self::new(self.substrate, pins, wrap_rad)?;
         Ok(Self {
             unmodelled: self.unmodelled.clone(),
             six_single_threshold: self.six_single_threshold,

@@ -54,16 +54,28 @@ pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
     let mut arcs = Vec::new();
     let mut here = from_rad;
     while here < to_rad {
-        let next = (0..discs.len())
-            .filter(|other| *other != disc)
-            .filter_map(|other| Some((overtaken_rad(&discs[disc], &discs[other], here)?, other)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let next = next_disc(discs, disc, here);
         let end = next.map_or(to_rad, |n| n.0.min(to_rad));
         arcs.push(HullArc { disc, from_rad: here, to_rad: end });
         let Some((_, other)) = next.filter(|n| n.0 < to_rad) else { break };
         (disc, here) = (other, end);
     }
     arcs
+}
+
+/// The disc that follows `disc` after the direction `here_rad`, and the direction from which it is
+/// outermost. Of discs on one tangent the last is taken.
+fn next_disc(discs: &[Disc], disc: usize, here_rad: f64) -> Option<(f64, usize)> {
+    let others = || {
+        (0..discs.len())
+            .filter(|other| *other != disc)
+            .filter_map(|other| Some((overtaken_rad(&discs[disc], &discs[other], here_rad)?, other)))
+    };
+    let first = others().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let beyond = |other: usize| discs[other].support_mm(first.0 + 4.0 * SAME_RAD);
+    let tied = others().filter(|other| other.0 <= first.0 + 2.0 * SAME_RAD);
+    let outermost = tied.max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)));
+    Some((first.0, outermost.map_or(first.1, |other| other.1)))
 }
 
 /// The first direction after `after_rad` from which the support of `other` exceeds that of `disc`;
@@ -110,6 +122,7 @@ pub fn hull(discs: &[Disc]) -> Option<Contour> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::FRAC_PI_2;
 
     fn disc(x: f64, y: f64, radius_mm: f64) -> Disc {
         Disc { centre: Point2::new(x, y), radius_mm }
@@ -122,6 +135,25 @@ mod tests {
         assert!(hull(&[]).is_none());
         let swallowed = hull(&[disc(0.0, 0.0, 3.0), disc(1.0, 0.0, 1.0)]).unwrap();
         assert!((swallowed.area_mm2() - 9.0 * std::f64::consts::PI).abs() < 1e-9);
+    }
+
+    /// Three discs on one tangent, in each order: the middle one has no arc.
+    #[test]
+    fn discs_on_one_tangent_are_skipped() {
+        for tilt in [0.0, 0.3, 1.1, -0.7, 2.9] {
+            let at = |x: f64, radius_mm: f64| {
+                let (along, up) = (direction(tilt), direction(tilt + FRAC_PI_2));
+                Disc { centre: Point2::from(along * x + up * (23.0 - radius_mm)), radius_mm }
+            };
+            let ends = [at(20.0, 0.0), at(-20.0, 0.0)];
+            for middle in [vec![at(0.0, 23.0)], vec![at(3.0, 1.3), at(-2.0, 1.3), at(0.0, 23.0)]] {
+                let discs = [&ends[..], &middle].concat();
+                let arcs = hull_arcs(&discs, tilt + 0.9, tilt + FRAC_PI_2 + 0.7);
+                let kept: Vec<_> =
+                    arcs.iter().filter(|a| a.to_rad - a.from_rad > 1e-6).map(|a| a.disc).collect();
+                assert_eq!(kept, [0, 1], "{tilt}: {arcs:?}");
+            }
+        }
     }
 
     proptest! {

@@ -78,8 +78,8 @@ choice! {
         None = "none",
         /// A base plate with four holes.
         Flange = "flange",
-        /// A finger link with two bores at a given distance.
-        FingerLink = "finger-link",
+        /// Two links on an axle on the pulley's axis.
+        Joint = "joint",
         /// The upright board of a test rig, with guide pulleys, feet, cell mount and drive.
         Rig = "rig",
     }
@@ -199,13 +199,15 @@ configuration! {
         }
         /// The mounting plate next to the left support, fastened by the same screws.
         mount: MountTable {
-            kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; with none, the two screws fasten the switch to a user-defined support";
+            kind: MountKind = MountKind::None, (), Chosen, "flange, joint or rig; with none, the two screws fasten the switch to a user-defined support";
             plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolts";
-            hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273)";
+            hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes of the plate, and at the ends of the links of a joint: 4.5 for M4 (ISO 273)";
             rim_mm: f64 = 3.0, 1.0..=20.0, Chosen, "wall around every hole of the plate";
-            bore_distance_mm: f64 = 45.0, 5.0..=300.0, Chosen, "finger-link: distance between the two bores";
-            bore_axis_deg: f64 = 0.0, -180.0..=180.0, Chosen, "finger-link: direction from the first bore to the second, 0 along the tendon at the middle of the wrap";
-            bore_offset_mm: f64 = 0.0, -100.0..=100.0, Chosen, "finger-link: from the pulley's axis to the line between the bores, towards the wrap";
+            axle_mm: f64 = 5.0, 4.0..=8.0, Chosen, "joint: diameter of the bolt on the pulley's axis: 4, 5, 6 or 8 (M4 to M8, ISO 4014)";
+            proximal_mm: f64 = 60.0, 10.0..=300.0, Chosen, "joint: from the axis to the holes at the end of the proximal link, which carries the switch";
+            distal_mm: f64 = 50.0, 10.0..=300.0, Chosen, "joint: from the axis to the holes at the end of the distal link, which carries the load";
+            flexion_min_deg: f64 = 0.0, 0.0..=150.0, Chosen, "joint: flexion at the first stop; at 0 the links are in line";
+            flexion_max_deg: f64 = 75.0, 5.0..=170.0, Chosen, "joint: flexion at the second stop; the published segment ends at 76.7";
             pulley_distance_mm: f64 = 70.0, 20.0..=500.0, Chosen, "rig: straight tendon between the switch and each guide pulley";
         }
         /// The test rig (`mount.kind = "rig"`): stand, load, cell and drive.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use pinswitch_diagnostic::{Change, Diagnostic, Location};
 use toml_edit::{Document, Item, TableLike, Value};
 
-use super::error::{field_location, syntax_error};
+use super::error::{ValueError, field_location, syntax_error};
 use super::parameter::{Parameter, number};
 use super::parameters::Configuration;
 
@@ -170,9 +170,20 @@ impl FieldLocations {
     }
 }
 
+/// Words that a newer one replaces: the field, the word, and the help.
+const REPLACED: [(&str, &str, &str); 1] =
+    [("mount.kind", "finger-link", "give \"joint\": two links on an axle on the pulley's axis")];
+
+/// The error of a word that a newer one replaces; `error` for any other value.
+fn replaced(parameter: &Parameter<Configuration>, value: &Value, error: ValueError) -> ValueError {
+    let is_same =
+        |(field, word, _): &&(&str, &str, &str)| *field == parameter.path() && value.as_str() == Some(*word);
+    REPLACED.iter().find(is_same).map_or(error, |(_, _, help)| ValueError::new("no longer a kind", *help))
+}
+
 fn set(c: &mut Configuration, parameter: &Parameter<Configuration>, value: &Value) -> Result<(), Diagnostic> {
     (parameter.set)(c, value).map_err(|error| {
-        error
+        replaced(parameter, value, error)
             .in_field(parameter.path(), value.clone().decorated("", "").to_string())
             .with_changes(nearest(parameter, value).into_iter().collect())
     })

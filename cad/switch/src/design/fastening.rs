@@ -7,7 +7,7 @@ use crate::config::{FastenerKind, MountKind};
 /// Least wall around a fastener hole or a recess (cad/doc/print-limits.md, "Fasteners").
 pub(super) const HOLE_EDGE_MM: f64 = 0.5;
 /// Clearance of a recess around a nut or a head, mm.
-const RECESS_PLAY_MM: f64 = 0.2;
+pub(super) const RECESS_PLAY_MM: f64 = 0.2;
 /// Clearance of a counterbore around a head, mm. Printed holes are smaller than drawn.
 const HEAD_PLAY_MM: f64 = 0.5;
 /// Least thickness of the plate under a recess that carries a nut or a head, mm.
@@ -139,6 +139,11 @@ impl Fastening {
     pub const fn recess(&self, has_heads: bool) -> Option<Recess> {
         if has_heads { self.counterbore } else { self.nut_trap }
     }
+}
+
+/// Returns the depth of a recess that contains a head of `head_mm`.
+pub(super) const fn recess_below(head_mm: f64) -> f64 {
+    head_mm + HEAD_BELOW_MM
 }
 
 /// Returns a counterbore for the heads of a thread.
@@ -283,6 +288,23 @@ impl Dimensions {
         let right = c.support.plate_mm - depth(fastening.nut_trap);
         let stack = left_plates + c.shell.width_mm + right + thread.nut_mm[1] + SCREW_PROTRUSION_MM;
         Some((thread.at_least_mm(stack)?, None))
+    }
+
+    /// Returns the distance by which heads, nuts and tips of the screws protrude from the outer face
+    /// of the right support, mm. The left support has a mounting plate.
+    pub(super) fn right_protrusion_mm(&self) -> f64 {
+        let c = self.configuration();
+        let fastening = self.fastening();
+        let Some(thread) = fastening.thread.filter(|_| c.fasteners.count > 0) else { return 0.0 };
+        let depth = |recess: Option<Recess>| recess.map_or(0.0, |r| r.depth_mm);
+        if fastening.insert_mm.is_some() {
+            return (thread.head_mm[1] - depth(fastening.counterbore)).max(0.0);
+        }
+        let nut = thread.nut_mm[1] - depth(fastening.nut_trap);
+        let under_head = c.mount.plate_mm + c.shell.width_mm + 2.0 * c.support.plate_mm
+            - depth(fastening.mount_counterbore);
+        let tip = self.screw_lengths_mm().map_or(0.0, |(length, _)| length - under_head);
+        nut.max(tip).max(0.0)
     }
 
     /// Returns half of the width of a fastener along the arc of the shell.

@@ -3,6 +3,7 @@
 mod clearance;
 mod dimensions;
 mod fastening;
+mod joint;
 pub(crate) mod mould_keys;
 pub(crate) mod mould_tray;
 mod mounting;
@@ -21,9 +22,10 @@ pub(crate) use clearance::{clearance, clearance_grade};
 pub use dimensions::{Dimensions, Slot};
 pub(crate) use fastening::{AXLE_HEAD_MM, STOP_SCREW, axle_recess, stop_recess};
 pub use fastening::{Fastening, Recess, Thread};
+pub use joint::{AxleBolt, Joint, JointContact, JointLevels, Link};
 pub(crate) use mounting::{BEARING_SEAT_MM, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 pub use mounting::{Hole, Mounting, SheathStop};
-pub use rig::{Joint, RigLayout};
+pub use rig::{BoardJoint, RigLayout};
 
 /// A configuration that satisfies all rules, with its [`Dimensions`], the tolerance of its meshes, and the contact of the
 /// tendon.

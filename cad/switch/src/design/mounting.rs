@@ -84,7 +84,7 @@ impl Mounting {
 /// A mounting plate with its holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mounting {
-    /// Holes for the screws of the plate, or bores of a link.
+    /// Holes for the screws of the plate, or at the end of the proximal link.
     pub holes: Vec<Hole>,
     /// Axle of the guide pulley on the side of the load, on the rig.
     pub axle: Option<Hole>,
@@ -126,7 +126,7 @@ impl Dimensions {
         let holes = match m.kind {
             MountKind::None => return None,
             MountKind::Flange => self.flange_holes().map(hole).to_vec(),
-            MountKind::FingerLink => self.link_bores().map(hole).to_vec(),
+            MountKind::Joint => self.joint().map_or(Vec::new(), |j| j.proximal.holes.to_vec()),
             MountKind::Rig => {
                 let joint = rig.iter().filter_map(|rig| rig.joint.as_ref());
                 let joint = joint.flat_map(|joint| joint.left.into_iter().chain(joint.right));
@@ -139,7 +139,12 @@ impl Dimensions {
         let sheath = self.sheath_stop();
         let rim = m.rim_mm;
         let axles: Vec<Hole> = axle.into_iter().chain(drive_axle).collect();
-        let all = self.taken(&holes, &axles, sheath.as_ref());
+        let mut all = self.taken(&holes, &axles, sheath.as_ref());
+        if let Some(joint) = self.joint() {
+            all.push(Hole { centre: Point2::origin(), radius_mm: joint.head_recess().along_mm });
+            let discs = joint.outline_discs(self, true);
+            return Some(Mounting { holes, axle, drive_axle, sheath, taken: all, discs });
+        }
         let discs = match &rig {
             Some(rig) => self.board_parts(rig).swap_remove(0),
             None => all.iter().map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect(),
@@ -160,25 +165,6 @@ impl Dimensions {
         holes.iter().copied().chain(axles).chain(fasteners).chain(screws).collect()
     }
 
-    /// Returns the distance of a point from the supports, mm; 0 within them.
-    pub(super) fn distance_to_support_mm(&self, p: Point2) -> f64 {
-        let (inner, outer) = (self.inner_radius_mm(), self.support_radius_mm());
-        let half = self.half_span_rad();
-        let (radius, angle) = (p.coords.norm(), libm::atan2(p.x, p.y).abs());
-        let radial = (inner - radius).max(radius - outer).max(0.0);
-        // The ends of the supports are shifted outwards along the tangent.
-        let mirrored = Vector2::new(p.x.abs(), p.y);
-        let outwards = polar(1.0, half).coords;
-        let along = Vector2::new(outwards.y, -outwards.x);
-        let shift = self.shell_end_shift_mm();
-        if angle <= half {
-            return radial;
-        }
-        let beyond = (mirrored.dot(&along) - shift).max(0.0);
-        let height = mirrored.dot(&outwards);
-        libm::hypot(beyond, (inner - height).max(height - outer).max(0.0))
-    }
-
     /// Returns the centres of the four holes around the supports.
     fn flange_holes(&self) -> [Point2; 4] {
         let m = &self.configuration().mount;
@@ -188,15 +174,6 @@ impl Dimensions {
         let x = reach * libm::sin(half.min(std::f64::consts::FRAC_PI_2)) + self.shell_end_shift_mm() + beside;
         let (low, high) = (self.inner_radius_mm() * libm::cos(half), reach);
         [[-x, low], [x, low], [-x, high], [x, high]].map(|[x, y]| Point2::new(x, y))
-    }
-
-    /// Returns the centres of the two bores of a finger link.
-    fn link_bores(&self) -> [Point2; 2] {
-        let m = &self.configuration().mount;
-        let angle = m.bore_axis_deg.to_radians();
-        let along = Vector2::new(libm::cos(angle), libm::sin(angle));
-        let middle = Point2::from(Vector2::new(-along.y, along.x) * m.bore_offset_mm);
-        [middle - along * (m.bore_distance_mm / 2.0), middle + along * (m.bore_distance_mm / 2.0)]
     }
 
     /// Returns the sheath stop on the side away from the load; `None` without a sheath.

@@ -91,12 +91,12 @@ pub struct RigLayout {
     /// Axis of the drive: of the actuator's rear bolt, or of the drum.
     pub drive: Point2,
     /// The joint of a board in two parts.
-    pub joint: Option<Joint>,
+    pub joint: Option<BoardJoint>,
 }
 
 /// The joint of a board in two parts, which a splice behind it connects.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
+pub struct BoardJoint {
     /// Holes for the screws in the left part.
     pub left: [Hole; 2],
     /// Holes for the screws in the right part.
@@ -195,7 +195,7 @@ impl Dimensions {
             drive,
             joint: None,
         };
-        layout.joint = self.joint(&layout);
+        layout.joint = self.board_joint(&layout);
         Some(layout)
     }
 
@@ -227,7 +227,7 @@ impl Dimensions {
 
     /// Returns the joint of a board that is too large for the bed in one part; `None` if it fits, or if there is no room
     /// for a joint.
-    fn joint(&self, layout: &RigLayout) -> Option<Joint> {
+    fn board_joint(&self, layout: &RigLayout) -> Option<BoardJoint> {
         let c = self.configuration();
         let [all, _] = self.board_discs(layout, f64::INFINITY);
         let extent = |of: fn(&Disc) -> [f64; 2]| {
@@ -258,7 +258,7 @@ impl Dimensions {
         let (low, high) = (layout.table_y_mm + FOOT_BASE_MM, layout.line_y_mm);
         let low = low + radius_mm + c.mount.rim_mm + 1.0;
         let at = |x: f64| [low, high.max(low + 20.0)].map(|y| Hole { centre: Point2::new(x, y), radius_mm });
-        Some(Joint { left: at(middle - SPLICE_HALF_MM), right: at(middle + SPLICE_HALF_MM) })
+        Some(BoardJoint { left: at(middle - SPLICE_HALF_MM), right: at(middle + SPLICE_HALF_MM) })
     }
 
     /// Returns the discs whose convex hulls are the parts of the board: one part, or two from left to right.
@@ -279,7 +279,7 @@ impl Dimensions {
     }
 
     /// Returns whether the board of the rig has two parts.
-    pub(crate) fn has_joint(&self) -> bool {
+    pub(crate) fn has_board_joint(&self) -> bool {
         self.rig_layout().is_some_and(|layout| layout.joint.is_some())
     }
 

@@ -45,8 +45,12 @@ impl Dimensions {
     }
 
     /// Returns the lengths of the ends in pictures, mm: on the load side, which on the rig extends
-    /// to the guide pulley, and on the other side. Ends that would meet are shortened.
+    /// to the guide pulley, and on the other side. Ends that would meet are shortened. On a joint
+    /// they extend beyond anchor and proximal link.
     pub fn shown_ends_mm(&self) -> [f64; 2] {
+        if let Some(joint) = self.joint() {
+            return joint.tendon_ends_mm();
+        }
         let pulley = (self.configuration().mount.kind == MountKind::Rig)
             .then_some(self.configuration().mount.pulley_distance_mm);
         if self.fits(pulley, SHOWN_MM) {
@@ -86,7 +90,7 @@ impl Dimensions {
 
     /// Returns the least length of tendon for the set, rounded up to a millimetre: the wrap, on the
     /// rig the distances to the guide pulleys, half a turn around each and the way of the load, the
-    /// sheath stop, and two free ends to grip.
+    /// lengths along the links of a joint, the sheath stop, and two free ends to grip.
     pub(super) fn least_tendon_mm(&self) -> f64 {
         let c = self.configuration();
         let wrap = 2.0 * self.half_wrap_rad() * self.tendon_axis_radius_mm();
@@ -97,6 +101,7 @@ impl Dimensions {
                 let down = c.rig.tendon_height_mm + c.rig.stroke_mm;
                 2.0 * (c.mount.pulley_distance_mm + turn) + down
             }
+            MountKind::Joint => self.joint().map_or(0.0, |joint| joint.tendon_ends_mm().iter().sum()),
             _ => 0.0,
         };
         let stop = self.mounting().and_then(|m| m.sheath).map_or(0.0, |stop| {

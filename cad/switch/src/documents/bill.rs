@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::config::{MouldKind, MountKind};
-use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
+use crate::design::{Design, Joint, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
 use crate::process::{Cure, Process, mix_ratio, silicone_density_g_cm3};
 use crate::rig::bolt_mm;
@@ -112,8 +112,11 @@ pub struct MountHardware {
     pub pulleys: usize,
     /// Bearing of each guide pulley, on the rig.
     pub bearing: Option<&'static str>,
-    /// Bolt through each bearing.
+    /// Bolt through each bearing, or through both links of a joint.
     pub axle: Option<String>,
+    /// Sleeve that is crimped on the tendon behind its anchor, on a joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crimp_sleeve: Option<String>,
     /// Screws and nuts of the sheath stop.
     pub sheath_stop: Option<String>,
     /// Thread and length of these [`STOP_SCREWS`] screws.
@@ -231,6 +234,10 @@ fn mount(design: &Design) -> Option<MountHardware> {
     let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
     let axle_length_mm = mounting.axle.map(|_| bolt_mm(stack));
     let axle = axle_length_mm.map(|length| format!("M8 x {length} hexagon bolt (ISO 4017), washer and nut"));
+    let joint = design.joint();
+    let axle = axle.or_else(|| joint.as_ref().and_then(axle_of_joint));
+    let axle_length_mm = axle_length_mm.or_else(|| joint.as_ref().and_then(|joint| joint.axle_length_mm));
+    let crimp_sleeve = joint.map(|_| format!("crimp sleeve for a rope of {} mm", c.tendon.rope_diameter_mm));
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
     let stop_screw_length_mm = mounting.sheath.and_then(|_| STOP_SCREW.at_least_mm(stack));
     let stop_screw = stop_screw_length_mm.map(|length| format!("{} x {length}", STOP_SCREW.name));
@@ -242,11 +249,19 @@ fn mount(design: &Design) -> Option<MountHardware> {
         pulleys: mounting.axles().count(),
         bearing: mounting.axle.map(|_| BEARING),
         axle,
+        crimp_sleeve,
         sheath_stop,
         stop_screw,
         axle_length_mm,
         stop_screw_length_mm,
     })
+}
+
+/// Describes the axle of a joint with its hardware.
+fn axle_of_joint(joint: &Joint) -> Option<String> {
+    let length = joint.axle_length_mm?;
+    let name = joint.axle.name;
+    Some(format!("{name} x {length} bolt (ISO 4014), 2 washers and lock nut"))
 }
 
 #[cfg(test)]

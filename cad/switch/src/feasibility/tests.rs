@@ -116,7 +116,7 @@ fn proposals_for_random_configurations_are_feasible() {
             "mould.kind=none",
             "support.slot_kind=through",
             "fasteners.kind=insert",
-            "mount.kind=finger-link",
+            "mount.kind=joint",
             "mount.kind=rig",
         ] {
             if next() < 0.25 {

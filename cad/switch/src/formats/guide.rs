@@ -370,13 +370,15 @@ mod tests {
         let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
         assert!(rig.contains("the pocket for the bolt in rig-plate"), "{rig}");
         assert!(!rig.contains("lower pins.diameter_mm"), "{rig}");
+        let joint = guide("[mount]\nkind = \"joint\"\naxle_mm = 8.0\n");
+        assert!(joint.contains("the pocket for the axle in link-proximal"), "{joint}");
     }
 
     #[test]
     fn covered_marks_are_noted() {
         let words = "The mounting plate covers the marks";
         let on = |kind: &str| guide(&format!("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"{kind}\"\n"));
-        assert!(["flange", "finger-link", "rig"].iter().all(|kind| on(kind).contains(words)));
+        assert!(["flange", "joint", "rig"].iter().all(|kind| on(kind).contains(words)));
         assert!(!on("none").contains(words));
         let unmarked = guide("[mount]\nkind = \"flange\"\n[label]\nengrave = false\n");
         assert!(!unmarked.contains(words) && !unmarked.contains("The arrow points"), "{unmarked}");

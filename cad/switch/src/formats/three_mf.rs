@@ -93,7 +93,7 @@ fn material(role: Role, plastic: &str) -> BaseMaterial {
         Role::Mould => "mould",
         Role::Support { .. } => "support",
         Role::Proxy => "proxy",
-        Role::Mount | Role::Stand => "mount",
+        Role::Mount | Role::Stand | Role::DistalLink => "mount",
         Role::Accessory => "accessory",
         // Cast or bought, and not on a plate.
         Role::Layer | Role::Pin { .. } | Role::Tendon => "part",

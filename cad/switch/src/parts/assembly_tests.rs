@@ -11,16 +11,16 @@ use pinswitch_solid::profile::{ChordTolerance, Contour, Point2, polar};
 /// Chord tolerance of the polygons that decide whether a point is inside of a section, mm.
 const FINE_MM: f64 = 5e-3;
 /// Largest overlap of bodies that touch, mm: the error of the polygons.
-const TOUCHING_MM: f64 = 0.02;
+pub(super) const TOUCHING_MM: f64 = 0.02;
 
-fn design(assignments: &[&str]) -> Design {
+pub(super) fn design(assignments: &[&str]) -> Design {
     let mut c = Configuration::default();
     assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
     Design::new(c).unwrap()
 }
 
 /// Every design of `tests/corpus` whose file name starts with `hardware-`.
-fn corpus() -> Vec<(String, Design)> {
+pub(super) fn corpus() -> Vec<(String, Design)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/corpus");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     files.sort();
@@ -37,13 +37,13 @@ fn corpus() -> Vec<(String, Design)> {
 }
 
 /// A section of a body in the assembly.
-struct Section {
-    exact: Vec<Contour>,
-    polygons: Vec<Vec<Point2>>,
+pub(super) struct Section {
+    pub(super) exact: Vec<Contour>,
+    pub(super) polygons: Vec<Vec<Point2>>,
 }
 
 impl Section {
-    fn contains(&self, p: Point2) -> bool {
+    pub(super) fn contains(&self, p: Point2) -> bool {
         let crossings = self.polygons.iter().flat_map(|polygon| {
             let next = polygon.iter().cycle().skip(1);
             polygon.iter().zip(next).filter(|(a, b)| {
@@ -53,19 +53,19 @@ impl Section {
         crossings.count() % 2 == 1
     }
 
-    fn distance_mm(&self, p: Point2) -> f64 {
+    pub(super) fn distance_mm(&self, p: Point2) -> f64 {
         self.exact.iter().map(|c| c.distance_mm(p)).fold(f64::INFINITY, f64::min)
     }
 
     /// Depth of the outline of `other` inside of this section, mm, and its deepest point.
-    fn depth_mm(&self, other: &Self) -> (f64, Point2) {
+    pub(super) fn depth_mm(&self, other: &Self) -> (f64, Point2) {
         let points = other.polygons.iter().flatten();
         let inside = points.filter(|p| self.contains(**p)).map(|p| (self.distance_mm(*p), *p));
         inside.fold((0.0, Point2::origin()), |best, next| if next.0 > best.0 { next } else { best })
     }
 }
 
-fn section(part: &Part, z_mm: f64) -> Section {
+pub(super) fn section(part: &Part, z_mm: f64) -> Section {
     let pose = part.pose.or(part.tool_pose).unwrap();
     let own = if pose.flipped { pose.z_mm - z_mm } else { z_mm - pose.z_mm };
     let turn = |c: Contour| if pose.flipped { c.mirrored() } else { c };
@@ -76,27 +76,27 @@ fn section(part: &Part, z_mm: f64) -> Section {
 }
 
 /// Heights of the rings of a part in the assembly.
-fn heights_mm(part: &Part) -> Vec<f64> {
+pub(super) fn heights_mm(part: &Part) -> Vec<f64> {
     let pose = part.pose.or(part.tool_pose).unwrap();
     let own = part.solid.heights_mm().into_iter();
     own.map(|z| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z }).collect()
 }
 
 /// Middles of the intervals between all heights of the parts.
-fn levels_mm(parts: &[&Part]) -> Vec<f64> {
+pub(super) fn levels_mm(parts: &[&Part]) -> Vec<f64> {
     let mut all: Vec<f64> = parts.iter().flat_map(|p| heights_mm(p)).collect();
     all.sort_by(f64::total_cmp);
     all.windows(2).filter(|w| w[1] - w[0] > 1e-6).map(|w| f64::midpoint(w[0], w[1])).collect()
 }
 
-fn assembled(design: &Design) -> Vec<Part> {
+pub(super) fn assembled(design: &Design) -> Vec<Part> {
     let all = [printed(design).unwrap(), reference_bodies(design).unwrap()].concat();
     let has_layer = all.iter().any(|p| p.role == Role::Layer);
     all.into_iter().filter(|p| p.pose.is_some() && !(has_layer && p.role == Role::Proxy)).collect()
 }
 
 /// An overlap of two of the bodies.
-fn overlap(parts: &[Part]) -> Option<String> {
+pub(super) fn overlap(parts: &[Part]) -> Option<String> {
     for (i, a) in parts.iter().enumerate() {
         for b in &parts[i + 1..] {
             for z in levels_mm(&[a, b]) {
@@ -177,7 +177,7 @@ fn screws_and_dowels_pass_on_one_axis() {
             .iter()
             .filter(|p| {
                 matches!(p.role, Role::Shell | Role::Support { .. })
-                    || ["base-flange", "finger-link", "rig-plate"].contains(&p.name.as_str())
+                    || ["base-flange", "link-proximal", "rig-plate"].contains(&p.name.as_str())
             })
             .collect();
         for part in &joined {
@@ -562,7 +562,7 @@ fn a_gang_mould_casts_every_layer() {
 /// No part of a published layout has a thin place, with any mount.
 #[test]
 fn published_layouts_have_no_thin_places() {
-    for mount in ["none", "flange", "finger-link", "rig"] {
+    for mount in ["none", "flange", "joint", "rig"] {
         for kind in ["screw", "nut-trap", "insert"] {
             for mould in ["split", "one-piece"] {
                 let set = [

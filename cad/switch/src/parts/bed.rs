@@ -57,9 +57,10 @@ fn smaller(part: &Part) -> &'static [Direction] {
         (Role::Mould, "mould-tray") => {
             &[BED, Lower("mould.layers"), Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")]
         }
-        (Role::Mount | Role::Stand, _) => &[
+        (Role::Mount | Role::Stand | Role::DistalLink, _) => &[
             BED,
-            Lower("mount.bore_distance_mm"),
+            Lower("mount.proximal_mm"),
+            Lower("mount.distal_mm"),
             Lower("mount.pulley_distance_mm"),
             Lower("mount.rim_mm"),
             Set("mount.kind", "\"none\""),

@@ -6,6 +6,7 @@ mod bed;
 mod coupon;
 mod fastening;
 mod guide_pulley;
+mod joint;
 mod label;
 mod layer;
 mod marks;
@@ -29,6 +30,7 @@ use pinswitch_solid::solid::Solid;
 
 pub use bed::fit_on_bed;
 pub(crate) use bed::{can_be_printed, room_on_bed};
+pub(crate) use joint::{DISTAL, PROXIMAL};
 pub use layer::silicone_layer;
 pub(crate) use mould::keys;
 pub use mould::{cavity_mm3, gang_mm};
@@ -39,7 +41,7 @@ pub use part::{Material, Part, Role};
 pub(crate) use rig::{cell_bolts, cell_length_mm, front_mm, middle_mm, stand_holes};
 pub use sector::Sector;
 pub(crate) use tendon::RIG_END_MM;
-pub use tendon::{Touch, touches};
+pub use tendon::{Touch, tendon_at_flexion, touches};
 
 /// A printed part: which configurations have it, and how it is built.
 pub struct PrintedPart {
@@ -77,9 +79,14 @@ pub const PRINTED_PARTS: &[PrintedPart] = &[
         build: mount::plate,
     },
     PrintedPart {
-        name: "finger-link",
-        is_wanted: |c| mount::has_plate(c, MountKind::FingerLink),
-        build: mount::plate,
+        name: PROXIMAL,
+        is_wanted: |c| mount::has_plate(c, MountKind::Joint),
+        build: joint::proximal_link,
+    },
+    PrintedPart {
+        name: DISTAL,
+        is_wanted: |c| mount::has_plate(c, MountKind::Joint),
+        build: joint::distal_link,
     },
     PrintedPart { name: "rig-plate", is_wanted: rig::is_rig, build: rig::left_board },
     PrintedPart { name: "rig-plate-2", is_wanted: rig::has_joint, build: rig::right_board },
@@ -197,5 +204,7 @@ pub(crate) fn left_out_features(design: &Design) -> Vec<(&'static str, LeftOut)>
 
 #[cfg(test)]
 mod assembly_tests;
+#[cfg(test)]
+mod joint_tests;
 #[cfg(test)]
 mod tests;

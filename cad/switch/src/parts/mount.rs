@@ -25,8 +25,7 @@ pub(crate) const SPACER: &str = "pulley-spacer";
 /// Returns the name of the plate of a kind of mount other than the rig.
 fn name(kind: MountKind) -> &'static str {
     match kind {
-        MountKind::FingerLink => "finger-link",
-        MountKind::Flange | MountKind::Rig | MountKind::None => "base-flange",
+        MountKind::Flange | MountKind::Joint | MountKind::Rig | MountKind::None => "base-flange",
     }
 }
 

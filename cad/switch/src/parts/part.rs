@@ -54,6 +54,8 @@ pub enum Role {
     Mount,
     /// A part of the rig on its table: a foot, the cell mount, or a part of the drive.
     Stand,
+    /// The distal link of a joint, outside the right support.
+    DistalLink,
     /// A separate part: coupon, guide pulley.
     Accessory,
 }
@@ -73,7 +75,7 @@ impl Role {
         match self {
             Self::Pin { .. } => [205, 210, 218],
             Self::Tendon => [72, 82, 96],
-            Self::Mount => [168, 158, 140],
+            Self::Mount | Self::DistalLink => [168, 158, 140],
             Self::Stand => [140, 158, 168],
             Self::Layer => [120, 190, 225],
             Self::Support { .. } => [236, 178, 74],
@@ -91,6 +93,7 @@ impl Role {
             Self::Pin { .. } => Vector3::new(0.0, 14.0, 0.0),
             Self::Tendon => Vector3::new(0.0, 20.0, 0.0),
             Self::Mount => Vector3::new(0.0, 0.0, -24.0),
+            Self::DistalLink => Vector3::new(0.0, 0.0, 36.0),
             Self::Shell | Self::Mould | Self::Accessory | Self::Stand => Vector3::zeros(),
         }
     }

@@ -6,8 +6,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Part, Pose, Role};
-use crate::design::{Design, PULLEY_RADIUS_MM, RigLayout};
-use pinswitch_solid::profile::{Contour, Disc, HullArc, Pen, Point2, Vector2, hull_arcs, polar};
+use crate::design::{Design, Joint, JointContact, PULLEY_RADIUS_MM, RigLayout};
+use pinswitch_solid::profile::{Contour, Disc, HullArc, Pen, Point2, Vector2, hull_arcs};
 use pinswitch_solid::solid::{Facing, Solid};
 
 /// Number of sides of the section: a polygon inside the circle, so that it does not overlap bodies that the circle touches.
@@ -28,29 +28,15 @@ pub struct Touch {
     pub to_rad: f64,
 }
 
-/// The discs under the axis of the tendon, that of the silicone first, and the numbers of their pins.
-fn discs(design: &Design) -> (Vec<Disc>, Vec<usize>) {
-    let half = design.tendon_diameter_mm() / 2.0;
-    let mut discs = vec![Disc { centre: Point2::origin(), radius_mm: design.tendon_axis_radius_mm() }];
-    let mut pins = Vec::new();
-    let radius_mm = design.configuration().pins.diameter_mm / 2.0 + half;
-    for (i, angle) in design.pin_angles_rad().into_iter().enumerate() {
-        // Pins beyond the wrap can lift the tendon, too.
-        discs.push(Disc { centre: polar(design.contact_radius_mm(), angle), radius_mm });
-        pins.push(i);
-    }
-    (discs, pins)
-}
-
 /// Returns the contacts of the unloaded tendon with pins and silicone, by increasing angle. Contacts with silicone are mostly
 /// outside of the outermost pins.
 pub fn touches(design: &Design) -> Vec<Touch> {
-    let (_, arcs, pins) = string(design);
+    let (_, arcs) = string(design);
     let mut all: Vec<Touch> = arcs
         .iter()
         .filter(|arc| arc.to_rad - arc.from_rad > 1e-6)
         .map(|arc| Touch {
-            pin: arc.disc.checked_sub(1).and_then(|i| pins.get(i).copied()),
+            pin: arc.disc.checked_sub(1),
             from_rad: FRAC_PI_2 - arc.to_rad,
             to_rad: FRAC_PI_2 - arc.from_rad,
         })
@@ -59,30 +45,42 @@ pub fn touches(design: &Design) -> Vec<Touch> {
     all
 }
 
-/// Discs, arcs of the string around them, and numbers of the pins.
-fn string(design: &Design) -> (Vec<Disc>, Vec<HullArc>, Vec<usize>) {
-    let (discs, pins) = discs(design);
+/// Discs and arcs of the string around them. A disc after the first is a pin, numbered from 0.
+fn string(design: &Design) -> (Vec<Disc>, Vec<HullArc>) {
+    let discs = design.tendon_discs();
     let half = design.half_wrap_rad();
     let arcs = hull_arcs(&discs, FRAC_PI_2 - half, FRAC_PI_2 + half);
-    (discs, arcs, pins)
+    (discs, arcs)
 }
 
 pub(super) fn tendon(design: &Design) -> Part {
-    let radius = design.tendon_diameter_mm() / 2.0;
-    let (discs, arcs, _) = string(design);
+    let (discs, arcs) = string(design);
     let [load_side, other_side] = design.shown_ends_mm();
     let ends = Ends {
         // The side of the load is at the largest angle.
         leads_mm: [other_side, load_side],
         rig: design.rig_layout(),
         has_drive_pulley: design.has_drive_pulley(),
-        groove_mm: PULLEY_RADIUS_MM + radius,
+        groove_mm: PULLEY_RADIUS_MM + design.tendon_diameter_mm() / 2.0,
     };
+    body(design, |half_mm| strip(&discs, &arcs, &ends, half_mm))
+}
+
+/// Returns the tendon of a joint at a flexion in degrees; `None` without a joint.
+pub fn tendon_at_flexion(design: &Design, flexion_deg: f64) -> Option<Part> {
+    let joint = design.joint()?;
+    let contact = joint.contact(flexion_deg);
+    Some(body(design, |half_mm| joint_strip(&joint, &contact, half_mm)))
+}
+
+/// A body whose sections are strips of a given half width.
+fn body(design: &Design, strip: impl Fn(f64) -> Contour) -> Part {
+    let radius = design.tendon_diameter_mm() / 2.0;
     let mut solid = Solid::new();
     let mut below = None;
     for k in 0..SIDES / 2 {
         let angle = (f64::from(k) + 0.5) / f64::from(SIDES) * TAU;
-        let outline = strip(&discs, &arcs, &ends, radius * libm::sin(angle));
+        let outline = strip(radius * libm::sin(angle));
         let ring = solid.ring(outline, -radius * libm::cos(angle));
         match below {
             None => solid.cap(Facing::Down, ring, &[]),
@@ -171,5 +169,57 @@ fn strip(discs: &[Disc], arcs: &[HullArc], ends: &Ends, half_mm: f64) -> Contour
     match ends.drive_side(first.from_rad, -half_mm) {
         Some([end, foot, head, axle]) => pen.line_to(head).arc_to(axle, foot, true).line_to(end).close(),
         None => pen.line_to(start(-half_mm)).close(),
+    }
+}
+
+/// The outline of the tendon of a joint, counter-clockwise: from the proximal end through the guide, over the contacts and
+/// through the anchor to the distal end. The tendon turns sharply at the mouths of guide and anchor.
+fn joint_strip(joint: &Joint, contact: &JointContact, half_mm: f64) -> Contour {
+    let (guide, anchor) = (joint.proximal.mouth(), contact.anchor);
+    let (start, end) = (joint.proximal_end(), joint.distal_end(contact));
+    let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
+    let at = |arc: &HullArc, angle: f64, by: f64| {
+        let disc = joint.discs()[arc.disc];
+        disc.centre + direction(angle) * (disc.radius_mm + by)
+    };
+    let arcs = &contact.arcs;
+    let first = arcs.first().map_or(anchor, |arc| at(arc, arc.from_rad, 0.0));
+    let last = arcs.last().map_or(guide, |arc| at(arc, arc.to_rad, 0.0));
+    let ends = |by: f64| {
+        [
+            offset(start, None, Some(guide), by),
+            offset(guide, Some(start), Some(first), by),
+            offset(anchor, Some(last), Some(end), by),
+            offset(end, Some(anchor), None, by),
+        ]
+    };
+    let [first, second, third, fourth] = ends(half_mm);
+    let mut pen = Pen::at(first).line_to(second);
+    for arc in arcs {
+        let to = at(arc, arc.to_rad, half_mm);
+        pen = pen.line_to(at(arc, arc.from_rad, half_mm)).arc_to(joint.discs()[arc.disc].centre, to, true);
+    }
+    pen = pen.line_to(third).line_to(fourth);
+    let [first, second, third, fourth] = ends(-half_mm);
+    pen = pen.line_to(fourth).line_to(third);
+    for arc in arcs.iter().rev() {
+        let to = at(arc, arc.from_rad, -half_mm);
+        pen = pen.line_to(at(arc, arc.to_rad, -half_mm)).arc_to(joint.discs()[arc.disc].centre, to, false);
+    }
+    pen.line_to(second).line_to(first).close()
+}
+
+/// A point of a line, moved to its outer side by `by`: at a corner, both of its sides move by the same distance.
+fn offset(at: Point2, before: Option<Point2>, after: Option<Point2>, by: f64) -> Point2 {
+    // The outer side of the tendon is on the right of its direction.
+    let normal = |from: Point2, to: Point2| {
+        let along = (to - from).normalize();
+        Vector2::new(along.y, -along.x)
+    };
+    let normals = [before.map(|p| normal(p, at)), after.map(|p| normal(at, p))];
+    match normals {
+        [Some(a), Some(b)] => at + (a + b) * (by / (1.0 + a.dot(&b))),
+        [Some(only), None] | [None, Some(only)] => at + only * by,
+        [None, None] => at,
     }
 }

@@ -34,6 +34,8 @@ pub enum Stage {
     Pulley,
     /// The feet of the rig.
     Stand,
+    /// The distal link of a joint, with washers and nut.
+    Joint,
     /// The tendon.
     Tendon,
     /// Cell, drive and load of the rig.
@@ -70,6 +72,9 @@ const PULLEY_APART_MM: f64 = 32.0;
 const NUT_APART_MM: f64 = 44.0;
 /// Distance of the feet of the rig, mm.
 const FEET_APART_MM: f64 = 40.0;
+/// The same on the axle of a joint: distal link, and washer with nut beyond it.
+const DISTAL_APART_MM: f64 = 34.0;
+const AXLE_NUT_APART_MM: f64 = 44.0;
 /// Distance of spare pins, mm.
 const SPARE_APART_MM: f64 = 5.0;
 /// Distance of small hardware from its position, mm.
@@ -89,8 +94,14 @@ pub fn stage_view(design: &Design, stage: Stage) -> View {
     if stage == Stage::Drive {
         return RIG_VIEW;
     }
-    let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
-        && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Stand | Stage::Tendon);
+    let is_hidden = match design.configuration().mount.kind {
+        MountKind::Rig | MountKind::Flange => {
+            matches!(stage, Stage::Mount | Stage::Pulley | Stage::Stand | Stage::Tendon)
+        }
+        // The distal link is outside the right support.
+        MountKind::Joint => matches!(stage, Stage::Mount | Stage::Joint | Stage::Tendon),
+        MountKind::None => false,
+    };
     View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
@@ -173,6 +184,7 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
                 matches!(
                     kind,
                     HardwareKind::Bolt
+                        | HardwareKind::Axle
                         | HardwareKind::StopScrew
                         | HardwareKind::StopNut
                         | HardwareKind::SpliceBolt
@@ -222,6 +234,18 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
             };
             let parts = stand(built, false, Vector3::zeros());
             parts.into_iter().chain(bought(design, is_of_drive, |_| 0.0)).collect()
+        }
+        Stage::Joint => {
+            let is_on_axle = |kind| matches!(kind, HardwareKind::AxleWasher | HardwareKind::AxleNut);
+            // The first washer is between the links.
+            let middle_mm = design.configuration().shell.width_mm / 2.0;
+            let apart = |body: &Hardware| {
+                let is_between = body.solid.bounds().is_some_and(|(low, _)| low.z < middle_mm);
+                if is_between { SMALL_APART_MM } else { AXLE_NUT_APART_MM }
+            };
+            let mut all = of(|role| role == Role::DistalLink, PLATE_GREY, MOUNT, z(DISTAL_APART_MM));
+            all.extend(bought(design, is_on_axle, apart));
+            all
         }
         Stage::Tendon => of(|role| role == Role::Tendon, METAL_GREY, TENDON, y(TENDON_APART_MM)),
         Stage::Inserts => put_in(design, |kind| kind == HardwareKind::Insert),
@@ -314,10 +338,20 @@ mod tests {
             assert!(bodies.iter().any(|b| !is_grey(&b.colour)), "{:?} adds nothing", ALL[number - 1]);
             assert!(number == 1 || is_grey(&bodies[0].colour), "the shell is there");
         }
+        let joint = built("[mount]\nkind = \"joint\"\n");
+        let [plate, link] = [Stage::Mount, Stage::Joint].map(|stage| items(&joint, stage).len());
+        assert_eq!((plate, link), (2, 4), "link and axle, then link, washers and nut");
         // Bodies that the configuration does not have are not drawn.
         let plain = built("");
-        for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley, Stage::Stand, Stage::Drive]
-        {
+        for stage in [
+            Stage::Inserts,
+            Stage::Dowels,
+            Stage::Mount,
+            Stage::Pulley,
+            Stage::Stand,
+            Stage::Drive,
+            Stage::Joint,
+        ] {
             assert!(items(&plain, stage).is_empty(), "{stage:?}");
         }
     }

@@ -152,7 +152,7 @@ mod tests {
         &["fasteners.head_recess_mm=3"],
         &["fasteners.head_recess_mm=1.7"],
         &["fasteners.kind=insert", "fasteners.head_recess_mm=2"],
-        &["mount.kind=finger-link", "fasteners.head_recess_mm=6.5"],
+        &["mount.kind=joint", "fasteners.head_recess_mm=6.5"],
         &["fasteners.count=5"],
         &["support.rise_mm=0.6"],
         &["fasteners.hole_diameter_mm=4.5", "shell.wall_mm=9"],

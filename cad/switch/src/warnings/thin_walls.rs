@@ -115,7 +115,7 @@ impl Part {
                 Lower("segment.grooves"),
                 Restore("fasteners.hole_diameter_mm"),
             ],
-            (Role::Mount | Role::Stand, _) => {
+            (Role::Mount | Role::Stand | Role::DistalLink, _) => {
                 &[Raise("mount.rim_mm"), Raise("mount.plate_mm"), Restore("mount.hole_diameter_mm")]
             }
             (Role::Shell, _) => &[

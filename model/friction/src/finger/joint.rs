@@ -46,21 +46,44 @@ impl From<JointPathError> for Diagnostic {
     }
 }
 
-/// Returns the value if it is from `low` to `high`.
-fn within(
-    field: &'static str,
-    value: f64,
-    (low, high): (f64, f64),
-    help: &'static str,
-) -> Result<f64, JointPathError> {
-    if (low..=high).contains(&value) {
-        Ok(value)
-    } else {
-        Err(JointPathError { field, value, low, high, help })
+impl JointPathError {
+    /// Returns the value if it is from `low` to `high`.
+    ///
+    /// # Errors
+    /// [`JointPathError`] with `field` and `help` for any other value.
+    pub fn within(
+        field: &'static str,
+        value: f64,
+        (low, high): (f64, f64),
+        help: &'static str,
+    ) -> Result<f64, Self> {
+        if (low..=high).contains(&value) { Ok(value) } else { Err(Self { field, value, low, high, help }) }
     }
 }
 
-/// Relation between the flexion of a joint and the wrap on its switch:
+/// Wrap of the tendon on a switch at one flexion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrap {
+    /// Wrap angle, degrees.
+    pub wrap_deg: f64,
+    /// Angle of the middle of the wrap from the middle of the segment, degrees.
+    pub middle_deg: f64,
+}
+
+/// Wrap over flexion: assumed ([`JointPath`]), or computed from the geometry of a joint.
+pub trait FlexionWrap {
+    /// Returns the wrap at a flexion in degrees.
+    ///
+    /// # Errors
+    /// [`JointPathError`] if the flexion is out of bounds.
+    fn wrap(&self, joint_deg: f64) -> Result<Wrap, JointPathError>;
+
+    /// Returns the flexion in degrees at which the contact is that of the paper's experiment, if
+    /// any: the only measured point of a curve over the joint.
+    fn measured_joint_deg(&self) -> Option<f64>;
+}
+
+/// Assumed relation between the flexion of a joint and the wrap on its switch:
 /// `wrap = start + share flexion`.
 ///
 /// The default is a two-link finger with a straight tendon along both links: its direction turns by
@@ -101,13 +124,18 @@ impl JointPath {
         const SHARE: &str =
             "give the share of the flexion that turns the tendon on the switch, 1 for all of it";
         Ok(Self {
-            wrap_at_straight_deg: within(
+            wrap_at_straight_deg: JointPathError::within(
                 "wrap at the straight finger (deg)",
                 wrap_at_straight_deg,
                 (0.0, LARGEST_START_DEG),
                 START,
             )?,
-            wrap_per_flexion: within("wrap per flexion", wrap_per_flexion, (0.0, LARGEST_SHARE), SHARE)?,
+            wrap_per_flexion: JointPathError::within(
+                "wrap per flexion",
+                wrap_per_flexion,
+                (0.0, LARGEST_SHARE),
+                SHARE,
+            )?,
         })
     }
 
@@ -117,13 +145,17 @@ impl JointPath {
     /// [`JointPathError`] if the flexion is out of bounds.
     pub fn wrap_deg(&self, joint_deg: f64) -> Result<f64, JointPathError> {
         let help = "give flexions between a straight and a folded finger";
-        within("joint angle (deg)", joint_deg, (0.0, LARGEST_FLEXION_DEG), help)
+        JointPathError::within("joint angle (deg)", joint_deg, (0.0, LARGEST_FLEXION_DEG), help)
             .map(|joint_deg| self.wrap_at_straight_deg + self.wrap_per_flexion * joint_deg)
     }
+}
 
-    /// Returns the flexion in degrees at which the wrap is that of the paper's experiment, if any:
-    /// the only measured point of a curve over the joint.
-    pub fn measured_joint_deg(&self) -> Option<f64> {
+impl FlexionWrap for JointPath {
+    fn wrap(&self, joint_deg: f64) -> Result<Wrap, JointPathError> {
+        Ok(Wrap { wrap_deg: self.wrap_deg(joint_deg)?, middle_deg: 0.0 })
+    }
+
+    fn measured_joint_deg(&self) -> Option<f64> {
         let joint_deg = (published::WRAP_ANGLE_DEG - self.wrap_at_straight_deg) / self.wrap_per_flexion;
         (0.0..=LARGEST_FLEXION_DEG).contains(&joint_deg).then_some(joint_deg)
     }
@@ -143,6 +175,9 @@ pub struct JointPoint {
     pub joint_deg: f64,
     /// Wrap of the tendon on the switch, degrees.
     pub wrap_deg: f64,
+    /// Angle of the middle of the wrap from the middle of the segment, degrees.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub wrap_middle_deg: f64,
     /// Number of pins within the wrap.
     pub pins: usize,
     /// Support of the prediction at this wrap by measurements.
@@ -151,6 +186,12 @@ pub struct JointPoint {
     /// Gains and costs.
     #[serde(flatten)]
     pub gains: FingerPoint,
+}
+
+/// Whether the wrap is centred, as all assumed ones are.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde needs")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// Gains over the joint at one load.
@@ -191,7 +232,7 @@ pub struct JointCurve {
 /// [`JointPathError`] if a flexion is out of bounds.
 pub fn over_joint(
     contact: &Contact,
-    path: &JointPath,
+    path: &impl FlexionWrap,
     joints_deg: &[f64],
     load_n: f64,
     predict: impl Fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
@@ -205,9 +246,8 @@ pub fn over_joint(
     };
     let mut left_out: Vec<(f64, Diagnostic)> = Vec::new();
     for &joint_deg in joints_deg {
-        let wrap_deg = path.wrap_deg(joint_deg)?;
-        let wrap_rad = wrap_deg.to_radians();
-        match state(contact, wrap_rad, load_n, &predict) {
+        let Wrap { wrap_deg, middle_deg } = path.wrap(joint_deg)?;
+        match state(contact, [wrap_deg, middle_deg].map(f64::to_radians), load_n, &predict) {
             Ok(state) => {
                 let Some(gains) = state.tensions.gains(load_n) else { continue };
                 curve.status = curve.status.max(state.status);
@@ -215,7 +255,8 @@ pub fn over_joint(
                     curve.laws.push(law);
                 }
                 let State { pins, status, .. } = state;
-                curve.points.push(JointPoint { joint_deg, wrap_deg, pins, status, gains });
+                let wrap_middle_deg = middle_deg;
+                curve.points.push(JointPoint { joint_deg, wrap_deg, wrap_middle_deg, pins, status, gains });
             }
             Err(error) => left_out.push((joint_deg, error)),
         }
@@ -242,10 +283,10 @@ struct State {
     status: PredictionStatus,
 }
 
-/// Predicts the state of a contact with another wrap.
+/// Predicts the state of a contact with another wrap, about another middle.
 fn state(
     contact: &Contact,
-    wrap_rad: f64,
+    [wrap_rad, middle_rad]: [f64; 2],
     load_n: f64,
     predict: &impl Fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
 ) -> Result<State, Diagnostic> {
@@ -254,7 +295,7 @@ fn state(
         // A tendon that touches nothing has no friction: this needs no measurement.
         return Ok(State { tensions, pins: 0, law: None, status: PredictionStatus::Published });
     }
-    let contact = contact.at_wrap(wrap_rad)?;
+    let contact = contact.at_wrap_about(wrap_rad, middle_rad)?;
     let curve = predict(&contact, &[load_n])?;
     let tensions = Tensions::from_curve(&curve, 0).ok_or("the law gives no point at this load")?;
     Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
@@ -320,6 +361,29 @@ mod tests {
         let (a, b) = (curve.points[0].gains.force_difference, straight[0].force_difference);
         assert!((a.value - b.value).abs() < 1e-6 && (a.high - b.high).abs() < 1e-6, "{a:?} {b:?}");
         assert_ne!(curve.status, PredictionStatus::Extrapolated);
+    }
+
+    /// A wrap on one side of the segment has the pins of that side.
+    #[test]
+    fn pins_follow_the_middle_of_the_wrap() {
+        struct OneSided;
+        impl FlexionWrap for OneSided {
+            fn wrap(&self, joint_deg: f64) -> Result<Wrap, JointPathError> {
+                Ok(Wrap { wrap_deg: joint_deg, middle_deg: 32.0 - joint_deg / 2.0 })
+            }
+
+            fn measured_joint_deg(&self) -> Option<f64> {
+                None
+            }
+        }
+        let layout = &published::LAYOUTS[1];
+        let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
+        let pins = |path: &dyn Fn(&[f64]) -> JointCurve, deg: f64| path(&[deg]).points[0].pins;
+        let one = |deg: &[f64]| over_joint(&contact, &OneSided, deg, 40.0, best).unwrap();
+        let two = |deg: &[f64]| over_joint(&contact, &JointPath::default(), deg, 40.0, best).unwrap();
+        // Pins are at -17.9, 0 and 17.9 deg.
+        assert_eq!([10.0, 20.0, 33.0, 51.0].map(|deg| pins(&one, deg)), [0, 1, 2, 3]);
+        assert_eq!([10.0, 20.0, 33.0, 51.0].map(|deg| pins(&two, deg)), [1, 1, 1, 3]);
     }
 
     #[test]

@@ -16,5 +16,5 @@ mod joint;
 mod motor;
 
 pub use gains::{FingerPoint, Gain, MeasuredGain, extra_holding_of, finger, measured_gains};
-pub use joint::{JointCurve, JointPath, JointPathError, JointPoint, over_joint};
+pub use joint::{FlexionWrap, JointCurve, JointPath, JointPathError, JointPoint, Wrap, over_joint};
 pub use motor::MotorSizing;

@@ -4,6 +4,7 @@
 //! are the only place that decides whether a configuration is good. `cad/doc/dimensions.md` lists the rules for users.
 
 mod direction;
+mod joint;
 mod mould;
 mod mount;
 mod pins;
@@ -128,6 +129,7 @@ pub fn rules() -> impl Iterator<Item = &'static Rule> {
         support::RULES,
         mould::RULES,
         mount::RULES,
+        joint::RULES,
         rig::RULES,
         print::RULES,
         process::RULES,

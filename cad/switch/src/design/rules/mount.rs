@@ -22,7 +22,6 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
     Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
     Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: stop_out_of_the_way },
-    Rule { field: "mount.bore_offset_mm", severity: Severity::Error, assess: bores_clear_support },
     Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
 ];
 
@@ -97,9 +96,9 @@ fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
                 "holes of the mounting plate too close to each other or to the sheath stop (at least {HOLE_WALL_MM} mm needed)"
             ),
             &[
-                Raise("mount.bore_distance_mm"),
+                Raise("mount.proximal_mm"),
                 Raise("mount.pulley_distance_mm"),
-                Lower("mount.bore_offset_mm"),
+                Raise("shell.outer_radius_mm"),
                 Lower("mount.hole_diameter_mm"),
                 Lower("tendon.sheath_diameter_mm"),
                 NO_MOUNT,
@@ -146,28 +145,6 @@ fn stop_out_of_the_way(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// The support must not cover the bores of a finger link, which take pivots.
-fn bores_clear_support(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    let Some(mounting) = i.mounting().filter(|_| c.mount.kind == MountKind::FingerLink) else {
-        return Assessment::NotApplicable;
-    };
-    let clear = |hole: &Hole| i.distance_to_support_mm(hole.centre) >= hole.radius_mm + HOLE_WALL_MM;
-    require(mounting.holes.iter().all(clear), || {
-        (
-            format!("the left support covers a bore (at least {HOLE_WALL_MM} mm between them needed)"),
-            &[
-                Lower("mount.bore_offset_mm"),
-                Raise("mount.bore_distance_mm"),
-                Lower("mount.bore_distance_mm"),
-                Raise("mount.bore_offset_mm"),
-                Lower("mount.hole_diameter_mm"),
-                NO_MOUNT,
-            ],
-        )
-    })
-}
-
 fn pulley_over_plate(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     if c.mount.kind != MountKind::Rig {
@@ -188,7 +165,8 @@ fn heads_within_plate(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let fastening = i.fastening();
     let stop = mounting.sheath.map(|_| ("the screws of the sheath stop", stop_recess().depth_mm));
-    let axle = mounting.axle.map(|_| ("the bolt of the axle", axle_recess().depth_mm));
+    let axle = mounting.axle.map(|_| axle_recess()).or_else(|| i.joint().map(|joint| joint.head_recess()));
+    let axle = axle.map(|recess| ("the bolt of the axle", recess.depth_mm));
     let heads = fastening.thread.filter(|_| i.rests_on_a_table() && c.fasteners.count > 0);
     let heads = heads.map(|t| ("the screws", (t.head_mm[1] + HEAD_BELOW_MM).max(c.fasteners.head_recess_mm)));
     let deepest = [stop, axle, heads].into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1));

@@ -116,17 +116,23 @@ fn slot_floor(i: &Inspection<'_>) -> Assessment {
 }
 
 fn bridges(i: &Inspection<'_>) -> Assessment {
-    let pocket_mm = 2.0 * axle_recess().radial_mm;
+    let pocket = match i.configuration().mount.kind {
+        MountKind::Rig => Some(axle_recess()),
+        _ => i.joint().map(|joint| joint.head_recess()),
+    };
     i.widest_bridge_mm.map_or(Assessment::NotApplicable, |bridge| {
-        let is_pocket =
-            i.configuration().mount.kind == MountKind::Rig && (bridge - pocket_mm).abs() < SAME_BRIDGE_MM;
+        let is_pocket = pocket.is_some_and(|p| (bridge - 2.0 * p.radial_mm).abs() < SAME_BRIDGE_MM);
         check(
             bridge <= LONGEST_BRIDGE_MM,
             format!("bridges of up to {bridge:.2} mm, up to {LONGEST_BRIDGE_MM} mm print well"),
-            if is_pocket {
-                "ignore it: it is the skin over the pocket for the bolt in rig-plate, which the bolt breaks"
-            } else {
-                "lower pins.diameter_mm or mould.key_diameter_mm"
+            match i.configuration().mount.kind {
+                MountKind::Rig if is_pocket => {
+                    "ignore it: it is the skin over the pocket for the bolt in rig-plate, which the bolt breaks"
+                }
+                MountKind::Joint if is_pocket => {
+                    "ignore it: it is the skin over the pocket for the axle in link-proximal, which the axle breaks"
+                }
+                _ => "lower pins.diameter_mm or mould.key_diameter_mm",
             },
         )
     })

@@ -18,13 +18,18 @@ pub(super) fn places(design: &Design, kind: &str) -> Vec<(Point2, f64)> {
         angles.into_iter().map(|a| (polar(design.fastener_radius_mm(), a), radius_mm)).collect()
     };
     let mounting = design.mounting();
-    let axle = |radius_mm| mounting.iter().flat_map(|m| m.axles()).map(|h| (h.centre, radius_mm)).collect();
+    let axle = |radius_mm| -> Vec<(Point2, f64)> {
+        mounting.iter().flat_map(|m| m.axles()).map(|h| (h.centre, radius_mm)).collect()
+    };
     let f = &design.configuration().fasteners;
     match kind {
         "screw" => around(design.fastener_angles_rad(), shown_mm(design).unwrap_or(f.hole_diameter_mm / 2.0)),
         "dowel" => around(design.dowel_angles_rad(), f.dowel_diameter_mm / 2.0),
         "bearing" => axle(BEARING_RADIUS_MM),
-        "axle" => axle(AXLE_RADIUS_MM),
+        "axle" => {
+            let joint = design.joint().map(|joint| (Point2::origin(), joint.axle.diameter_mm / 2.0));
+            axle(AXLE_RADIUS_MM).into_iter().chain(joint).collect()
+        }
         "stop screw" => {
             let screws = mounting.iter().filter_map(|m| m.sheath).flat_map(|s| s.screws);
             screws.map(|h| (h.centre, STOP_SCREW_RADIUS_MM)).collect()

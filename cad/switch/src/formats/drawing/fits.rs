@@ -2,7 +2,8 @@
 //! and groove, with its tolerance. `cad/doc/drawing.md`, "Tolerances on drawings", has the reason of each tolerance.
 
 use crate::design::{
-    BEARING_SEAT_MM, Design, Hole, Recess, STOP_SCREW, axle_recess, clearance, clearance_grade, stop_recess,
+    BEARING_SEAT_MM, Design, Hole, Joint, Recess, STOP_SCREW, axle_recess, clearance, clearance_grade,
+    stop_recess,
 };
 use crate::parts::{Part, Role, keys, stand_holes};
 use crate::tolerances::{ChainDimension, link};
@@ -165,6 +166,7 @@ fn holes(design: &Design, part: &Part) -> Vec<RoundFit> {
             .and_then(|m| m.sheath)
             .map_or_else(Vec::new, |stop| stop.along_the_paper().screws.iter().map(screw).collect()),
         (Role::Stand, name) => stand_holes(design, name).iter().map(screw).collect(),
+        (Role::DistalLink, _) => design.joint().as_ref().map_or_else(Vec::new, distal_link),
         (Role::Mount, _) => mounting_plate(design, part),
         (Role::Mould, _) => key_holes(design),
         _ => Vec::new(),
@@ -243,19 +245,16 @@ fn fasteners(design: &Design, part: &Part) -> Vec<RoundFit> {
 
 fn mounting_plate(design: &Design, part: &Part) -> Vec<RoundFit> {
     let Some(mounting) = design.mounting() else { return Vec::new() };
-    let is_link = part.name == "finger-link";
-    let own = |hole: &Hole| {
-        if is_link {
-            at(hole.centre, hole.radius_mm, Fit::new(CLOSE, "for the joint's pin"))
-        } else {
-            screw(hole)
-        }
-    };
+    let joint = design.joint();
     let Some((low, high)) = part.solid.bounds() else { return Vec::new() };
     let is_ours = |hole: &Hole| hole.centre.x > low.x && hole.centre.x < high.x;
-    let mut all: Vec<RoundFit> = mounting.holes.iter().filter(|h| is_ours(h)).map(own).collect();
+    let mut all: Vec<RoundFit> = mounting.holes.iter().filter(|h| is_ours(h)).map(screw).collect();
     if part.name == "rig-splice" {
         return all;
+    }
+    if let Some(joint) = &joint {
+        all.push(axle_bore(joint));
+        all.push(recess(Point2::origin(), &joint.head_recess(), "for the axle's head"));
     }
     for axle in mounting.axles().filter(is_ours) {
         all.push(screw(&axle));
@@ -272,6 +271,18 @@ fn mounting_plate(design: &Design, part: &Part) -> Vec<RoundFit> {
     }
     all.extend(fasteners(design, part));
     all
+}
+
+/// The bore of a link for the axle of a joint.
+fn axle_bore(joint: &Joint) -> RoundFit {
+    at(Point2::origin(), joint.hub.bore_mm, Fit::new(CLOSE, format!("for axle {}", joint.axle.name)))
+}
+
+/// Holes of the distal link, whose plan is mirrored.
+fn distal_link(joint: &Joint) -> Vec<RoundFit> {
+    let mirrored = |hole: &Hole| Hole { centre: Point2::new(-hole.centre.x, hole.centre.y), ..*hole };
+    let ends = joint.distal.holes.iter().map(|hole| screw(&mirrored(hole)));
+    ends.chain([axle_bore(joint)]).collect()
 }
 
 /// Holes of a mould for its keys: the largest key goes into the smallest hole, in width and depth.

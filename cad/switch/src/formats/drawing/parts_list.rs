@@ -85,7 +85,9 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     let bearing = mount.and_then(|m| m.bearing).map(|b| format!("Bearing {b}"));
     let pulleys = mount.map_or(0, |m| m.pulleys);
     bearing.into_iter().for_each(|words| bought(pulleys, words, "bearing"));
-    mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(pulleys, words, "axle"));
+    mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(pulleys.max(1), words, "axle"));
+    let sleeve = mount.and_then(|m| m.crimp_sleeve.as_deref()).map(designation);
+    sleeve.into_iter().for_each(|words| bought(1, words, ""));
     if let Some(bolts) = RigBolts::new(design) {
         bought(4, format!("Bolt M6 \u{d7} {} with nut, feet", number(bolts.foot_mm)), "");
         if let Some((thread, mm)) = bolts.splice {

@@ -135,6 +135,10 @@ pub(super) fn assembly_section(
         stages.push(Stage::Fasteners);
         steps.push(step);
     }
+    if let Some(step) = joint_step(design, manifest) {
+        stages.push(Stage::Joint);
+        steps.push(step);
+    }
     // A separate pulley is not in the pictures.
     let mut pulley = pulley_step(design, manifest);
     if bill.mount.as_ref().is_some_and(|mount| mount.bearing.is_some())
@@ -156,6 +160,9 @@ pub(super) fn assembly_section(
         c.layout.wrap_angle_deg,
         bed_contact(design)
     ));
+    if let (Some(anchoring), Some(last)) = (anchoring(design, manifest), steps.last_mut()) {
+        last.push_str(&anchoring);
+    }
     if let (Some(pulley), Some(last)) = (pulley, steps.last_mut()) {
         last.insert_str(0, &format!("{pulley} "));
     }
@@ -224,13 +231,16 @@ fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
             "Put `base-flange` on the outer face of the left support. The same screws fasten it. It has {} mounting holes of {} mm.",
             m.holes, m.hole_diameter_mm
         ),
-        MountKind::FingerLink => format!(
-            "Put `finger-link` on the outer face of the left support. The same screws fasten it. Its two bores of {} mm are {} mm apart.",
-            m.hole_diameter_mm, c.mount.bore_distance_mm
+        MountKind::Joint => format!(
+            "Put the axle ({}) through `link-proximal` from outside, with its head in the pocket, and put the link on the outer face of \
+             the left support. The same screws fasten it. Its {} holes of {} mm fasten it to the base of the finger.",
+            m.axle.as_deref().unwrap_or_default(),
+            m.holes,
+            m.hole_diameter_mm
         ),
         MountKind::Rig => {
             let (bolts, heads) = if m.pulleys == 1 { ("bolt", "its head") } else { ("bolts", "their heads") };
-            let joint = if design.has_joint() {
+            let joint = if design.has_board_joint() {
                 "Bolt `rig-plate`, `rig-plate-2` and `rig-splice` together, with the splice behind the joint. "
             } else {
                 ""
@@ -248,6 +258,33 @@ fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
         );
     }
     Some(step)
+}
+
+/// The step of the distal link of a joint.
+fn joint_step(design: &Design, manifest: &Manifest) -> Option<String> {
+    let joint = design.joint()?;
+    let m = manifest.bill_of_materials.mount.as_ref()?;
+    let [low, high] = joint.flexion_deg;
+    Some(format!(
+        "Put a washer on the axle, and the hub of `link-distal` on it, through the hollow of the shell, with its lug between the stops. \
+         Put the second washer and the self-locking nut on the axle. Tighten the nut until the link has no play, and loosen it until \
+         the link falls by its own weight. It turns from {low} to {high} deg of flexion, at which its lug meets a stop. Its {} holes of \
+         {} mm fasten it to the load.",
+        m.holes, m.hole_diameter_mm
+    ))
+}
+
+/// How the tendon of a joint is guided and anchored.
+fn anchoring(design: &Design, manifest: &Manifest) -> Option<String> {
+    let joint = design.joint()?;
+    let sleeve = manifest.bill_of_materials.mount.as_ref()?.crimp_sleeve.as_deref()?;
+    let [low, high] = joint.flexion_deg.map(|deg| joint.contact(deg).wrap_rad().to_degrees());
+    Some(format!(
+        " That is the wrap in the picture, at a flexion of {} deg; it grows from {low:.1} to {high:.1} deg between the stops. Lead \
+         the tendon from the motor through the channel of `link-proximal`, over the switch, and through the channel of \
+         `link-distal`. Crimp a sleeve on its end ({sleeve}), which rests on the anchor.",
+        joint.assembled_deg
+    ))
 }
 
 /// The step of the guide pulley, on the rig or separate.

@@ -20,6 +20,20 @@ function at(xs, ys, x) {
   return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
 }
 
+// The points of a line with a close point at both ends of each long piece, which keeps a curve through them straight.
+const CLOSE_MM = 1;
+function dense(line) {
+  const points = [line[0]];
+  for (let i = 1; i < line.length; i += 1) {
+    const [[ax, ay], [bx, by]] = [line[i - 1], line[i]];
+    const length = Math.hypot(bx - ax, by - ay);
+    const between = (share) => [ax + (bx - ax) * share, ay + (by - ay) * share];
+    if (length > 3 * CLOSE_MM) points.push(between(CLOSE_MM / length), between(1 - CLOSE_MM / length));
+    points.push(line[i]);
+  }
+  return points;
+}
+
 // Pins are shown and hidden together.
 const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
 // Constants of three.js that are not in its build for this page.
@@ -275,19 +289,36 @@ class Assembly {
     this.draw();
   }
 
+  // Turns the distal link of a joint to a flexion in degrees.
+  bend(flexion) {
+    this.flexion = flexion;
+    this.pose(this.load_n, this.apart);
+  }
+
+  // The flexion of a joint if it differs from that of the assembly; undefined otherwise. There the tendon is drawn without load.
+  bent() {
+    const { joint } = this.data;
+    return joint && this.flexion !== undefined && Math.abs(this.flexion - joint.assembled_deg) > 0.01 ? clamp(this.flexion, joint.flexion_deg[0], joint.flexion_deg.at(-1)) : undefined;
+  }
+
   // Moves pins and tendon to their positions at a load, and explodes the bodies by `apart`.
   pose(load, apart) {
     const moved = this.apart !== apart;
     this.apart = apart;
     this.load_n = load;
+    const [bent, { joint }] = [this.bent(), this.data];
     for (const node of this.bodies) {
       const { body, home } = node.userData;
       const way = new THREE.Vector3(...body.explode_offset).multiplyScalar(apart);
-      if (body.sink) {
+      if (body.sink && bent === undefined) {
         const depth = at(this.data.contact.load_n, body.sink.depth_mm, load);
         way.add(new THREE.Vector3(body.sink.towards[0], body.sink.towards[1], 0).multiplyScalar(depth));
       }
-      node.matrix.makeTranslation(way.x, way.y, way.z).multiply(home);
+      node.matrix.makeTranslation(way.x, way.y, way.z);
+      if (bent !== undefined && joint.moving.includes(body.name)) node.matrix.multiply(new THREE.Matrix4().makeRotationZ((bent - joint.assembled_deg) * Math.PI / 180));
+      node.matrix.multiply(home);
+      // The body of the tendon has the flexion of the assembly.
+      if (body.name === 'tendon') node.visible = !this.tendonHidden && bent === undefined;
       node.matrixWorldNeedsUpdate = true;
     }
     this.lay(load, apart);
@@ -302,6 +333,13 @@ class Assembly {
   lay(load, apart) {
     const contact = this.data.contact;
     if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon = undefined; }
+    const bent = this.bent();
+    if (bent !== undefined && apart <= 0.02 && !this.tendonHidden) {
+      const { joint } = this.data;
+      const nearest = joint.flexion_deg.reduce((best, deg, i) => (Math.abs(deg - bent) < Math.abs(joint.flexion_deg[best] - bent) ? i : best), 0);
+      this.tube(dense(joint.paths[nearest]).map(([x, y]) => new THREE.Vector3(x, y, joint.z_mm)), joint.tendon_radius_mm);
+      return;
+    }
     if (!contact.angle_rad.length || apart > 0.02 || this.tendonHidden) return;
     const points = contact.angle_rad.map((angle, i) => {
       const radius = contact.axis_radius_mm + at(contact.load_n, contact.gap_mm.map((gaps) => gaps[i]), load);
@@ -313,7 +351,12 @@ class Assembly {
     // A close point keeps the long ends straight.
     points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
     points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
-    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 120, contact.tendon_radius_mm, 8);
+    this.tube(points, contact.tendon_radius_mm);
+  }
+
+  // Adds the tendon along a line of points.
+  tube(points, radius_mm) {
+    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 120, radius_mm, 8);
     const rope = this.kept('rope', () => new THREE.MeshStandardMaterial({ roughness: 0.6 }));
     rope.color.set(isDark() ? 0x8296ab : 0x3a4a5c);
     this.tendon = new THREE.Mesh(tube, rope);
@@ -342,12 +385,12 @@ class Assembly {
   }
 
   show(name, visible) {
-    if (name === 'tendon') { this.tendonHidden = !visible; this.lay(this.load_n, this.apart); }
     for (const node of this.bodies) {
       if (groupOf(node.userData.body.name) !== name) continue;
       node.visible = visible;
       node.userData.cover.visible = visible && this.isCut;
     }
+    if (name === 'tendon') { this.tendonHidden = !visible; this.pose(this.load_n, this.apart); }
     this.draw();
   }
 

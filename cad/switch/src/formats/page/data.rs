@@ -6,6 +6,7 @@ use pinswitch_friction::physics::contact_profiles;
 use pinswitch_friction::{Direction, FrictionCurve, PublishedPoint, Substrate, published_points};
 use serde::Serialize;
 
+use super::joint::JointStates;
 use crate::built::{Built, MeshedBody};
 use crate::design::Design;
 use crate::design::rules::{Check, checklist};
@@ -31,6 +32,9 @@ pub struct PageData {
     meshes: Vec<MeshData>,
     bodies: Vec<Body>,
     contact: ContactStates,
+    /// The joint at several flexions, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint: Option<JointStates>,
     curve: FrictionCurve,
     other_laws: Vec<FrictionCurve>,
     published: Vec<PublishedPoint>,
@@ -127,6 +131,7 @@ impl PageData {
             meshes,
             bodies,
             contact,
+            joint: JointStates::new(design),
             curve: prediction.curve.clone(),
             other_laws: prediction.others.clone(),
             published: published_points(design.contact())

@@ -2,6 +2,7 @@
 //! downloads.
 
 mod data;
+mod joint;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

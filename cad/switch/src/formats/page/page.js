@@ -119,7 +119,8 @@ function fillTables(data) {
   if (bill.dowels) rows.push(['dowels', bill.dowels.number, `${bill.dowels.diameter_mm} x ${bill.dowels.length_mm} mm`]);
   if (bill.pulley_bearing) rows.push([`bearing ${bill.pulley_bearing}`, 1, 'for the guide pulley']);
   if (bill.mount?.bearing) rows.push([`bearing ${bill.mount.bearing}`, 1, 'for the guide pulley']);
-  if (bill.mount?.axle) rows.push([bill.mount.axle, 1, 'for the guide pulley']);
+  if (bill.mount?.axle) rows.push([bill.mount.axle, 1, bill.mount.bearing ? 'for the guide pulley' : 'for the joint']);
+  if (bill.mount?.crimp_sleeve) rows.push([bill.mount.crimp_sleeve, 1, 'for the anchor of the tendon']);
   if (bill.mount?.sheath_stop) {
     const [, number, words] = bill.mount.sheath_stop.match(/^(\d+) (.*)$/);
     rows.push([words, Number(number), 'for the sheath stop']);

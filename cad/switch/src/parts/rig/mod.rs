@@ -29,7 +29,7 @@ pub(super) fn is_rig(c: &Configuration) -> bool {
 
 /// Returns whether the board of the rig has two parts.
 pub(super) fn has_joint(c: &Configuration) -> bool {
-    is_rig(c) && Dimensions::new(c.clone()).has_joint()
+    is_rig(c) && Dimensions::new(c.clone()).has_board_joint()
 }
 
 /// Returns whether the rig has a guide pulley on the side of the drive.

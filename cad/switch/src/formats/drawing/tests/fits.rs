@@ -22,7 +22,7 @@ fn sets() -> Vec<String> {
     let mounts = [
         "",
         "kind = \"flange\"\n[tendon]\nsheath_diameter_mm = 4.0\n",
-        "kind = \"finger-link\"\nhole_diameter_mm = 6.0\n",
+        "kind = \"joint\"\nhole_diameter_mm = 6.6\n",
         "kind = \"rig\"\nhole_diameter_mm = 6.6\n[tendon]\nsheath_diameter_mm = 4.0\n",
         "kind = \"rig\"\n",
         "kind = \"rig\"\n[rig]\ncell = \"bar\"\n[print]\nbed_mm = 165.0\n",
@@ -112,7 +112,8 @@ fn fits_match_the_mating_parts() {
         (rig, "pulley-spacer", "\u{d8}8.4 H12 through, for M8"),
         (rig, "sheath-stop", "\u{d8}3.4 H13 through, for M3"),
         ("[parts]\nguide_pulley = true\n", "guide-pulley", "+0.1/0, 7 deep, near face, for bearing 608"),
-        ("[mount]\nkind = \"finger-link\"\n", "finger-link", "\u{d8}4.5 +0.1/0 through, for the joint's pin"),
+        ("[mount]\nkind = \"joint\"\n", "link-distal", "\u{d8}5.1 +0.1/0 through, for axle M5"),
+        ("[mount]\nkind = \"joint\"\n", "link-proximal", "hexagon AF 8.2 +0.2/0"),
         ("[fasteners]\ndowel_diameter_mm = 2.0\n", "shell", "\u{d8}2.1 +0.1/0 through, for dowel 2"),
         ("[fasteners]\ndowel_diameter_mm = 2.0\n", "support-left", "\u{d8}2.1 +0.1/0, 1.5 deep"),
         ("", "support-right", "hexagon AF 5.7 +0.2/0, 1.5 deep, far face\nfor nut M3"),

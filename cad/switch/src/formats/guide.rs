@@ -162,13 +162,7 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     };
     let pour = match c.mould.kind {
         MouldKind::Split => "Pour slowly through the funnel until silicone rises in both vents.",
-        _ if c.mould.overfill_mm > 0.0 && s.layers > 1 => {
-            "Pour slowly at one end of each cavity until the basins above the layers are full."
-        }
         _ if c.mould.overfill_mm > 0.0 => "Pour slowly at one end until the basin above the layer is full.",
-        _ if s.layers > 1 => {
-            "Pour slowly at one end of each cavity until all are full, and level the silicone with the brim."
-        }
         _ => "Pour slowly at one end until the tray is full, and level the silicone with the brim.",
     };
     let release = match c.mould.kind {
@@ -204,7 +198,7 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
         s.pour_ml,
         s.pour_g,
         c.mould.shrinkage_pct,
-        if s.layers > 1 { format!("The {} layers are", s.layers) } else { "The layer is".to_owned() },
+        "The layer is",
         design.layer_width_mm(),
         c.silicone.thickness_mm
     );

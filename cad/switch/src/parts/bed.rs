@@ -52,9 +52,7 @@ fn smaller(part: &Part) -> &'static [Direction] {
     match (part.role, part.name.as_str()) {
         (_, "coupon") => &[BED, Set("parts.coupon", "false")],
         (_, "guide-pulley") => &[BED, Set("parts.guide_pulley", "false"), Set("mount.kind", "\"none\"")],
-        (Role::Mould, "mould-tray") => {
-            &[BED, Lower("mould.layers"), Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")]
-        }
+        (Role::Mould, "mould-tray") => &[BED, Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")],
         (Role::Mount, _) => &[
             BED,
             Lower("mount.bore_distance_mm"),

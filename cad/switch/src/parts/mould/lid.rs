@@ -104,7 +104,7 @@ fn hole_chamfer_mm(design: &Design, plate: &Contour, spout: &Contour, holes: &[C
 }
 
 /// Least distance of eight points on each edge of `slot` from the curve of `other`, mm.
-pub(super) fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
+fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
     let points = slot.flattened(&vec![8; slot.edges().len()]);
     points.iter().map(|p| other.distance_mm(*p)).fold(f64::INFINITY, f64::min)
 }

@@ -12,11 +12,10 @@ use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 
 pub(super) use lid::lid;
-pub use one_piece::gang_mm;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, core_has_lost_label, ring};
 
-/// Returns the volume in mm³ of the cavity for all layers, and of the space above it: the basin of the one-piece mould, or
+/// Returns the volume in mm³ of the cavity, and of the space above it: the basin of the one-piece mould, or
 /// funnel and vents of the split mould.
 pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     let cavity = Cavity::of(design);
@@ -26,12 +25,7 @@ pub fn cavity_mm3(design: &Design) -> (f64, f64) {
         MouldKind::OnePiece => one_piece::basin_mm3(design),
         MouldKind::Split => lid::openings_mm3(design),
     };
-    let layers = if design.configuration().mould.kind == MouldKind::OnePiece {
-        design.configuration().mould.layers as f64
-    } else {
-        1.0
-    };
-    (layers * layer, layers * above)
+    (layer, above)
 }
 
 /// The cavity without its ribs: the layer, enlarged by the shrinkage of silicone.

@@ -83,6 +83,27 @@ pub struct Projection {
 }
 
 impl Projection {
+    /// Creates the projection in which the bodies and the points `also` fill a frame.
+    pub fn new(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Self {
+        let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
+        let tilt = Rotation3::from_axis_angle(
+            &Unit::new_unchecked(Vector3::x()),
+            (view.rise_deg - 90.0).to_radians(),
+        );
+        let camera = tilt * turn;
+        let points = bodies.iter().flat_map(|b| &b.mesh.positions).chain(also).map(|p| camera * p);
+        let (low, high) = points
+            .map(|p| (p, p))
+            .reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
+            .unwrap_or((Point3::origin(), Point3::new(1.0, 1.0, 1.0)));
+        let free = f64::from(frame.width.saturating_sub(frame.left + frame.right)) * SAMPLES as f64;
+        let rows = f64::from(frame.height) * SAMPLES as f64;
+        let (size, room) = (high - low, 1.0 - 2.0 * MARGIN);
+        let scale = (free * room / size.x).min(rows * room / size.y);
+        let centre = [f64::from(frame.left) * SAMPLES as f64 + free / 2.0, rows / 2.0];
+        Self { camera, middle: nalgebra::center(&low, &high), scale, centre }
+    }
+
     /// Returns the column and row of a point, in pixels from the upper left corner.
     pub fn pixel(&self, point: Point3) -> [f64; 2] {
         let placed = self.place(self.camera * point);
@@ -191,7 +212,7 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
 pub fn render_in(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Rendering {
     let Frame { width, height, .. } = frame;
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
-    let projection = projection(bodies, also, view, frame);
+    let projection = Projection::new(bodies, also, view, frame);
     let faces = visible_faces(bodies, &projection);
     let mut pixels = Vec::with_capacity(width as usize * height as usize * 3);
     let mut owners = Vec::with_capacity(width as usize * height as usize);
@@ -207,25 +228,6 @@ pub fn render_in(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> 
         band.shade(last - first, &faces, &mut pixels, &mut owners);
     }
     Rendering { picture: Picture { width, height, pixels }, projection, bodies: owners }
-}
-
-/// The projection in which the bodies and the points `also` fill a frame.
-fn projection(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Projection {
-    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
-    let tilt =
-        Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::x()), (view.rise_deg - 90.0).to_radians());
-    let camera = tilt * turn;
-    let points = bodies.iter().flat_map(|b| &b.mesh.positions).chain(also).map(|p| camera * p);
-    let (low, high) = points
-        .map(|p| (p, p))
-        .reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
-        .unwrap_or((Point3::origin(), Point3::new(1.0, 1.0, 1.0)));
-    let free = f64::from(frame.width.saturating_sub(frame.left + frame.right)) * SAMPLES as f64;
-    let rows = f64::from(frame.height) * SAMPLES as f64;
-    let (size, room) = (high - low, 1.0 - 2.0 * MARGIN);
-    let scale = (free * room / size.x).min(rows * room / size.y);
-    let centre = [f64::from(frame.left) * SAMPLES as f64 + free / 2.0, rows / 2.0];
-    Projection { camera, middle: nalgebra::center(&low, &high), scale, centre }
 }
 
 /// A triangle that faces the camera, in sample coordinates, with its depth as a plane.

@@ -1,19 +1,42 @@
-//! Scenes to render: the assembly, its exploded view, its steps, and the print plates.
+//! Scenes to render: the assembly, its exploded view, the pictures of steps, and the print plates.
 
-mod stage;
+mod bench;
+mod illustration;
+mod overlay;
 
 use crate::built::{Built, BuiltPart};
+use crate::config::MountKind;
+use crate::design::Design;
 use crate::output::SetError;
 use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
-use pinswitch_solid::render::{Body, render};
+use pinswitch_solid::render::{Body, View, render};
 
-use stage::grooves_up;
-pub use stage::{Stage, stage_scene, stage_view};
+pub use bench::{Bench, Bodies, Item};
+pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
+pub use illustration::{Illustration, Motion, Move, ToolArrow, Upright};
+
+/// View of the switch with its grooves up, at which the outer face of the left support is visible.
+pub const FROM_LEFT: View = View { turn_deg: 38.0, rise_deg: 32.0 };
+
+/// The same from the side of the right support.
+pub const FROM_RIGHT: View = View { turn_deg: -FROM_LEFT.turn_deg, ..FROM_LEFT };
+
+/// Returns the view of the complete switch: from the side of the left support, unless a large plate would hide it.
+pub fn switch_view(design: &Design) -> View {
+    let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange);
+    if is_hidden { FROM_RIGHT } else { FROM_LEFT }
+}
+
+/// Rotates a mesh of the assembly so that the pulley's axis is horizontal, from left to right, and the grooves are up.
+fn grooves_up(mesh: Mesh) -> Mesh {
+    let turned = mesh.positions.iter().map(|p| Point3::new(p.z, p.x, p.y)).collect();
+    Mesh::new(turned, mesh.triangles)
+}
 
 /// Returns the bodies of the assembly, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
-/// up, so that engraved text is upright in the views of [`stage_view`].
+/// up, so that engraved text is upright in the view of [`switch_view`].
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
     built
         .assembly()
@@ -74,8 +97,7 @@ pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
     if let Some(png) = built.exploded_png().get() {
         return Ok(png);
     }
-    // The tendon is the last step, and its view shows all bodies.
-    let view = stage_view(built.design(), Stage::Tendon);
+    let view = switch_view(built.design());
     let (width, height) = EXPLODED_PIXELS;
     let png = render(&assembled(built, 1.0), view, width, height).png().map_err(SetError::encoding)?;
     Ok(built.exploded_png().get_or_init(|| png))

@@ -57,6 +57,7 @@ formats! {
     drawing,
     dxf,
     guide,
+    manual,
     page,
 }
 

@@ -3,12 +3,13 @@
 
 use std::path::Path;
 
+use super::sections::Section;
 use super::{Part, Role, printed, reference_bodies, silicone_layer, touches};
 use crate::config::{Configuration, MountKind, assign, read};
 use crate::design::Design;
-use pinswitch_solid::profile::{ChordTolerance, Contour, Point2, polar};
+use pinswitch_solid::profile::{Contour, Point2, polar};
 
-/// Chord tolerance of the polygons that decide whether a point is inside of a section, mm.
+/// Chord tolerance of the polygons of sections, mm.
 const FINE_MM: f64 = 5e-3;
 /// Largest overlap of bodies that touch, mm: the error of the polygons.
 const TOUCHING_MM: f64 = 0.02;
@@ -36,43 +37,8 @@ fn corpus() -> Vec<(String, Design)> {
     all
 }
 
-/// A section of a body in the assembly.
-struct Section {
-    exact: Vec<Contour>,
-    polygons: Vec<Vec<Point2>>,
-}
-
-impl Section {
-    fn contains(&self, p: Point2) -> bool {
-        let crossings = self.polygons.iter().flat_map(|polygon| {
-            let next = polygon.iter().cycle().skip(1);
-            polygon.iter().zip(next).filter(|(a, b)| {
-                (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x
-            })
-        });
-        crossings.count() % 2 == 1
-    }
-
-    fn distance_mm(&self, p: Point2) -> f64 {
-        self.exact.iter().map(|c| c.distance_mm(p)).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Depth of the outline of `other` inside of this section, mm, and its deepest point.
-    fn depth_mm(&self, other: &Self) -> (f64, Point2) {
-        let points = other.polygons.iter().flatten();
-        let inside = points.filter(|p| self.contains(**p)).map(|p| (self.distance_mm(*p), *p));
-        inside.fold((0.0, Point2::origin()), |best, next| if next.0 > best.0 { next } else { best })
-    }
-}
-
 fn section(part: &Part, z_mm: f64) -> Section {
-    let pose = part.pose.or(part.tool_pose).unwrap();
-    let own = if pose.flipped { pose.z_mm - z_mm } else { z_mm - pose.z_mm };
-    let turn = |c: Contour| if pose.flipped { c.mirrored() } else { c };
-    let exact: Vec<Contour> = part.solid.section(own).into_iter().map(turn).collect();
-    let fine = ChordTolerance::new(FINE_MM).unwrap();
-    let polygons = exact.iter().map(|c| c.flattened(&c.chords(fine))).collect();
-    Section { exact, polygons }
+    Section::new(&part.solid, part.pose.or(part.tool_pose).unwrap(), z_mm, FINE_MM)
 }
 
 /// Heights of the rings of a part in the assembly.

@@ -30,12 +30,13 @@ pub use bed::fit_on_bed;
 pub(crate) use bed::{can_be_printed, room_on_bed};
 pub use layer::silicone_layer;
 pub use mould::cavity_mm3;
-pub(crate) use mould::keys;
+pub(crate) use mould::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT, cast, keys};
 pub(crate) use mount::SPACER;
 pub use mount::spacer_mm;
 pub use omission::LeftOut;
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
+pub(crate) use stroke_font::{HEIGHT as LETTER_HEIGHT, WIDTH as LETTER_WIDTH, strokes as letter_strokes};
 pub use tendon::{Touch, touches};
 
 /// A printed part: which configurations have it, and how it is built.
@@ -167,5 +168,7 @@ pub(crate) fn left_out_features(design: &Design) -> Vec<(&'static str, LeftOut)>
 
 #[cfg(test)]
 mod assembly_tests;
+#[cfg(test)]
+pub(crate) mod sections;
 #[cfg(test)]
 mod tests;

@@ -52,6 +52,14 @@ fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
     Ok(Openings { keys, vents, spout, mouth })
 }
 
+/// Returns the counter-clockwise outlines of the silicone in the lid: at the lower and the upper end of the funnel, and in the
+/// vents. `None` if they cannot be built, which [`lid`] reports.
+pub(super) fn silicone_outlines(design: &Design) -> Option<(Contour, Contour, Vec<Contour>)> {
+    let plate = plate_sector(design, &Cavity::of(design)).outline();
+    let o = openings(design, &plate).ok()?;
+    Some((o.spout.reversed(), o.mouth.reversed(), o.vents.iter().map(Contour::reversed).collect()))
+}
+
 /// Volume of funnel and vents, mm³; 0 if they cannot be built, which [`lid`] reports.
 pub(super) fn openings_mm3(design: &Design) -> f64 {
     let plate = plate_sector(design, &Cavity::of(design)).outline();

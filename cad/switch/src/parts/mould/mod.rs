@@ -1,5 +1,6 @@
 //! The casting mould, with its axis vertical and open at the top (cad/doc/dimensions.md, "Mould").
 
+mod cast;
 pub(crate) mod keys;
 mod lid;
 mod one_piece;
@@ -11,6 +12,7 @@ use crate::config::MouldKind;
 use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 
+pub(crate) use cast::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT, cast};
 pub(super) use lid::lid;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, core_has_lost_label, ring};

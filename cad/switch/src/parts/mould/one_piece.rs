@@ -27,6 +27,12 @@ fn tray_cavity(design: &Design) -> TrayCavity {
     }
 }
 
+/// Returns the outlines of the basin at its ledge and at its brim, counter-clockwise.
+pub(super) fn basin(design: &Design) -> [Contour; 2] {
+    let TrayCavity { ledge, brim, .. } = tray_cavity(design);
+    [ledge, brim]
+}
+
 /// Volume of the basin, mm³.
 pub(super) fn basin_mm3(design: &Design) -> f64 {
     let TrayCavity { ledge, brim, .. } = tray_cavity(design);

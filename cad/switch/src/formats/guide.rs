@@ -124,7 +124,7 @@ fn bed_contact(design: &Design) -> String {
     let length: f64 =
         touches(design).iter().filter(|t| t.pin.is_none()).map(|t| (t.to_rad - t.from_rad) * radius).sum();
     format!(
-        " A limp tendon also touches the {bed} at {}, {length:.1} mm in total. Its bending stiffness lifts it at light loads; higher \
+        " A limp tendon also touches the {bed} at {} from the middle of the wrap, {length:.1} mm in total. Its bending stiffness lifts it at light loads; higher \
          loads increase the contact.",
         places.join(" and ")
     )

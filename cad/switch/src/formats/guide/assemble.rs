@@ -220,7 +220,7 @@ impl Assembly<'_> {
             moves.insert(0, placed(base, "left support L"));
         }
         let picture = Illustration { view: FROM_BELOW, ..self.picture(moves) };
-        let skin = self.skin_words();
+        let skin = self.skin_words(self.has_left_recess());
         steps.push(
             Step::new("Put the screws in first")
                 .text(format!(
@@ -303,14 +303,20 @@ impl Assembly<'_> {
 
     fn left_support_step(&self, title: &str, by: pinswitch_solid::mesh::Vector3) -> Step {
         let lip = if self.joint() == Joint::Studs { String::new() } else { self.lip_words() };
+        let face = if lip.is_empty() { self.inner_face_words() } else { "" };
         let target = if self.joint() == Joint::Studs { "over the screws" } else { "on the shell" };
         let moves = vec![moving(self.names(&["support-left"]), "left support L", Motion::Into, by)];
         Step::new(title)
-            .text(format!("Put the left support (L) {target}{lip}{}.", self.inner_face_words()))
+            .text(format!("Put the left support (L) {target}{lip}{face}."))
             .risk_if(
                 self.design().configuration().label.engrave,
                 "Left and right support are exchanged.",
                 "The engraved letter is R, or the engraved face is toward the shell.",
+            )
+            .risk_if(
+                !self.design().configuration().label.engrave,
+                "The support is not flat.",
+                "Light is visible under it; look for a string or a burr.",
             )
             .picture(self.picture(moves))
     }
@@ -412,8 +418,11 @@ impl Assembly<'_> {
         if number == 0 {
             return None;
         }
-        let from =
-            if self.is_marked() { "counted from the `1`" } else { "counted from the side of the load" };
+        let from = match (self.is_marked(), self.joint()) {
+            (true, Joint::Studs) => "counted from the marked side",
+            (true, _) => "counted from the `1`",
+            (false, _) => "counted from the side of the load",
+        };
         let pins = self.names(&["pin"]);
         let far = self.length_mm(&pins) + SMALL_APART_MM;
         let words = if number == 1 { "pin" } else { "pins" };
@@ -445,7 +454,13 @@ impl Assembly<'_> {
         let target = if self.joint() == Joint::Studs { "over the screws" } else { "on the shell" };
         let engages =
             if self.bill.pins.number > 0 { ", and guide every pin into its slot with tweezers" } else { "" };
-        let glue = if self.joint() == Joint::Glue { " Glue it like the left one." } else { "" };
+        let glue = if self.joint() == Joint::Glue {
+            " Glue it like the left one, and let the glue set before the first load."
+        } else {
+            ""
+        };
+        let has_trap = self.joint() == Joint::Studs && self.design().fastening().nut_trap.is_some();
+        let skin = self.skin_words(has_trap);
         let moves = vec![moving(
             self.names(&["support-right"]),
             "right support R",
@@ -454,9 +469,14 @@ impl Assembly<'_> {
         )];
         Step::new(title)
             .text(format!(
-                "Put the right support (R) {target}{}{engages}.{slides}{glue}",
+                "Put the right support (R) {target}{}{engages}.{slides}{glue}{skin}",
                 self.inner_face_words()
             ))
+            .risk_if(
+                self.bill.pins.number == 0,
+                "The support is not flat on the shell.",
+                "Light is visible between them; look for a string or a burr.",
+            )
             .risk_if(
                 self.bill.pins.number > 0,
                 "A pin is next to its slot.",
@@ -483,11 +503,19 @@ impl Assembly<'_> {
         }
     }
 
-    /// The skin above recesses; empty without one.
-    fn skin_words(&self) -> String {
+    /// Whether the part through which the screws from the left pass first has recesses for their heads.
+    fn has_left_recess(&self) -> bool {
         let fastening = self.design().fastening();
-        let recesses = [fastening.nut_trap, fastening.counterbore, fastening.mount_counterbore];
-        if recesses.iter().all(Option::is_none) {
+        if self.plate().is_empty() {
+            fastening.counterbore.is_some()
+        } else {
+            fastening.mount_counterbore.is_some()
+        }
+    }
+
+    /// The skin above the recesses of a part; empty without recesses.
+    fn skin_words(&self, has_recess: bool) -> String {
+        if !has_recess {
             return String::new();
         }
         format!(
@@ -522,6 +550,16 @@ impl Assembly<'_> {
                 self.tight_words()
             ))
             .risk_if(
+                fastening.nut_trap.is_some(),
+                "A nut is not in its trap.",
+                "It turns with the screw; press it into the trap.",
+            )
+            .risk_if(
+                fastening.nut_trap.is_none(),
+                "A nut is loose.",
+                "The supports move against the shell; hold the nut with the spanner and turn the screw.",
+            )
+            .risk_if(
                 self.bill.pins.number > 0 && self.is_silicone(),
                 "The screws are too tight.",
                 "A pin does not return after it is pressed in; loosen the nuts by a quarter turn.",
@@ -535,10 +573,15 @@ impl Assembly<'_> {
         let (thread, length) = self.bill.fasteners.as_ref().map_or(("", 0.0), |f| {
             (f.thread, if from_right { f.right_length_mm.unwrap_or(f.length_mm) } else { f.length_mm })
         });
+        let has_recess =
+            if from_right { self.design().fastening().counterbore.is_some() } else { self.has_left_recess() };
         let words = format!("{} {thread} x {length}", pluralise(screws.len(), "screw"));
         let moves = vec![each(screws, words.clone(), Motion::Into, along(sign * far))];
         Step::new(format!("Fasten the {side} side"))
-            .text(format!("Fasten with {words} from the {side} into the inserts.{}", self.skin_words()))
+            .text(format!(
+                "Fasten with {words} from the {side} into the inserts.{}",
+                self.skin_words(has_recess)
+            ))
             .risk(
                 "A screw turns without end.",
                 "The insert turns with it; press it in again with the soldering iron.",
@@ -647,6 +690,16 @@ impl Assembly<'_> {
         for words in self.plate_hardware_words() {
             step = step.text(words);
         }
+        let step = step.risk_if(
+            self.has_left_recess(),
+            "The plate is upside down.",
+            "The heads protrude from it, because their recesses are on the other side.",
+        );
+        let step = step.risk_if(
+            !self.has_left_recess(),
+            "The plate is turned around.",
+            "Its holes are not in line with those of the support.",
+        );
         let step = step.picture(Illustration { view, ..self.picture(moves) });
         [Some(step), self.sheath_stop_step()].into_iter().flatten().collect()
     }
@@ -719,7 +772,7 @@ impl Assembly<'_> {
             vec![moving(self.names(&["tendon"]), "tendon", Motion::Flexible, outward(TENDON_APART_MM))];
         Step::new("Put the tendon over the switch")
             .text(format!(
-                "Put {} mm of tendon ({} mm with its coating) over the {}. It touches {:.2} deg.{}",
+                "Put {} mm of tendon ({} mm with its coating) over the {}. It is wrapped by {:.2} deg.{}",
                 t.length_mm,
                 t.outer_diameter_mm,
                 carried_by(self.design()),

@@ -256,7 +256,7 @@ fn tray(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<Step> {
             .text(layer_size(design))
             .risk(
                 "The layer sticks and is stretched too far.",
-                "It turns white or tears; put a drop of soapy water between silicone and wall.",
+                "It becomes longer than the tray; put a drop of soapy water between silicone and wall.",
             )
             .picture(released),
     );

@@ -42,7 +42,11 @@ pub(super) fn check(design: &Design, manifest: &Manifest) -> Vec<Block> {
             "thickness of the layer between two grooves",
             "calipers, without pressure",
             format!("{} mm", c.silicone.thickness_mm),
-            "this thickness changes the load at which the switch switches: cast again, or set `silicone.thickness_mm` to the measured value for its curve",
+            if bill.pins.number > 0 {
+                "this thickness changes the load at which the switch switches: cast again, or set `silicone.thickness_mm` to the measured value for its curve"
+            } else {
+                "cast again, or set `silicone.thickness_mm` to the measured value for its curve"
+            },
         );
         add(
             "width of the layer",

@@ -28,7 +28,7 @@ const TOUCHING_MM: f64 = 0.05;
 const PATH_MM: [f64; 9] = [0.1, 0.5, 1.2, 2.5, 4.5, 8.0, 13.0, 20.0, 32.0];
 
 /// Configurations of every kind.
-const KINDS: [&str; 14] = [
+const KINDS: [&str; 15] = [
     "[layout]\npins = [5, 8, 11]\n",
     "",
     "[layout]\npins = [5, 8, 11]\nsubstrate = \"abs\"\n",
@@ -41,6 +41,7 @@ const KINDS: [&str; 14] = [
     "[layout]\npins = [5]\n[fasteners]\ncount = 0\ndowel_diameter_mm = 2.0\n",
     "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"flange\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
     "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n",
+    "[layout]\npins = [5, 8, 11]\n[label]\nengrave = false\n[mount]\nkind = \"finger-link\"\n",
     "[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\nhead_recess_mm = 1.5\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
     "[layout]\npins = [5, 8, 11]\n[fasteners]\nhead_recess_mm = 1.5\ndowel_diameter_mm = 2.0\n[parts]\nguide_pulley = true\n",
 ];
@@ -118,6 +119,25 @@ fn every_body_is_placed_once() {
             let has_no_use =
                 part.name == COUPON && guide.built.design().configuration().layout.pins.is_empty();
             assert!(is_spare || has_no_use || names.contains(&part.name), "{text}: {}", part.name);
+        }
+    }
+}
+
+/// Every step has its text, and an error with its sign.
+#[test]
+fn every_step_names_a_risk() {
+    for Guide { text, document, .. } in guides() {
+        assert!(document.steps().count() > 8, "{text}");
+        for step in document.steps() {
+            assert!(
+                !step.text.is_empty() && !step.risks.is_empty(),
+                "{text}: {} {}",
+                step.label(),
+                step.title
+            );
+            let is_sentence = |words: &String| words.ends_with('.');
+            let all = step.text.iter().chain(step.risks.iter().flat_map(|r| [&r.problem, &r.sign]));
+            assert!(all.into_iter().all(is_sentence), "{text}: {} {}", step.label(), step.title);
         }
     }
 }

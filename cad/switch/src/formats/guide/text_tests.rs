@@ -49,7 +49,7 @@ fn an_existing_layer_is_described() {
 fn the_tendon_is_over_pins_within_the_wrap() {
     let text = guide("[layout]\npins = [1, 2, 15]\n");
     assert!(text.contains("**warning**: 3 pins are outside the wrap of 63.89 deg"), "{text}");
-    assert!(text.contains("over the silicone layer. It touches"), "{text}");
+    assert!(text.contains("over the silicone layer. It is wrapped"), "{text}");
     assert!(!text.contains("over the pins") && !text.contains("touches only its pins"), "{text}");
     assert!(text.contains("raise layout.wrap_angle_deg to 83.5"), "{text}");
     let one = guide("[layout]\npins = [8, 15]\n");
@@ -82,7 +82,7 @@ fn slender_parts_need_a_brim() {
 fn steps_mention_parts_of_the_set() {
     let bare = guide("[layout]\npins = []\n");
     assert!(
-        bare.contains("over the silicone layer. It touches")
+        bare.contains("over the silicone layer. It is wrapped")
             && bare.contains("touches the silicone over the full wrap")
     );
     assert!(!bare.contains("over the pins") && !bare.contains("A limp tendon"), "{bare}");
@@ -90,7 +90,7 @@ fn steps_mention_parts_of_the_set() {
     assert!(rigid.contains("over the edge of the proxy") && !rigid.contains("edge of the layer"), "{rigid}");
     let both = guide("[layout]\npins = [5, 8, 11]\n");
     assert!(
-        both.contains("over the edge of the layer") && both.contains("over the pins. It touches"),
+        both.contains("over the edge of the layer") && both.contains("over the pins. It is wrapped"),
         "{both}"
     );
 }

@@ -10,7 +10,7 @@ import { inflateRawSync } from 'node:zlib';
 // Twelve configurations with different parts, as addresses.
 export const CONFIGURATIONS = [
   'layout.pins=5,8,11&switch.name=three', 'layout.pins=3,5,7,9,11,13&switch.name=six', 'layout.pins=&switch.name=bare', 'layout.pins=8&switch.name=one',
-  'layout.pins=4,8,12&layout.substrate=abs&switch.name=rigid', 'layout.pins=5,8,11&fasteners.kind=insert&switch.name=inserts', 'layout.pins=5,8,11&mould.kind=one-piece&mould.layers=2&switch.name=gang',
+  'layout.pins=4,8,12&layout.substrate=abs&switch.name=rigid', 'layout.pins=5,8,11&fasteners.kind=insert&switch.name=inserts', 'layout.pins=5,8,11&mould.kind=one-piece&switch.name=tray',
   'layout.pins=5,8,11&mount.kind=flange&switch.name=flange', 'layout.pins=5,8,11&mount.kind=joint&switch.name=joint', 'layout.pins=2,3,14&silicone.thickness_mm=3.5&switch.name=uneven',
   'layout.pins=5,8,11&mesh.chord_tolerance_mm=0.05&label.text=A-1&switch.name=coarse', 'layout.pins=6,10&shell.outer_radius_mm=30&friction.points=21&switch.name=large',
 ];

@@ -29,6 +29,8 @@ fn all_formats_repeat_and_are_listed() {
         "drawing.pdf",
         "drawing.dxf",
         "PRINTING.md",
+        "MANUAL.html",
+        "MANUAL.pdf",
         "report.html",
     ] {
         assert!(first.contains_key(name), "{name}");
@@ -90,19 +92,20 @@ fn every_guide_step_has_a_picture() {
         let files = generate(folder.path(), &[source, &["--format", "guide"]].concat());
         let guide = std::str::from_utf8(&files["PRINTING.md"]).unwrap();
         let (_, assembly) = guide.split_once(". Assemble\n").unwrap();
-        let (assembly, _) = assembly.split_once("## Predicted friction").unwrap();
-        let is_step = |line: &&str| line.split_once(". ").is_some_and(|(n, _)| n.parse::<usize>().is_ok());
-        let steps = assembly.lines().filter(is_step).count();
+        let (assembly, _) = assembly.split_once("\n## ").unwrap();
+        let steps = assembly.lines().filter(|line| line.starts_with("### ")).count();
         assert!(steps >= least, "{source:?}: {steps} steps");
+        assert_eq!(assembly.matches("](step-").count(), steps, "{source:?}");
         let mut seen = Vec::new();
-        for number in 1..=steps {
+        let pictures = guide.matches("](step-").count();
+        for number in 1..=pictures {
             let name = format!("step-{number}.png");
-            assert!(assembly.contains(&format!("   ![Step {number}]({name})")), "{source:?}: {name}");
+            assert_eq!(guide.matches(&format!("]({name})")).count(), 1, "{source:?}: {name}");
             assert!(files[&name].starts_with(b"\x89PNG"), "{source:?}: {name}");
             assert!(!seen.contains(&&files[&name]), "{source:?}: {name} is the picture of another step");
             seen.push(&files[&name]);
         }
-        assert!(!files.contains_key(&format!("step-{}.png", steps + 1)), "{source:?}");
+        assert!(!files.contains_key(&format!("step-{}.png", pictures + 1)), "{source:?}");
     }
 }
 

@@ -14,9 +14,9 @@ use crate::harness::{browser, done, repository, sha256};
 const DRAWN: [(&str, &str); 10] = [
     ("exploded.png", "out/three-double/assembly.png"),
     ("plate.png", "out/three-double/plate.png"),
-    ("step-layer.png", "out/three-double/step-2.png"),
-    ("step-pins.png", "out/three-double/step-4.png"),
-    ("step-tendon.png", "out/three-double/step-7.png"),
+    ("step-layer.png", "out/three-double/step-9.png"),
+    ("step-pins.png", "out/three-double/step-12.png"),
+    ("step-tendon.png", "out/three-double/step-15.png"),
     ("friction.svg", "out/three-double/friction.svg"),
     ("contact.svg", "physics/contact.svg"),
     ("pareto.svg", "designs/pareto.svg"),

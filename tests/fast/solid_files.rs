@@ -47,7 +47,7 @@ fn manifest(set: &std::path::Path) -> serde_json::Value {
 fn step_files_contain_the_exact_parts() {
     let corpus = |name: &str| repository(&format!("tests/corpus/{name}.toml")).display().to_string();
     let sources =
-        ["three-single".to_owned(), corpus("hardware-all-at-once"), corpus("hardware-gang-drafted")];
+        ["three-single".to_owned(), corpus("hardware-all-at-once"), corpus("hardware-tray-drafted")];
     let mut splines = 0;
     for source in &sources {
         let folder = tempfile::tempdir().unwrap();

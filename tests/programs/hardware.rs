@@ -1,5 +1,5 @@
 //! External programs judge every file of the corpus of hardware: nut traps, screws, inserts,
-//! dowels, mounts, gang moulds.
+//! dowels, mounts, moulds.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

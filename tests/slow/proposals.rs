@@ -23,7 +23,7 @@ const CHOICES: [(f64, &[&str]); 9] = [
     (0.2, &["fasteners.dowel_diameter_mm=1.5", "fasteners.dowel_diameter_mm=3"]),
     (0.2, &["print.elephant_foot_mm=0.2", "print.elephant_foot_mm=0.4"]),
     (0.1, &["parts.guide_pulley=true", "layout.substrate=abs"]),
-    (0.2, &["fasteners.head_recess_mm=1", "mould.layers=3"]),
+    (0.2, &["fasteners.head_recess_mm=1", "mould.overfill_mm=3"]),
 ];
 const PINS: [&str; 5] = [
     "layout.pins=[5, 8, 11]",

@@ -16,6 +16,19 @@ const ASCII: [u16; 95] = [
     556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
 ];
 
+/// The same in Helvetica Bold.
+#[rustfmt::skip]
+const BOLD: [u16; 95] = [
+    278, 333, 474, 556, 556, 889, 722, 238, 333, 333, 389, 584, 278, 333, 278, 278,
+    556, 556, 556, 556, 556, 556, 556, 556, 556, 556, 333, 333, 584, 584, 584, 611,
+    975, 722, 722, 722, 722, 667, 611, 778, 722, 278, 556, 722, 611, 833, 722, 778,
+    667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 333, 278, 333, 584, 556,
+    333, 556, 611, 556, 611, 556, 333, 611, 611, 278, 278, 556, 278, 889, 611, 611,
+    611, 611, 389, 556, 333, 611, 556, 778, 556, 556, 500, 389, 280, 389, 584,
+];
+/// Width of every character of Courier.
+const FIXED: u16 = 600;
+
 /// Widths of U+00A0 to U+00FF.
 #[rustfmt::skip]
 const LATIN: [u16; 96] = [
@@ -33,6 +46,30 @@ fn width_thousandths(character: char) -> u16 {
     let code = character as usize;
     let ascii = code.checked_sub(0x20).and_then(|i| ASCII.get(i));
     ascii.or_else(|| code.checked_sub(0xa0).and_then(|i| LATIN.get(i))).copied().unwrap_or(OTHER)
+}
+
+/// Weight of a typeface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Weight {
+    /// Helvetica.
+    Regular,
+    /// Helvetica Bold. Letters beyond ASCII have the widths of Helvetica.
+    Bold,
+    /// Courier.
+    Fixed,
+}
+
+/// Width of a text over the size of the font.
+pub(super) fn width_of(text: &str, weight: Weight) -> f64 {
+    let width = |c: char| match weight {
+        Weight::Regular => width_thousandths(c),
+        Weight::Bold => {
+            let known = (c as usize).checked_sub(0x20).and_then(|i| BOLD.get(i).copied());
+            known.unwrap_or_else(|| width_thousandths(c))
+        }
+        Weight::Fixed => FIXED,
+    };
+    text.chars().map(|c| f64::from(width(c))).sum::<f64>() / 1000.0
 }
 
 /// Width in mm of `text` whose capitals are `height_mm` high.

@@ -59,6 +59,10 @@
 //! of one or several bodies, side views with hidden lines, cut faces with hatching, and the mark of
 //! a section.
 //!
+//! # Pages
+//!
+//! [`pages_pdf`] writes pages of text, lines and pictures, for documents that belong to drawings.
+//!
 //! # Limits
 //!
 //! Solids consist of contours of lines and arcs at heights. These features get dimensions: radii and
@@ -80,6 +84,7 @@ mod geometry;
 mod index;
 mod indicator;
 mod layout;
+mod pages;
 mod part;
 mod pdf;
 mod sheet;
@@ -97,6 +102,7 @@ pub use escape::escape;
 pub use geometry::{Extent, Point};
 pub use indicator::{Characteristic, DatumMark, Indicator};
 pub use layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, assembly_formats, part_formats};
+pub use pages::{Page, PageItem, PngPixels, Rgb, Typeface, pages_pdf};
 pub use part::{FaceDatum, Fit, Fits, PartDrawing, RadialSize, RadiusFit, RoundFit, Terms, number};
 pub use pdf::drawing_pdf;
 pub use sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, Text, View};

@@ -36,7 +36,7 @@ pub fn drawing_pdf(sheets: &[Sheet], title: &str) -> Vec<u8> {
 }
 
 #[allow(clippy::cast_possible_truncation)]
-fn points(mm: f64) -> f32 {
+pub(super) fn points(mm: f64) -> f32 {
     // Thousandths of a point.
     ((mm * POINT_PER_MM * 1000.0).round() / 1000.0) as f32
 }
@@ -101,16 +101,18 @@ fn arc(content: &mut Content, centre: Point, radius_mm: f64, start_rad: f64, swe
     content.stroke();
 }
 
-fn write(content: &mut Content, text: &Text) {
-    // WinAnsiEncoding has the letters of western Europe; others become question marks.
-    let bytes: Vec<u8> = text
-        .content
-        .chars()
+/// Encodes a text. `WinAnsiEncoding` has the letters of western Europe; others become question marks.
+pub(super) fn encoded(text: &str) -> Vec<u8> {
+    text.chars()
         .map(|c| match u32::from(c) {
             code @ (0x20..=0x7e | 0xa0..=0xff) => u8::try_from(code).unwrap_or(b'?'),
             _ => b'?',
         })
-        .collect();
+        .collect()
+}
+
+fn write(content: &mut Content, text: &Text) {
+    let bytes = encoded(&text.content);
     let (x, y) = (points(text.at.x), points(text.at.y));
     let matrix = if text.upright { [0.0, 1.0, -1.0, 0.0, x, y] } else { [1.0, 0.0, 0.0, 1.0, x, y] };
     content.begin_text();

@@ -49,7 +49,140 @@ const EDGE_SAMPLES: f64 = 2.5;
 /// Brightness of an edge relative to its face.
 const EDGE_SHADE: f32 = 0.35;
 
+/// Size of a picture, and the columns at its sides that bodies leave free, all in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Width.
+    pub width: u32,
+    /// Height.
+    pub height: u32,
+    /// Width of the free column at the left.
+    pub left: u32,
+    /// Width of the free column at the right.
+    pub right: u32,
+}
+
+/// A picture with the body of each pixel and the projection, from which annotations are placed.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture.
+    pub picture: Picture,
+    /// The projection.
+    pub projection: Projection,
+    /// Number of the body in each pixel, in rows; `None` for the background.
+    pub bodies: Vec<Option<u16>>,
+}
+
+/// A parallel projection of space onto the pixels of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    camera: Rotation3<f64>,
+    middle: Point3,
+    /// Samples per mm.
+    scale: f64,
+    /// Column and row of the middle, in samples.
+    centre: [f64; 2],
+}
+
+impl Projection {
+    /// Returns the size of a sample, mm.
+    fn sample_mm(&self) -> f64 {
+        self.scale.recip()
+    }
+
+    /// Creates the projection in which the bodies and the points `also` fill a frame.
+    pub fn new(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Self {
+        let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
+        let tilt = Rotation3::from_axis_angle(
+            &Unit::new_unchecked(Vector3::x()),
+            (view.rise_deg - 90.0).to_radians(),
+        );
+        let camera = tilt * turn;
+        let points = bodies.iter().flat_map(|b| &b.mesh.positions).chain(also).map(|p| camera * p);
+        let (low, high) = points
+            .map(|p| (p, p))
+            .reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
+            .unwrap_or((Point3::origin(), Point3::new(1.0, 1.0, 1.0)));
+        let free = f64::from(frame.width.saturating_sub(frame.left + frame.right)) * SAMPLES as f64;
+        let rows = f64::from(frame.height) * SAMPLES as f64;
+        let (size, room) = (high - low, 1.0 - 2.0 * MARGIN);
+        let scale = (free * room / size.x).min(rows * room / size.y);
+        let centre = [f64::from(frame.left) * SAMPLES as f64 + free / 2.0, rows / 2.0];
+        Self { camera, middle: nalgebra::center(&low, &high), scale, centre }
+    }
+
+    /// Returns the column and row of a point, in pixels from the upper left corner.
+    pub fn pixel(&self, point: Point3) -> [f64; 2] {
+        let placed = self.place(self.camera * point);
+        [placed.x / SAMPLES as f64, placed.y / SAMPLES as f64]
+    }
+
+    /// Maps a point of the camera's frame to column, row and depth.
+    fn place(&self, p: Point3) -> Point3 {
+        let [column, row] = self.centre;
+        Point3::new(
+            column + (p.x - self.middle.x) * self.scale,
+            row - (p.y - self.middle.y) * self.scale,
+            p.z,
+        )
+    }
+}
+
+/// Bits per channel of the colours that a palette distinguishes: steps of 4 of 255 are invisible.
+const PALETTE_BITS: u32 = 6;
+/// Most colours of a palette.
+const PALETTE: usize = 256;
+
 impl Picture {
+    /// Returns the picture as PNG with a palette of at most 256 colours, the most frequent ones. It is a third as large as
+    /// that of [`Self::png`].
+    ///
+    /// # Errors
+    /// As [`Self::png`].
+    pub fn indexed_png(&self) -> Result<Vec<u8>, png::EncodingError> {
+        let (palette, indices) = self.indexed();
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_palette(palette.concat());
+        encoder.set_compression(png::Compression::Balanced);
+        encoder.set_filter(png::Filter::NoFilter);
+        encoder.write_header()?.write_image_data(&indices)?;
+        Ok(bytes)
+    }
+
+    /// Returns a palette, and the index of each pixel in it.
+    fn indexed(&self) -> (Vec<[u8; 3]>, Vec<u8>) {
+        let bin = |rgb: &[u8]| {
+            rgb.iter().fold(0, |bin, v| bin << PALETTE_BITS | usize::from(v >> (8 - PALETTE_BITS)))
+        };
+        let mut counts = vec![0u32; 1 << (3 * PALETTE_BITS)];
+        let mut first = vec![[0u8; 3]; counts.len()];
+        for rgb in self.pixels.chunks_exact(3) {
+            let bin = bin(rgb);
+            if counts[bin] == 0 {
+                first[bin] = [rgb[0], rgb[1], rgb[2]];
+            }
+            counts[bin] += 1;
+        }
+        let mut used: Vec<usize> = (0..counts.len()).filter(|bin| counts[*bin] > 0).collect();
+        used.sort_by_key(|bin| (std::cmp::Reverse(counts[*bin]), *bin));
+        let palette: Vec<[u8; 3]> = used.iter().take(PALETTE).map(|bin| first[*bin]).collect();
+        let nearest = |colour: [u8; 3]| {
+            let off =
+                |p: &[u8; 3]| -> u32 { (0..3).map(|k| u32::from(p[k].abs_diff(colour[k])).pow(2)).sum() };
+            palette.iter().enumerate().min_by_key(|(_, p)| off(p)).map_or(0, |(i, _)| i)
+        };
+        let mut index_of_bin = vec![0u8; counts.len()];
+        for (rank, bin) in used.into_iter().enumerate() {
+            let index = if rank < palette.len() { rank } else { nearest(first[bin]) };
+            index_of_bin[bin] = u8::try_from(index).unwrap_or(0);
+        }
+        let indices = self.pixels.chunks_exact(3).map(|rgb| index_of_bin[bin(rgb)]).collect();
+        (palette, indices)
+    }
+
     /// Returns the picture as PNG.
     ///
     /// # Errors
@@ -79,11 +212,19 @@ impl Picture {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
+    render_in(bodies, &[], view, Frame { width, height, left: 0, right: 0 }).picture
+}
+
+/// Draws `bodies`, scaled so that they and the points `also` fill a frame.
+pub fn render_in(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Rendering {
+    let Frame { width, height, .. } = frame;
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
-    let (faces, sample_mm) = visible_faces(bodies, view, columns, rows);
+    let projection = Projection::new(bodies, also, view, frame);
+    let faces = visible_faces(bodies, &projection);
     let mut pixels = Vec::with_capacity(width as usize * height as usize * 3);
+    let mut owners = Vec::with_capacity(width as usize * height as usize);
     #[allow(clippy::cast_possible_truncation)]
-    let mut band = Band::new(columns, EDGE_MM.max((EDGE_SAMPLES * sample_mm) as f32));
+    let mut band = Band::new(columns, EDGE_MM.max((EDGE_SAMPLES * projection.sample_mm()) as f32));
     for (number, faces_of_band) in by_band(&faces, rows).into_iter().enumerate() {
         let first = number * BAND_SAMPLES;
         let last = (first + BAND_SAMPLES).min(rows);
@@ -92,9 +233,9 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
         for face in faces_of_band {
             band.fill(&faces[face as usize], face);
         }
-        band.shade(last - first, &faces, &mut pixels);
+        band.shade(last - first, &faces, &mut pixels, &mut owners);
     }
-    Picture { width, height, pixels }
+    Rendering { picture: Picture { width, height, pixels }, projection, bodies: owners }
 }
 
 /// A triangle that faces the camera, in sample coordinates, with its depth as a plane.
@@ -107,42 +248,27 @@ struct Face {
     /// Depth in mm at the origin of the picture, and its slopes per column and row.
     depth: [f64; 3],
     colour: [f32; 3],
+    /// Number of the body.
+    body: u16,
 }
 
-/// The triangles that face the camera, placed in the picture, and the size of a sample, mm.
-fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> (Vec<Face>, f64) {
-    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
-    let tilt =
-        Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::x()), (view.rise_deg - 90.0).to_radians());
-    let camera = tilt * turn;
+/// The triangles that face the camera, placed in the picture.
+fn visible_faces(bodies: &[Body], projection: &Projection) -> Vec<Face> {
     let seen: Vec<Vec<Point3>> =
-        bodies.iter().map(|b| b.mesh.positions.iter().map(|p| camera * p).collect()).collect();
-    let Some((low, high)) =
-        seen.iter().flatten().map(|p| (*p, *p)).reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
-    else {
-        return (Vec::new(), 0.0);
-    };
-    let size = high - low;
-    let room = 1.0 - 2.0 * MARGIN;
-    let scale = (columns as f64 * room / size.x).min(rows as f64 * room / size.y);
-    let middle = nalgebra::center(&low, &high);
-    let place = |p: Point3| {
-        let across = columns as f64 / 2.0 + (p.x - middle.x) * scale;
-        Point3::new(across, rows as f64 / 2.0 - (p.y - middle.y) * scale, p.z)
-    };
+        bodies.iter().map(|b| b.mesh.positions.iter().map(|p| projection.camera * p).collect()).collect();
     let light = Vector3::new(0.35, 0.55, 0.85).normalize();
-    let face = |positions: &[Point3], t: &[u32; 3], colour: [u8; 3]| {
+    let face = |positions: &[Point3], t: &[u32; 3], colour: [u8; 3], body: u16| {
         let [a, b, c] = t.map(|i| positions[i as usize]);
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).filter(|n| n.z > 0.0)?;
         #[allow(clippy::cast_possible_truncation)]
         let brightness = (0.45 + 0.55 * normal.dot(&light).max(0.0)) as f32;
-        Face::new([a, b, c].map(place), colour.map(|v| f32::from(v) * brightness))
+        Face::new([a, b, c].map(|p| projection.place(p)), colour.map(|v| f32::from(v) * brightness), body)
     };
-    let each = bodies.iter().zip(&seen);
-    let faces = each.flat_map(|(body, positions)| {
-        body.mesh.triangles.iter().filter_map(move |t| face(positions, t, body.colour))
-    });
-    (faces.collect(), scale.recip())
+    let each = (0..=u16::MAX).zip(bodies.iter().zip(&seen));
+    each.flat_map(|(number, (body, positions))| {
+        body.mesh.triangles.iter().filter_map(move |t| face(positions, t, body.colour, number))
+    })
+    .collect()
 }
 
 /// Indices of the faces in each band of rows, ascending.
@@ -163,7 +289,7 @@ fn by_band(faces: &[Face], rows: usize) -> Vec<Vec<u32>> {
 
 impl Face {
     /// Creates a face; `None` for a triangle seen edge-on.
-    fn new([a, b, c]: [Point3; 3], colour: [f32; 3]) -> Option<Self> {
+    fn new([a, b, c]: [Point3; 3], colour: [f32; 3], body: u16) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);
         let area = ab.x * ac.y - ab.y * ac.x;
         if area == 0.0 {
@@ -181,6 +307,7 @@ impl Face {
             slopes: [slope(top, bottom), slope(top, middle), slope(middle, bottom)],
             depth: [a.z - across * a.x - down * a.y, across, down],
             colour,
+            body,
         })
     }
 
@@ -251,8 +378,8 @@ impl Band {
     }
 
     /// Appends the pixels of `rows` rows of samples: the means of their samples, darker at steps in
-    /// depth.
-    fn shade(&self, rows: usize, faces: &[Face], pixels: &mut Vec<u8>) {
+    /// depth, and the body of the first sample.
+    fn shade(&self, rows: usize, faces: &[Face], pixels: &mut Vec<u8>, owners: &mut Vec<Option<u16>>) {
         for row in (0..rows).step_by(SAMPLES) {
             let lines: [&[f32]; SAMPLES + 1] = std::array::from_fn(|i| {
                 // The last row has none below it, and no edge.
@@ -264,7 +391,10 @@ impl Band {
                 let seen = column..(column + SAMPLES + 1).min(self.columns);
                 if lines.iter().all(|line| line[seen.clone()].iter().all(|depth| *depth == NOTHING)) {
                     pixels.extend(BACKGROUND.map(to_byte));
+                    owners.push(None);
                 } else {
+                    let face = self.faces[row * self.columns + column] as usize;
+                    owners.push((lines[0][column] != NOTHING).then(|| faces[face].body));
                     pixels.extend(self.pixel(row, column, &lines, faces).map(to_byte));
                 }
             }
@@ -333,5 +463,44 @@ mod tests {
         assert!(middle[0] > 100 && middle[1] == 0, "{middle:?}");
         assert_eq!(&picture.pixels[..3], &[250, 250, 248]);
         assert!(picture.png().unwrap().starts_with(b"\x89PNG"));
+    }
+
+    fn corner(x: f64, y: f64) -> Mesh {
+        let at = |dx: f64, dy: f64| Point3::new(x + dx, y + dy, 0.0);
+        Mesh::new(vec![at(0.0, 0.0), at(4.0, 0.0), at(0.0, 4.0)], vec![[0, 1, 2]])
+    }
+
+    /// The body of each pixel, and the pixel of each point, agree with the picture.
+    #[test]
+    fn projection_and_bodies_match_the_picture() {
+        let bodies = [
+            Body { mesh: corner(0.0, 0.0), colour: [255, 0, 0] },
+            Body { mesh: corner(6.0, 2.0), colour: [0, 0, 255] },
+        ];
+        let frame = Frame { width: 120, height: 60, left: 40, right: 10 };
+        let view = View { turn_deg: 0.0, rise_deg: 90.0 };
+        let Rendering { picture, projection, bodies: owners } = render_in(&bodies, &[], view, frame);
+        for (number, [x, y]) in [(0, [1.0, 1.0]), (1, [7.0, 3.0])] {
+            let [column, row] = projection.pixel(Point3::new(x, y, 0.0)).map(|v| v as usize);
+            assert_eq!(owners[row * 120 + column], Some(number));
+            let channel = if number == 0 { 0 } else { 2 };
+            assert!(picture.pixels[(row * 120 + column) * 3 + channel] > 100);
+        }
+        // Nothing is in the columns at the sides.
+        let free = |column: usize| (0..60).all(|row| owners[row * 120 + column].is_none());
+        assert!((0..40).chain(110..120).all(free));
+    }
+
+    #[test]
+    fn palettes_keep_the_frequent_colours() {
+        let body = |colour| Body { mesh: corner(0.0, 0.0), colour };
+        let picture = render(&[body([200, 90, 30])], View { turn_deg: 0.0, rise_deg: 90.0 }, 64, 48);
+        let (palette, indices) = picture.indexed();
+        assert!(palette.len() > 2 && palette.len() <= 256);
+        for (rgb, index) in picture.pixels.chunks_exact(3).zip(indices) {
+            let off = (0..3).map(|k| rgb[k].abs_diff(palette[usize::from(index)][k])).max().unwrap();
+            assert!(off < 4, "{rgb:?} for {:?}", palette[usize::from(index)]);
+        }
+        assert!(picture.indexed_png().unwrap().len() < picture.png().unwrap().len());
     }
 }

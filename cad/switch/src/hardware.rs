@@ -164,10 +164,13 @@ pub fn hardware(design: &Design) -> Vec<Hardware> {
 fn fasteners(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
     let c = design.configuration();
     let fastening = design.fastening();
-    let places: Vec<Point2> =
-        design.fastener_angles_rad().into_iter().map(|a| polar(design.fastener_radius_mm(), a)).collect();
+    let places: Vec<(f64, Point2)> = design
+        .fastener_angles_rad()
+        .into_iter()
+        .map(|a| (a, polar(design.fastener_radius_mm(), a)))
+        .collect();
     let width = c.shell.width_mm;
-    for at in &places {
+    for (_, at) in &places {
         if let Some([bore_mm, length_mm]) = fastening.insert_mm {
             let outline = Contour::circle(*at, bore_mm / 2.0);
             add(HardwareKind::Insert, false, prism(&outline, None, [0.0, length_mm]));
@@ -187,7 +190,7 @@ fn fasteners(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<So
     };
     let right_face = width + c.support.plate_mm;
     let radii = [shank_mm, head_wide / 2.0];
-    for at in places {
+    for (angle, at) in places {
         add(HardwareKind::Screw, false, Some(screw(at, radii, left_face, bill.length_mm, head_high)));
         if bill.inserts > 0 {
             let length_mm = bill.right_length_mm.unwrap_or(bill.length_mm);
@@ -196,7 +199,11 @@ fn fasteners(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<So
         } else {
             let seat = right_face - depth(fastening.nut_trap);
             let bore = Contour::circle(at, shank_mm).reversed();
-            add(HardwareKind::Nut, true, prism(&hexagon(at, flats), Some(bore), [seat, seat + nut_high]));
+            add(
+                HardwareKind::Nut,
+                true,
+                prism(&hexagon(at, flats, angle), Some(bore), [seat, seat + nut_high]),
+            );
         }
     }
 }
@@ -225,7 +232,7 @@ fn in_the_plate(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option
         let Some(length_mm) = length_mm else { continue };
         let [flats, high] = AXLE_HEAD_MM;
         let seat = outer + axle_recess().depth_mm;
-        let head = hexagon(centre, flats);
+        let head = hexagon(centre, flats, 0.0);
         add(
             HardwareKind::Bolt,
             false,
@@ -242,7 +249,7 @@ fn in_the_plate(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option
         add(HardwareKind::StopScrew, false, Some(screw(centre, radii, seat, length_mm, high)));
         let bore = Contour::circle(centre, STOP_SHANK_MM).reversed();
         let span = [floor, floor + nut_high];
-        add(HardwareKind::StopNut, false, prism(&hexagon(centre, flats), Some(bore), span));
+        add(HardwareKind::StopNut, false, prism(&hexagon(centre, flats, 0.0), Some(bore), span));
     }
 }
 
@@ -264,7 +271,7 @@ fn on_the_bolt(design: &Design, axle: Hole, add: &mut impl FnMut(HardwareKind, b
     add(HardwareKind::Bearing, true, ring(BEARING_RING_MM, [bearing, washer]));
     add(HardwareKind::Washer, true, ring(WASHER_MM, [washer, nut]));
     let bore = Contour::circle(axle.centre, AXLE_MM).reversed();
-    let outline = hexagon(axle.centre, AXLE_HEAD_MM[0]);
+    let outline = hexagon(axle.centre, AXLE_HEAD_MM[0], 0.0);
     add(HardwareKind::BoltNut, true, prism(&outline, Some(bore), [nut, nut + AXLE_NUT_MM]));
 }
 
@@ -277,7 +284,7 @@ fn on_the_axle(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<
     let plate_mm = design.configuration().mount.plate_mm;
     let seat = levels.proximal_mm - plate_mm + joint.head_recess().depth_mm;
     let shank = Contour::circle(middle, bolt.diameter_mm / 2.0);
-    let head = hexagon(middle, flats);
+    let head = hexagon(middle, flats, 0.0);
     add(HardwareKind::Axle, false, Some(stepped(&head, [seat - head_high, seat], &shank, length_mm)));
     let [inner_mm, outer_mm, washer_high] = bolt.washer_mm;
     let washer = |from: f64| {
@@ -288,7 +295,7 @@ fn on_the_axle(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option<
     add(HardwareKind::AxleWasher, true, washer(levels.proximal_mm));
     add(HardwareKind::AxleWasher, true, washer(outer));
     let (bore, nut) = (shank.reversed(), outer + washer_high);
-    let outline = hexagon(middle, flats);
+    let outline = hexagon(middle, flats, 0.0);
     add(HardwareKind::AxleNut, true, prism(&outline, Some(bore), [nut, nut + bolt.nut_mm]));
 }
 
@@ -297,9 +304,11 @@ fn radius_mm(thread: &Thread) -> Option<f64> {
     thread.name.strip_prefix('M')?.parse::<f64>().ok().map(|diameter| diameter / 2.0)
 }
 
-pub(crate) fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
-    let corner =
-        |i: u32| middle + polar(flats_mm / 3f64.sqrt(), f64::from(i) * std::f64::consts::FRAC_PI_3).coords;
+/// A hexagon with a flat in the direction `angle_rad`, as the recesses of nuts and heads have it.
+pub(crate) fn hexagon(middle: Point2, flats_mm: f64, angle_rad: f64) -> Contour {
+    let first = angle_rad + std::f64::consts::FRAC_PI_6;
+    let at = |i: u32| first + f64::from(i) * std::f64::consts::FRAC_PI_3;
+    let corner = |i: u32| middle + polar(flats_mm / 3f64.sqrt(), at(i)).coords;
     // Angles of `polar` run clockwise.
     Contour::polygon((0..6).rev().map(corner).collect())
 }

@@ -1,22 +1,50 @@
-//! Scenes to render: the assembly, its exploded view, its steps, and the print plates.
+//! Scenes to render: the assembly, its exploded view, the pictures of steps, and the print plates.
 
-mod stage;
+mod bench;
+mod illustration;
+mod overlay;
 
 use crate::built::{Built, BuiltPart};
+use crate::config::MountKind;
+use crate::design::Design;
 use crate::hardware::hardware;
 use crate::output::SetError;
 use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::profile::{Contour, Point2};
-use pinswitch_solid::render::{Body, render};
+use pinswitch_solid::render::{Body, View, render};
 use pinswitch_solid::solid::Solid;
 
-use stage::{RIG_VIEW, grooves_up};
-pub use stage::{Stage, stage_scene, stage_view};
+pub use bench::{Bench, Bodies, Item};
+pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
+pub use illustration::{Illustration, Motion, Move, ToolArrow, Upright};
 
-/// Returns the bodies of the assembly, with the bought ones and the table of a rig, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
-/// up, so that engraved text is upright in the views of [`stage_view`].
+/// View of the switch with its grooves up, at which the outer face of the left support is visible.
+pub const FROM_LEFT: View = View { turn_deg: 38.0, rise_deg: 32.0 };
+
+/// The same from the side of the right support.
+pub const FROM_RIGHT: View = View { turn_deg: -FROM_LEFT.turn_deg, ..FROM_LEFT };
+
+/// The view of a rig with its table: from the front.
+pub(crate) const RIG_VIEW: View = View { turn_deg: -66.0, rise_deg: 24.0 };
+
+/// Returns the view of the complete switch: from the side of the left support, unless a large plate or link would hide it.
+pub fn switch_view(design: &Design) -> View {
+    match design.configuration().mount.kind {
+        MountKind::None => FROM_LEFT,
+        MountKind::Rig | MountKind::Flange | MountKind::Joint => FROM_RIGHT,
+    }
+}
+
+/// Rotates a mesh of the assembly so that the pulley's axis is horizontal, from left to right, and the grooves are up.
+fn grooves_up(mesh: Mesh) -> Mesh {
+    let turned = mesh.positions.iter().map(|p| Point3::new(p.z, p.x, p.y)).collect();
+    Mesh::new(turned, mesh.triangles)
+}
+
+/// Returns the bodies of the assembly, with the bought ones and the table of a rig, exploded by `explosion`, from 0 to 1.
+/// The pulley's axis is horizontal and the grooves are up, so that engraved text is upright in the view of [`switch_view`].
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
     let parts = built.assembly().filter_map(|body| {
         let role = body.part.role;
@@ -101,10 +129,9 @@ pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
     if let Some(png) = built.exploded_png().get() {
         return Ok(png);
     }
-    // The tendon is the last step, and its view shows all bodies.
     // The rig is shown assembled: its parts are far from each other.
     let is_rig = built.design().rig_layout().is_some();
-    let usual = stage_view(built.design(), Stage::Tendon);
+    let usual = switch_view(built.design());
     let (view, (width, height), explosion) =
         if is_rig { (RIG_VIEW, RIG_PIXELS, 0.0) } else { (usual, EXPLODED_PIXELS, 1.0) };
     let png = render(&assembled(built, explosion), view, width, height).png().map_err(SetError::encoding)?;

@@ -188,7 +188,6 @@ configuration! {
             wall_mm: f64 = 3.0, 1.2..=20.0, Chosen, "least wall around the cavity";
             floor_mm: f64 = 3.0, 0.8..=20.0, Chosen, "floor, base plate and lid";
             overfill_mm: f64 = 1.0, 0.0..=10.0, Chosen, "one-piece: height of the basin above the layer; cut the layer along its ledge";
-            layers: usize = 1, 1..=12, Chosen, "one-piece: layers cast at once; 11 g are mixed, and one layer takes 1 g";
             draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: draft of the basin's walls, whose silicone is cut off; the walls that shape the layer are vertical";
             shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone that the cavity compensates, and with it the temperature of the cure: 0 for 25 C, 0.9 for 60 C in ABS";
             clearance_mm: f64 = 0.2, 0.05..=0.5, Chosen, "print clearance between parts of the split mould, per side";

@@ -14,8 +14,6 @@ const PIN_LENGTH_STEP_MM: f64 = 0.5;
 const STOP_DEPTH_MM: f64 = 0.2;
 /// Least width of a stop on the bed between its two chamfers, mm.
 const STOP_FOOT_MM: f64 = 0.05;
-/// Half of the largest span, in radians, at which the layers of a gang mould nest.
-const MOST_NESTED_RAD: f64 = 1.3;
 
 /// A configuration with its derived dimensions, whether or not it can be built.
 /// cad/doc/dimensions.md explains each dimension.
@@ -225,11 +223,6 @@ impl Dimensions {
             1 => vec![0.0],
             n => (0..n).map(|i| outermost * (2.0 * i as f64 / (n as f64 - 1.0) - 1.0)).collect(),
         }
-    }
-
-    /// Returns whether the layers of a gang mould nest. Layers of half a turn or more cannot.
-    pub(crate) fn gang_nests(&self) -> bool {
-        self.half_span_rad() < MOST_NESTED_RAD
     }
 
     /// Returns the engraved label: the configured text, or the number of pins, their step and the

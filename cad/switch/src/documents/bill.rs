@@ -33,11 +33,9 @@ pub struct Pins {
 /// Silicone to cast.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Silicone {
-    /// Number of layers that the mould casts at once.
-    pub layers: usize,
-    /// Volume of one layer before shrinkage, mm³.
+    /// Volume of the layer before shrinkage, mm³.
     pub layer_mm3: f64,
-    /// Volume of the mould, ml: all layers and their overfill.
+    /// Volume of the mould, ml: the layer, and the basin, or funnel and vents.
     pub pour_ml: f64,
     /// Mass of that volume, g.
     pub pour_g: f64,
@@ -155,23 +153,20 @@ pub struct Bill {
 /// Returns the bill of materials of a design.
 pub fn bill_of_materials(design: &Design) -> Bill {
     let c = design.configuration();
-    let (layers_mm3, overfill_mm3) = cavity_mm3(design);
-    // A split mould casts one layer.
-    let layers = if c.mould.kind == MouldKind::OnePiece { c.mould.layers } else { 1 };
+    let (layer_mm3, above_mm3) = cavity_mm3(design);
     let silicone =
         (c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None).then(|| {
-            let pour_ml = (layers_mm3 + overfill_mm3) / 1000.0;
+            let pour_ml = (layer_mm3 + above_mm3) / 1000.0;
             let pour_g = pour_ml * silicone_density_g_cm3(c);
             let mix_g = (pour_g * c.silicone.waste_factor).max(c.silicone.least_mix_g);
             let agent_g = mix_g / (mix_ratio(c) + 1.0);
             let process = Process::of(c);
             Silicone {
-                layers,
                 product: process.silicone.map(|s| s.name),
                 mix_ratio: mix_ratio(c),
                 mould_cure: process.mould_cure,
                 post_cure: process.post_cure,
-                layer_mm3: layers_mm3 / layers as f64,
+                layer_mm3,
                 pour_ml,
                 pour_g,
                 mix_g,
@@ -279,19 +274,6 @@ mod tests {
         let screws = bill.fasteners.unwrap();
         assert_eq!((screws.thread, screws.length_mm, screws.number), ("M3", 25.0, 2));
         assert_eq!((bill.pins.length_mm, bill.pins.spares), (18.0, 0));
-    }
-
-    #[test]
-    fn a_gang_casts_equal_layers() {
-        let silicone = |layers: usize| {
-            let mut c = Configuration::default();
-            (c.mould.kind, c.mould.layers) = (MouldKind::OnePiece, layers);
-            bill_of_materials(&Design::new(c).unwrap()).silicone.unwrap()
-        };
-        let (one, four) = (silicone(1), silicone(4));
-        assert_eq!((one.layers, four.layers), (1, 4));
-        assert!((four.layer_mm3 / one.layer_mm3 - 1.0).abs() < 1e-12);
-        assert!(four.pour_ml > 3.0 * one.pour_ml && four.pour_ml * 1000.0 > 4.0 * four.layer_mm3);
     }
 
     #[test]

@@ -242,7 +242,7 @@ fn proposals_make_room_on_the_bed() {
         (&["shell.outer_radius_mm=60", "print.bed_mm=80"], "mould-core", 2),
         (&["shell.outer_radius_mm=120", "print.bed_mm=180"], "mould-core", 3),
         (&["mould.kind=none", "shell.outer_radius_mm=100", "print.bed_mm=140"], "support-right", 2),
-        (&["mould.kind=one-piece", "mould.layers=12", "print.bed_mm=100"], "mould-tray", 2),
+        (&["mould.kind=one-piece", "shell.outer_radius_mm=60", "print.bed_mm=80"], "mould-tray", 2),
         (&["mount.kind=rig", "print.bed_mm=100"], "rig-plate", 2),
         (&["parts.guide_pulley=true", "parts.coupon=false", "print.bed_mm=50"], "guide-pulley", 1),
     ] {

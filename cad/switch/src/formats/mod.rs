@@ -58,6 +58,7 @@ formats! {
     dxf,
     rig,
     guide,
+    manual,
     page,
 }
 

@@ -3,12 +3,13 @@
 
 use std::path::Path;
 
-use super::{Part, Role, gang_mm, printed, reference_bodies, silicone_layer, touches};
+use super::sections::Section;
+use super::{Part, Role, printed, reference_bodies, silicone_layer, touches};
 use crate::config::{Configuration, MountKind, assign, read};
 use crate::design::Design;
-use pinswitch_solid::profile::{ChordTolerance, Contour, Point2, polar};
+use pinswitch_solid::profile::{Contour, Point2, polar};
 
-/// Chord tolerance of the polygons that decide whether a point is inside of a section, mm.
+/// Chord tolerance of the polygons of sections, mm.
 const FINE_MM: f64 = 5e-3;
 /// Largest overlap of bodies that touch, mm: the error of the polygons.
 pub(super) const TOUCHING_MM: f64 = 0.02;
@@ -36,43 +37,8 @@ pub(super) fn corpus() -> Vec<(String, Design)> {
     all
 }
 
-/// A section of a body in the assembly.
-pub(super) struct Section {
-    pub(super) exact: Vec<Contour>,
-    pub(super) polygons: Vec<Vec<Point2>>,
-}
-
-impl Section {
-    pub(super) fn contains(&self, p: Point2) -> bool {
-        let crossings = self.polygons.iter().flat_map(|polygon| {
-            let next = polygon.iter().cycle().skip(1);
-            polygon.iter().zip(next).filter(|(a, b)| {
-                (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x
-            })
-        });
-        crossings.count() % 2 == 1
-    }
-
-    pub(super) fn distance_mm(&self, p: Point2) -> f64 {
-        self.exact.iter().map(|c| c.distance_mm(p)).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Depth of the outline of `other` inside of this section, mm, and its deepest point.
-    pub(super) fn depth_mm(&self, other: &Self) -> (f64, Point2) {
-        let points = other.polygons.iter().flatten();
-        let inside = points.filter(|p| self.contains(**p)).map(|p| (self.distance_mm(*p), *p));
-        inside.fold((0.0, Point2::origin()), |best, next| if next.0 > best.0 { next } else { best })
-    }
-}
-
 pub(super) fn section(part: &Part, z_mm: f64) -> Section {
-    let pose = part.pose.or(part.tool_pose).unwrap();
-    let own = if pose.flipped { pose.z_mm - z_mm } else { z_mm - pose.z_mm };
-    let turn = |c: Contour| if pose.flipped { c.mirrored() } else { c };
-    let exact: Vec<Contour> = part.solid.section(own).into_iter().map(turn).collect();
-    let fine = ChordTolerance::new(FINE_MM).unwrap();
-    let polygons = exact.iter().map(|c| c.flattened(&c.chords(fine))).collect();
-    Section { exact, polygons }
+    Section::new(&part.solid, part.pose.or(part.tool_pose).unwrap(), z_mm, FINE_MM)
 }
 
 /// Heights of the rings of a part in the assembly.
@@ -536,27 +502,16 @@ fn moulds_have_no_undercut() {
     assert!(moulds >= 20, "{moulds}");
 }
 
-/// A gang mould has a cavity for each layer, with walls between their basins.
+/// The cavity of the tray is the layer, and its walls have their thickness.
 #[test]
-fn a_gang_mould_casts_every_layer() {
-    for layers in [1, 2, 5] {
-        let layers_set = format!("mould.layers={layers}");
-        let design = design(&["mould.kind=one-piece", &layers_set]);
-        let tray = printed(&design).unwrap().into_iter().find(|p| p.name == "mould-tray").unwrap();
-        let at = |z: f64| -> Vec<Contour> { tray.solid.section(z) };
-        let cavities: Vec<Contour> = at(5.0).into_iter().filter(|c| c.area_mm2() < 0.0).collect();
-        assert_eq!(cavities.len(), layers);
-        let layer = silicone_layer(&design).unwrap().solid.volume_mm3() / design.layer_width_mm();
-        assert!(cavities.iter().all(|c| (c.area_mm2() + layer).abs() < 1e-9));
-        let wall = design.configuration().mould.wall_mm;
-        let thinnest = tray.solid.thin_places(wall - 1e-3);
-        assert!(thinnest.is_empty(), "{layers}: {thinnest:?}");
-        let (low, high) = tray.solid.bounds().unwrap();
-        if layers > 1 {
-            let [x, y] = gang_mm(&design);
-            assert!((high.x - low.x - x).abs() < 1e-9 && (high.y - low.y - y).abs() < 1e-9);
-        }
-    }
+fn the_tray_has_the_cavity_of_the_layer() {
+    let design = design(&["mould.kind=one-piece"]);
+    let tray = printed(&design).unwrap().into_iter().find(|p| p.name == "mould-tray").unwrap();
+    let cavities: Vec<Contour> = tray.solid.section(5.0).into_iter().filter(|c| c.area_mm2() < 0.0).collect();
+    let layer = silicone_layer(&design).unwrap().solid.volume_mm3() / design.layer_width_mm();
+    assert!(cavities.len() == 1 && (cavities[0].area_mm2() + layer).abs() < 1e-9);
+    let thinnest = tray.solid.thin_places(design.configuration().mould.wall_mm - 1e-3);
+    assert!(thinnest.is_empty(), "{thinnest:?}");
 }
 
 /// No part of a published layout has a thin place, with any mount.

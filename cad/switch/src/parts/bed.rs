@@ -54,9 +54,7 @@ fn smaller(part: &Part) -> &'static [Direction] {
         (_, "guide-pulley" | "guide-pulley-2") => {
             &[BED, Set("parts.guide_pulley", "false"), Set("mount.kind", "\"none\"")]
         }
-        (Role::Mould, "mould-tray") => {
-            &[BED, Lower("mould.layers"), Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")]
-        }
+        (Role::Mould, "mould-tray") => &[BED, Lower("shell.outer_radius_mm"), Restore("mould.wall_mm")],
         (Role::Mount | Role::Stand | Role::DistalLink, _) => &[
             BED,
             Lower("mount.proximal_mm"),

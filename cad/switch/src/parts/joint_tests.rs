@@ -1,10 +1,11 @@
 //! The joint over its whole range of flexion: nothing overlaps, the stops meet the lug at both ends, the axle turns freely,
 //! and the parts can be printed.
 
+use super::sections::Section;
 use std::f64::consts::FRAC_PI_2;
 
 use super::assembly_tests::{
-    Section, TOUCHING_MM, assembled, corpus, design, heights_mm, levels_mm, overlap, section,
+    TOUCHING_MM, assembled, corpus, design, heights_mm, levels_mm, overlap, section,
 };
 use super::{DISTAL, PROXIMAL, Part, Role, printed, tendon_at_flexion};
 use crate::built::Built;

@@ -32,14 +32,15 @@ pub use bed::fit_on_bed;
 pub(crate) use bed::{can_be_printed, room_on_bed};
 pub(crate) use joint::{DISTAL, PROXIMAL};
 pub use layer::silicone_layer;
-pub(crate) use mould::keys;
-pub use mould::{cavity_mm3, gang_mm};
+pub use mould::cavity_mm3;
+pub(crate) use mould::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT, cast, keys};
 pub(crate) use mount::SPACER;
 pub use mount::spacer_mm;
 pub use omission::LeftOut;
 pub use part::{Material, Part, Role};
 pub(crate) use rig::{cell_bolts, cell_length_mm, front_mm, middle_mm, stand_holes};
 pub use sector::Sector;
+pub(crate) use stroke_font::{HEIGHT as LETTER_HEIGHT, WIDTH as LETTER_WIDTH, strokes as letter_strokes};
 pub(crate) use tendon::RIG_END_MM;
 pub use tendon::{Touch, tendon_at_flexion, touches};
 
@@ -206,5 +207,7 @@ pub(crate) fn left_out_features(design: &Design) -> Vec<(&'static str, LeftOut)>
 mod assembly_tests;
 #[cfg(test)]
 mod joint_tests;
+#[cfg(test)]
+pub(crate) mod sections;
 #[cfg(test)]
 mod tests;

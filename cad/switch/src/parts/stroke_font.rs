@@ -2,12 +2,12 @@
 //! that letters have no walls too thin to print.
 
 /// Width of a letter on the grid.
-pub(super) const WIDTH: f64 = 4.0;
+pub(crate) const WIDTH: f64 = 4.0;
 /// Height of a letter on the grid.
-pub(super) const HEIGHT: f64 = 6.0;
+pub(crate) const HEIGHT: f64 = 6.0;
 
 /// Returns the strokes of a letter as polylines on the grid; none for a space, `None` for a letter that is not in the font.
-pub(super) fn strokes(letter: char) -> Option<Vec<Vec<[f64; 2]>>> {
+pub(crate) fn strokes(letter: char) -> Option<Vec<Vec<[f64; 2]>>> {
     // A stroke is a sequence of digit pairs: x, then y.
     let code = match letter {
         'x' => "0044 0440",

@@ -43,7 +43,7 @@ pub(crate) fn rig_hardware(design: &Design, add: Add<'_>) {
 
 /// A hexagon bolt along the axis of the switch. A negative length points to smaller z.
 fn bolt(at: Point2, thread_mm: f64, face_mm: f64, length_mm: f64) -> Solid {
-    let head = hexagon(at, flats_mm(thread_mm));
+    let head = hexagon(at, flats_mm(thread_mm), 0.0);
     let high = 0.65 * thread_mm;
     let span = if length_mm > 0.0 { [face_mm - high, face_mm] } else { [face_mm, face_mm + high] };
     stepped(&head, span, &Contour::circle(at, thread_mm / 2.0), length_mm)
@@ -55,7 +55,7 @@ fn ring(at: Point2, [inner, outer]: [f64; 2], span: [f64; 2]) -> Option<Solid> {
 
 fn nut(at: Point2, thread_mm: f64, span: [f64; 2]) -> Option<Solid> {
     let bore = Contour::circle(at, thread_mm / 2.0).reversed();
-    prism(&hexagon(at, flats_mm(thread_mm)), Some(bore), span)
+    prism(&hexagon(at, flats_mm(thread_mm), 0.0), Some(bore), span)
 }
 
 /// A rod between two points of the plane of the tendon, at the height `z_mm`.

@@ -22,7 +22,6 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
     Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
     Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
-    Rule { field: "mould.layers", severity: Severity::Error, assess: gang_in_one_piece },
     Rule { field: "mould.draft_deg", severity: Severity::Warning, assess: draft_without_basin },
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
@@ -183,17 +182,6 @@ fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
                 m.draft_deg
             ),
             "set it to 0, or raise mould.overfill_mm".to_owned(),
-        )
-    })
-}
-
-/// Only trays cast several layers at once.
-fn gang_in_one_piece(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    require(c.mould.layers < 2 || c.mould.kind == MouldKind::OnePiece, || {
-        (
-            format!("only a one-piece mould casts {} layers at once", c.mould.layers),
-            &[Lower("mould.layers"), Set("mould.kind", "\"one-piece\"")],
         )
     })
 }

@@ -52,6 +52,14 @@ fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
     Ok(Openings { keys, vents, spout, mouth })
 }
 
+/// Returns the counter-clockwise outlines of the silicone in the lid: at the lower and the upper end of the funnel, and in the
+/// vents. `None` if they cannot be built, which [`lid`] reports.
+pub(super) fn silicone_outlines(design: &Design) -> Option<(Contour, Contour, Vec<Contour>)> {
+    let plate = plate_sector(design, &Cavity::of(design)).outline();
+    let o = openings(design, &plate).ok()?;
+    Some((o.spout.reversed(), o.mouth.reversed(), o.vents.iter().map(Contour::reversed).collect()))
+}
+
 /// Volume of funnel and vents, mm³; 0 if they cannot be built, which [`lid`] reports.
 pub(super) fn openings_mm3(design: &Design) -> f64 {
     let plate = plate_sector(design, &Cavity::of(design)).outline();
@@ -104,7 +112,7 @@ fn hole_chamfer_mm(design: &Design, plate: &Contour, spout: &Contour, holes: &[C
 }
 
 /// Least distance of eight points on each edge of `slot` from the curve of `other`, mm.
-pub(super) fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
+fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
     let points = slot.flattened(&vec![8; slot.edges().len()]);
     points.iter().map(|p| other.distance_mm(*p)).fold(f64::INFINITY, f64::min)
 }

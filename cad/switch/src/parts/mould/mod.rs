@@ -1,5 +1,6 @@
 //! The casting mould, with its axis vertical and open at the top (cad/doc/dimensions.md, "Mould").
 
+mod cast;
 pub(crate) mod keys;
 mod lid;
 mod one_piece;
@@ -11,12 +12,12 @@ use crate::config::MouldKind;
 use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 
+pub(crate) use cast::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT, cast};
 pub(super) use lid::lid;
-pub use one_piece::gang_mm;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, core_has_lost_label, ring};
 
-/// Returns the volume in mm³ of the cavity for all layers, and of the space above it: the basin of the one-piece mould, or
+/// Returns the volume in mm³ of the cavity, and of the space above it: the basin of the one-piece mould, or
 /// funnel and vents of the split mould.
 pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     let cavity = Cavity::of(design);
@@ -26,12 +27,7 @@ pub fn cavity_mm3(design: &Design) -> (f64, f64) {
         MouldKind::OnePiece => one_piece::basin_mm3(design),
         MouldKind::Split => lid::openings_mm3(design),
     };
-    let layers = if design.configuration().mould.kind == MouldKind::OnePiece {
-        design.configuration().mould.layers as f64
-    } else {
-        1.0
-    };
-    (layers * layer, layers * above)
+    (layer, above)
 }
 
 /// The cavity without its ribs: the layer, enlarged by the shrinkage of silicone.

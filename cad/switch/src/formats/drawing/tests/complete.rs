@@ -142,7 +142,7 @@ fn is_circle(c: &Contour) -> Option<(Point2, f64)> {
     }
 }
 
-pub(super) fn is_moved(a: &Contour, b: &Contour) -> bool {
+fn is_moved(a: &Contour, b: &Contour) -> bool {
     let (a, b) = (a.corners(), b.corners());
     a.len() == b.len() && a.iter().zip(b).all(|(p, q)| (p - q - (a[0] - b[0])).norm() < 1e-6)
 }

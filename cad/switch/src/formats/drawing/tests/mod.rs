@@ -2,7 +2,6 @@
 //! the DXF has the dimensions of the manifest.
 
 mod complete;
-mod copies;
 mod fits;
 
 mod measured;

@@ -1,6 +1,7 @@
 //! The chain of dimensions from pins, grooves, slots and layer to the threshold: nominal values, tolerances with their
 //! sources, and the dimensions of a made switch.
 
+use crate::process::Process;
 use pinswitch_friction::physics::{Bed, MadeDimensions, modulus_of_shore_a_mpa};
 use serde::Serialize;
 
@@ -177,6 +178,7 @@ pub fn link(design: &Design, dimension: ChainDimension) -> Link {
     let sd = Tolerances::default();
     let two = |sd: f64| DEVIATIONS_PER_TOLERANCE * sd;
     let bed = design.contact().bed();
+    let process_scatter = Process::of(c).hardness_shore_a.map(|[_, scatter]| scatter);
     let printed = "print: small features of fused deposition are within 0.1 mm (Xometry's guide)";
     let position = (PRINTED_FEATURE_MM, printed, it9_mm(design.contact_radius_mm()), MILLED);
     let (nominal, (process, source, best, best_source)) = match dimension {
@@ -246,8 +248,12 @@ pub fn link(design: &Design, dimension: ChainDimension) -> Link {
         ChainDimension::Hardness => (
             c.silicone.hardness_shore_a,
             (
-                two(sd.hardness_shore_a),
-                "as bought: rubbers are sold to 5 points",
+                two(process_scatter.unwrap_or(sd.hardness_shore_a)),
+                if process_scatter.is_some() {
+                    "cast: the scatter between castings of process.silicone"
+                } else {
+                    "as bought: rubbers are sold to 5 points"
+                },
                 SELECTED_HARDNESS,
                 "chosen: batch measured with a durometer and selected",
             ),

@@ -41,7 +41,7 @@ const KINDS: [&str; 15] = [
     "[layout]\npins = [5]\n[fasteners]\ncount = 0\ndowel_diameter_mm = 2.0\n",
     "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"flange\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
     "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n",
-    "[layout]\npins = [5, 8, 11]\n[label]\nengrave = false\n[mount]\nkind = \"finger-link\"\n",
+    "[layout]\npins = [5, 8, 11]\n[label]\nengrave = false\n[mount]\nkind = \"joint\"\n",
     "[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\nhead_recess_mm = 1.5\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
     "[layout]\npins = [5, 8, 11]\n[fasteners]\nhead_recess_mm = 1.5\ndowel_diameter_mm = 2.0\n[parts]\nguide_pulley = true\n",
 ];

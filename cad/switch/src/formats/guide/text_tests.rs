@@ -142,7 +142,7 @@ fn the_widest_bridge_has_its_place() {
 fn covered_marks_are_noted() {
     let words = "The mounting plate covers the marks";
     let on = |kind: &str| guide(&format!("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"{kind}\"\n"));
-    assert!(["flange", "finger-link", "rig"].iter().all(|kind| on(kind).contains(words)));
+    assert!(["flange", "joint", "rig"].iter().all(|kind| on(kind).contains(words)));
     assert!(!on("none").contains(words));
     let unmarked = guide("[mount]\nkind = \"flange\"\n[label]\nengrave = false\n");
     assert!(!unmarked.contains(words) && !unmarked.contains("The arrow points"), "{unmarked}");

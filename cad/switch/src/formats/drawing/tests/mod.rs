@@ -252,7 +252,7 @@ fn assemblies_have_pictures_and_sizes() {
 #[test]
 fn plates_are_square_to_the_sheet() {
     for (mount, part) in
-        [("kind = \"rig\"\n", "rig-plate"), ("kind = \"finger-link\"\nbore_axis_deg = 20.0\n", "finger-link")]
+        [("kind = \"rig\"\n", "rig-plate"), ("kind = \"joint\"\n", "link-proximal")]
     {
         let built = built(&format!("[layout]\npins = [5, 8, 11]\n[mount]\n{mount}")).unwrap();
         let all = sheets(&built);

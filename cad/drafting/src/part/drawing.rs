@@ -382,8 +382,13 @@ impl Views<'_> {
                 line(Point::new(axis.x, front.low.y - 2.0), Point::new(axis.x, front.high.y + 3.0));
             }
             if axis.y > front.low.y - 1.0 {
-                let half = if front.low.y < axis.y - 4.0 { front.width() / 2.0 + 3.0 } else { 8.0 };
-                line(axis - Point::new(half, 0.0), axis + Point::new(half, 0.0));
+                // Over the whole part, whose middle may be beside the axis.
+                let [from, to] = if front.low.y < axis.y - 4.0 {
+                    [front.low.x - 3.0, front.high.x + 3.0]
+                } else {
+                    [axis.x - 8.0, axis.x + 8.0]
+                };
+                line(Point::new(from, axis.y), Point::new(to, axis.y));
             }
         }
         let bosses = f.bosses.iter().map(|b| (&b.centres, b.levels.iter().map(|l| l.1).fold(0.0, f64::max)));

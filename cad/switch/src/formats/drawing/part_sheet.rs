@@ -15,13 +15,16 @@ const SAME_RAD: f64 = 1e-9;
 /// part without extent.
 pub(super) fn part_sheet(design: &Design, part: &Part, title: &TitleBlock, paper: Paper) -> Option<Sheet> {
     let (solid, turn_rad) = drawn_solid(part);
-    let part = &part.with_solid(solid);
+    let drawn = part.with_solid(solid);
+    // The fits of a plate are in the frame of the assembly, and turn with it.
+    let fits = rotated(fits(design, if turn_rad == 0.0 { &drawn } else { part }), turn_rad);
+    let part = &drawn;
     let is_printed = part.material() == Material::Abs;
     let drawing = PartDrawing {
         chamfer_mm: if is_printed { design.configuration().print.elephant_foot_mm } else { 0.0 },
         half_span_rad: Some(design.half_span_rad()),
         is_cut: !matches!(part.role, Role::Pin { .. }),
-        fits: rotated(fits(design, part), turn_rad),
+        fits,
         terms: Terms {
             axis: "the pulley's axis".to_owned(),
             pocket: "basin".to_owned(),

@@ -812,7 +812,7 @@ impl Assembly<'_> {
         washers.sort_by(|a, b| height(a).total_cmp(&height(b)));
         let outer = washers.split_off(washers.len().min(1));
         let moves = vec![
-            moving(washers, "washer", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
+            moving(washers, "", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
             moving(self.names(&["link-distal"]), "distal link", Motion::Into, along(DISTAL_APART_MM)),
             moving(outer, "", Motion::Into, along(NUT_APART_MM)),
             moving(self.names(&["axle-nut"]), "washer and nut", Motion::Into, along(NUT_APART_MM)),
@@ -856,7 +856,7 @@ impl Assembly<'_> {
             moving(self.names(&["rig-foot-left", "rig-foot-right"]), "feet", Motion::Into, along(-FEET_APART_MM)),
             each(foot_bolts, "bolts M6", Motion::Into, self.from_its_side("foot-bolt", far)),
             each(self.names(&["foot-washer"]), "", Motion::Still, along(0.0)),
-            each(self.names(&["foot-nut"]), "nuts", Motion::Into, self.from_its_side("foot-nut", FEET_APART_MM)),
+            each(self.names(&["foot-nut"]), "", Motion::Into, self.from_its_side("foot-nut", FEET_APART_MM)),
         ];
         Some(
             Step::new("Put the board on its feet")
@@ -899,7 +899,7 @@ impl Assembly<'_> {
         let bought = self.names(&[
             "load-cell", "cell-bolt", "eye-bolt", "line", "actuator", "drive-bolt", "drive-nut", "hook", "weight",
         ]);
-        let moves = vec![placed(parts, "cell mount and drive"), placed(bought, "load cell, drive and weights")];
+        let moves = vec![placed(parts, "cell mount and drive"), placed(bought, "load cell and weights")];
         Some(
             Step::new("Mount cell, drive and load")
                 .text(format!("{cell} {drive}"))

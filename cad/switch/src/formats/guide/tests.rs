@@ -105,7 +105,7 @@ fn every_body_is_placed_once() {
         for bench in [Bench::Switch, Bench::Mould, Bench::Loose] {
             for item in guide.bodies.on(bench) {
                 // The pulley of the rig is on the switch.
-                let is_elsewhere = bench == Bench::Loose && item.name == GUIDE_PULLEY && is_rig;
+                let is_elsewhere = bench == Bench::Loose && item.name.starts_with(GUIDE_PULLEY) && is_rig;
                 let has_no_use =
                     item.name == COUPON && guide.built.design().configuration().layout.pins.is_empty();
                 let is_placed = placed.contains_key(&(bench, item.name.clone()));
@@ -282,7 +282,9 @@ fn moved_bodies_have_a_free_path() {
                         for other in present.iter().filter(|other| !m.bodies.contains(other)) {
                             let is_thread = name.contains("screw") && other.contains("insert");
                             let is_screw =
-                                [name, *other].iter().any(|n| n.contains("screw") || n.starts_with("bolt"));
+                                [name, *other].iter().any(|n| {
+                                n.contains("screw") || n.starts_with("bolt") || n.starts_with("axle")
+                            });
                             let skin = if is_screw { membrane_mm } else { 0.0 };
                             for mm in if is_thread { &[][..] } else { &PATH_MM[..] } {
                                 let (depth, at) = overlap(&all[name], out * *mm, &all[*other], skin);

@@ -645,15 +645,15 @@ impl Assembly<'_> {
         moves.push(moving(self.names(&["rig-splice"]), "splice", Motion::Into, along(-MOUNT_APART_MM)));
         let bolts = self.names(&["splice-bolt"]);
         let far = self.length_mm(&bolts) + SMALL_APART_MM;
-        moves.push(each(bolts, "bolts of the splice", Motion::Into, self.from_its_side("splice-bolt", far)));
+        moves.push(each(bolts, "bolts of the splice", Motion::Into, self.toward_its_side("splice-bolt", far)));
         let nuts = self.names(&["splice-nut"]);
         let far = MOUNT_APART_MM + SMALL_APART_MM;
-        moves.push(each(nuts, "nuts", Motion::Into, self.from_its_side("splice-nut", far)));
+        moves.push(each(nuts, "nuts", Motion::Into, self.toward_its_side("splice-nut", far)));
         moves
     }
 
     /// A displacement along the axis toward the side from which bought bodies are put in.
-    fn from_its_side(&self, stem: &str, far_mm: f64) -> pinswitch_solid::mesh::Vector3 {
+    fn toward_its_side(&self, stem: &str, far_mm: f64) -> pinswitch_solid::mesh::Vector3 {
         along(if self.on_side(stem, true).is_empty() { -far_mm } else { far_mm })
     }
 
@@ -854,9 +854,9 @@ impl Assembly<'_> {
         let far = self.length_mm(&foot_bolts) + SMALL_APART_MM;
         let moves = vec![
             moving(self.names(&["rig-foot-left", "rig-foot-right"]), "feet", Motion::Into, along(-FEET_APART_MM)),
-            each(foot_bolts, "bolts M6", Motion::Into, self.from_its_side("foot-bolt", far)),
+            each(foot_bolts, "bolts M6", Motion::Into, self.toward_its_side("foot-bolt", far)),
             each(self.names(&["foot-washer"]), "", Motion::Still, along(0.0)),
-            each(self.names(&["foot-nut"]), "", Motion::Into, self.from_its_side("foot-nut", FEET_APART_MM)),
+            each(self.names(&["foot-nut"]), "", Motion::Into, self.toward_its_side("foot-nut", FEET_APART_MM)),
         ];
         Some(
             Step::new("Put the board on its feet")

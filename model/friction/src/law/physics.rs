@@ -43,12 +43,11 @@ pub(crate) fn with_uncertainty(known: FrictionWithSensitivities) -> UncertainFri
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile = StudentsT::new(0.0, 1.0, fit.degrees_of_freedom)
         .map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
-    let constants =
-        sensitivities
-            .iter()
-            .map(|all| all.fixed_rows::<3>(0).into_owned())
-            .map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt())
-            .collect();
+    let constants = sensitivities
+        .iter()
+        .map(|all| all.fixed_rows::<3>(0).into_owned())
+        .map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt())
+        .collect();
     let model = vec![quantile * fit.left_out_rms; friction_n.len()];
     UncertainFriction {
         friction_n,

@@ -645,7 +645,12 @@ impl Assembly<'_> {
         moves.push(moving(self.names(&["rig-splice"]), "splice", Motion::Into, along(-MOUNT_APART_MM)));
         let bolts = self.names(&["splice-bolt"]);
         let far = self.length_mm(&bolts) + SMALL_APART_MM;
-        moves.push(each(bolts, "bolts of the splice", Motion::Into, self.toward_its_side("splice-bolt", far)));
+        moves.push(each(
+            bolts,
+            "bolts of the splice",
+            Motion::Into,
+            self.toward_its_side("splice-bolt", far),
+        ));
         let nuts = self.names(&["splice-nut"]);
         let far = MOUNT_APART_MM + SMALL_APART_MM;
         moves.push(each(nuts, "nuts", Motion::Into, self.toward_its_side("splice-nut", far)));
@@ -853,10 +858,20 @@ impl Assembly<'_> {
         let foot_bolts = self.names(&["foot-bolt"]);
         let far = self.length_mm(&foot_bolts) + SMALL_APART_MM;
         let moves = vec![
-            moving(self.names(&["rig-foot-left", "rig-foot-right"]), "feet", Motion::Into, along(-FEET_APART_MM)),
+            moving(
+                self.names(&["rig-foot-left", "rig-foot-right"]),
+                "feet",
+                Motion::Into,
+                along(-FEET_APART_MM),
+            ),
             each(foot_bolts, "bolts M6", Motion::Into, self.toward_its_side("foot-bolt", far)),
             each(self.names(&["foot-washer"]), "", Motion::Still, along(0.0)),
-            each(self.names(&["foot-nut"]), "", Motion::Into, self.toward_its_side("foot-nut", FEET_APART_MM)),
+            each(
+                self.names(&["foot-nut"]),
+                "",
+                Motion::Into,
+                self.toward_its_side("foot-nut", FEET_APART_MM),
+            ),
         ];
         Some(
             Step::new("Put the board on its feet")
@@ -897,7 +912,15 @@ impl Assembly<'_> {
         };
         let parts = self.names(&["cell-mount", "actuator-foot", "crank-foot", "crank-drum", "crank-knob"]);
         let bought = self.names(&[
-            "load-cell", "cell-bolt", "eye-bolt", "line", "actuator", "drive-bolt", "drive-nut", "hook", "weight",
+            "load-cell",
+            "cell-bolt",
+            "eye-bolt",
+            "line",
+            "actuator",
+            "drive-bolt",
+            "drive-nut",
+            "hook",
+            "weight",
         ]);
         let moves = vec![placed(parts, "cell mount and drive"), placed(bought, "load cell and weights")];
         Some(

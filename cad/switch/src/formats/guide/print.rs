@@ -3,12 +3,12 @@
 use super::document::{Block, PictureSource, Step, Table};
 use super::footing::brim;
 use super::scenes::still;
-use crate::process::instructions;
 use crate::built::Built;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::formats::markdown::escape;
 use crate::plates::Plate;
+use crate::process::instructions;
 use crate::scene::{Bench, COUPON};
 use pinswitch_friction::pluralise;
 
@@ -89,7 +89,8 @@ fn face_on_bed(name: &str) -> &'static str {
         "mould-core" => "the base",
         "mould-lid" => "the side of the mould",
         "mould-tray" => "the base, open side up",
-        "support-left" | "support-right" | "base-flange" | "link-proximal" | "link-distal" | "rig-plate" | "rig-plate-2" => "the outer face",
+        "support-left" | "support-right" | "base-flange" | "link-proximal" | "link-distal" | "rig-plate"
+        | "rig-plate-2" => "the outer face",
         "coupon" => "the side without figures",
         _ => "a flat side",
     }

@@ -115,7 +115,10 @@ fn tools(design: &Design, bill: &Bill) -> Vec<String> {
     let c = design.configuration();
     let mut tools = vec![format!(
         "a printer for {} with a nozzle of {} mm and a bed of {} x {} mm or more",
-        c.process.material.data().name, c.print.nozzle_mm, c.print.bed_mm, c.print.bed_mm
+        c.process.material.data().name,
+        c.print.nozzle_mm,
+        c.print.bed_mm,
+        c.print.bed_mm
     )];
     let mut add = |is_needed: bool, tool: &str| {
         if is_needed {

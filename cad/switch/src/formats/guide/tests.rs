@@ -281,8 +281,7 @@ fn moved_bodies_have_a_free_path() {
                     for name in &m.bodies {
                         for other in present.iter().filter(|other| !m.bodies.contains(other)) {
                             let is_thread = name.contains("screw") && other.contains("insert");
-                            let is_screw =
-                                [name, *other].iter().any(|n| {
+                            let is_screw = [name, *other].iter().any(|n| {
                                 n.contains("screw") || n.starts_with("bolt") || n.starts_with("axle")
                             });
                             let skin = if is_screw { membrane_mm } else { 0.0 };

@@ -251,9 +251,7 @@ fn assemblies_have_pictures_and_sizes() {
 /// The longest side of a plate is along the paper, and its holes keep their fits.
 #[test]
 fn plates_are_square_to_the_sheet() {
-    for (mount, part) in
-        [("kind = \"rig\"\n", "rig-plate"), ("kind = \"joint\"\n", "link-proximal")]
-    {
+    for (mount, part) in [("kind = \"rig\"\n", "rig-plate"), ("kind = \"joint\"\n", "link-proximal")] {
         let built = built(&format!("[layout]\npins = [5, 8, 11]\n[mount]\n{mount}")).unwrap();
         let all = sheets(&built);
         let Some(sheet) = all.iter().find(|s| s.name == part) else { continue };

@@ -179,7 +179,7 @@ impl Calibration {
                 name: &name,
             };
             let proposal = propose(known, &rig, minutes)?;
-            let sheet = run_sheet(&name, &proposal);
+            let sheet = run_sheet(&name, &proposal, &rig);
             Ok((proposal, sheet))
         })?;
         let (proposal, sheet) = proposal.or_raise(py)?;

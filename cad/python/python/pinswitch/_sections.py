@@ -332,15 +332,12 @@ class Mould(Section):
     overfill_mm : float
         One-piece: height of the basin above the layer; cut the layer along its ledge. Range: 0 to 10 mm;
         default 1.0 (chosen).
-    layers : int
-        One-piece: layers cast at once; 11 g are mixed, and one layer takes 1 g. Range: 1 to 12; default 1
-        (chosen).
     draft_deg : float
         One-piece: draft of the basin's walls, whose silicone is cut off; the walls that shape the layer are
         vertical. Range: 0 to 5 deg; default 0.0 (chosen).
     shrinkage_pct : float
-        Linear shrinkage of the silicone: 0 when cured at 25 C, about 1 at 60 to 80 C. Range: 0 to 3 %; default
-        0.0 (chosen).
+        Linear shrinkage of the silicone that the cavity compensates, and with it the temperature of the cure: 0
+        for 25 C, 0.9 for 60 C in ABS. Range: 0 to 3 %; default 0.0 (chosen).
     clearance_mm : float
         Print clearance between parts of the split mould, per side. Range: 0.05 to 0.5 mm; default 0.2 (chosen).
     key_diameter_mm : float
@@ -356,14 +353,13 @@ class Mould(Section):
 
     _table = "mould"
     _keys = (
-        "kind", "wall_mm", "floor_mm", "overfill_mm", "layers", "draft_deg", "shrinkage_pct",
-        "clearance_mm", "key_diameter_mm", "key_height_mm", "pour_width_mm", "vent_diameter_mm",
+        "kind", "wall_mm", "floor_mm", "overfill_mm", "draft_deg", "shrinkage_pct", "clearance_mm",
+        "key_diameter_mm", "key_height_mm", "pour_width_mm", "vent_diameter_mm",
     )
     kind: str
     wall_mm: float
     floor_mm: float
     overfill_mm: float
-    layers: int
     draft_deg: float
     shrinkage_pct: float
     clearance_mm: float
@@ -379,42 +375,148 @@ class Mount(Section):
     Attributes
     ----------
     kind : str
-        Flange, finger-link or rig; with none, the two screws fasten the switch to a user-defined support.
-        Range: "none" or "flange" or "finger-link" or "rig"; default none (chosen).
+        Flange, joint or rig; with none, the two screws fasten the switch to a user-defined support. Range:
+        "none" or "flange" or "joint" or "rig"; default none (chosen).
     plate_mm : float
-        Thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolt. Range: 2 to 20
+        Thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolts. Range: 2 to 20
         mm; default 7.0 (chosen).
     hole_diameter_mm : float
-        Mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273). Range: 2 to 12 mm; default 4.5
-        (chosen).
+        Mounting holes of the plate, and at the ends of the links of a joint: 4.5 for M4 (ISO 273). Range: 2 to
+        12 mm; default 4.5 (chosen).
     rim_mm : float
         Wall around every hole of the plate. Range: 1 to 20 mm; default 3.0 (chosen).
-    bore_distance_mm : float
-        Finger-link: distance between the two bores. Range: 5 to 300 mm; default 45.0 (chosen).
-    bore_axis_deg : float
-        Finger-link: direction from the first bore to the second, 0 along the tendon at the middle of the wrap.
-        Range: -180 to 180 deg; default 0.0 (chosen).
-    bore_offset_mm : float
-        Finger-link: from the pulley's axis to the line between the bores, towards the wrap. Range: -100 to 100
-        mm; default 0.0 (chosen).
+    axle_mm : float
+        Joint: diameter of the bolt on the pulley's axis: 4, 5, 6 or 8 (M4 to M8, ISO 4014). Range: 4 to 8 mm;
+        default 5.0 (chosen).
+    proximal_mm : float
+        Joint: from the axis to the holes at the end of the proximal link, which carries the switch. Range: 10
+        to 300 mm; default 60.0 (chosen).
+    distal_mm : float
+        Joint: from the axis to the holes at the end of the distal link, which carries the load. Range: 10 to
+        300 mm; default 50.0 (chosen).
+    flexion_min_deg : float
+        Joint: flexion at the first stop; at 0 the links are in line. Range: 0 to 150 deg; default 0.0 (chosen).
+    flexion_max_deg : float
+        Joint: flexion at the second stop; the published segment ends at 76.7. Range: 5 to 170 deg; default 75.0
+        (chosen).
     pulley_distance_mm : float
-        Rig: from the switch's axis to that of the guide pulley, along the tendon. Range: 20 to 500 mm; default
-        70.0 (chosen).
+        Rig: straight tendon between the switch and each guide pulley. Range: 20 to 500 mm; default 70.0
+        (chosen).
     """
 
     _table = "mount"
     _keys = (
-        "kind", "plate_mm", "hole_diameter_mm", "rim_mm", "bore_distance_mm", "bore_axis_deg",
-        "bore_offset_mm", "pulley_distance_mm",
+        "kind", "plate_mm", "hole_diameter_mm", "rim_mm", "axle_mm", "proximal_mm", "distal_mm",
+        "flexion_min_deg", "flexion_max_deg", "pulley_distance_mm",
     )
     kind: str
     plate_mm: float
     hole_diameter_mm: float
     rim_mm: float
-    bore_distance_mm: float
-    bore_axis_deg: float
-    bore_offset_mm: float
+    axle_mm: float
+    proximal_mm: float
+    distal_mm: float
+    flexion_min_deg: float
+    flexion_max_deg: float
     pulley_distance_mm: float
+
+
+class Rig(Section):
+    """Table ``[rig]``.
+
+    Attributes
+    ----------
+    tendon_height_mm : float
+        Height of the tendon above the table between guide pulley and drive; the axis of the drive. Range: 45 to
+        120 mm; default 60.0 (chosen).
+    weight_diameter_mm : float
+        Largest diameter of the weights; the table's edge clears them by 10 mm. Range: 10 to 300 mm; default
+        120.0 (chosen).
+    hook_mass_g : float
+        Hook between tendon and weights; it is part of every load. Range: 0 to 1000 g; default 62.53
+        (published).
+    cell : str
+        S-beam is in line with the tendon; bar is cheaper and needs a longer bracket. Range: "s-beam" or "bar";
+        default s-beam (chosen).
+    cell_limit_n : float
+        Range of the load cell: 10 kg, the smallest common one above the paper's largest reading of 62.6 N.
+        Range: 1 to 1000 N; default 98.0 (chosen).
+    s_beam_thread_mm : float
+        S-beam: metric thread at both ends; M6 and M8 are common. Range: 4 to 12 mm; default 8.0 (assumed).
+    s_beam_length_mm : float
+        S-beam: length between the faces with the threads; measure it. Range: 20 to 120 mm; default 63.5
+        (assumed).
+    s_beam_width_mm : float
+        S-beam: width across the tendon; measure it. Range: 12 to 80 mm; default 50.8 (assumed).
+    s_beam_thickness_mm : float
+        S-beam: thickness; measure it. Range: 5 to 26 mm; default 12.7 (assumed).
+    bar_length_mm : float
+        Bar: length (TAL220 and YZC-133: 80). Range: 50 to 150 mm; default 80.0 (chosen).
+    bar_side_mm : float
+        Bar: side of the square section (TAL220: 12.7). Range: 6 to 26 mm; default 12.7 (chosen).
+    bar_hole_inset_mm : float
+        Bar: from each end to the outer hole (TAL220: 5). Range: 3 to 15 mm; default 5.0 (chosen).
+    bar_hole_spacing_mm : float
+        Bar: between the two holes of an end (TAL220: 15). Range: 8 to 25 mm; default 15.0 (chosen).
+    bar_screw_mm : float
+        Bar: metric thread at the fixed end (TAL220: M5). Range: 3 to 6 mm; default 5.0 (chosen).
+    bar_load_thread_mm : float
+        Bar: metric thread at the load end, for the eye bolt (TAL220: M4). Range: 3 to 6 mm; default 4.0
+        (chosen).
+    sample_rate_hz : float
+        Rate of the logger; 80 is the fast setting of the HX711 amplifier. Range: 1 to 100000 Hz; default 80.0
+        (chosen).
+    drive : str
+        Actuator moves at a known speed; crank needs no supply. Range: "actuator" or "crank"; default actuator
+        (chosen).
+    stroke_mm : float
+        Stroke of the drive. Range: 10 to 400 mm; default 152.4 (published).
+    full_speed_mm_s : float
+        Speed of the actuator at 100 %, 2 in/s; measure it with the heaviest load. Range: 0.1 to 1000 mm/s;
+        default 50.8 (chosen).
+    retracted_mm : float
+        Actuator: distance of its two holes when retracted; PA-14: the stroke and 5.51 in. Range: 60 to 900 mm;
+        default 292.4 (chosen).
+    clevis_pin_mm : float
+        Actuator: metric bolt through its two holes; M6 passes the holes of 6.35 of a PA-14. Range: 4 to 10 mm;
+        default 6.0 (chosen).
+    clevis_mm : float
+        Actuator: thickness of its eyes along the bolt; measure it. Range: 4 to 20 mm; default 10.0 (assumed).
+    body_mm : float
+        Actuator: diameter of its body (PA-14: 1.5 in). Range: 15 to 64 mm; default 38.1 (chosen).
+    """
+
+    _table = "rig"
+    _keys = (
+        "tendon_height_mm", "weight_diameter_mm", "hook_mass_g", "cell", "cell_limit_n",
+        "s_beam_thread_mm", "s_beam_length_mm", "s_beam_width_mm", "s_beam_thickness_mm",
+        "bar_length_mm", "bar_side_mm", "bar_hole_inset_mm", "bar_hole_spacing_mm", "bar_screw_mm",
+        "bar_load_thread_mm", "sample_rate_hz", "drive", "stroke_mm", "full_speed_mm_s", "retracted_mm",
+        "clevis_pin_mm", "clevis_mm", "body_mm",
+    )
+    tendon_height_mm: float
+    weight_diameter_mm: float
+    hook_mass_g: float
+    cell: str
+    cell_limit_n: float
+    s_beam_thread_mm: float
+    s_beam_length_mm: float
+    s_beam_width_mm: float
+    s_beam_thickness_mm: float
+    bar_length_mm: float
+    bar_side_mm: float
+    bar_hole_inset_mm: float
+    bar_hole_spacing_mm: float
+    bar_screw_mm: float
+    bar_load_thread_mm: float
+    sample_rate_hz: float
+    drive: str
+    stroke_mm: float
+    full_speed_mm_s: float
+    retracted_mm: float
+    clevis_pin_mm: float
+    clevis_mm: float
+    body_mm: float
 
 
 class Parts(Section):
@@ -508,6 +610,44 @@ class Print(Section):
     abs_density_g_cm3: float
 
 
+class Process(Section):
+    """Table ``[process]``.
+
+    Attributes
+    ----------
+    material : str
+        Material of the printed parts; the hottest cure in the mould, the inhibition of the cure, and the mass
+        follow from it. Range: "abs" or "petg" or "pla" or "resin"; default abs (published).
+    silicone : str
+        Silicone of the layer; mixing ratio, cure and the scatter of the hardness follow from it; other for one
+        whose data are on its package. Range: "sylgard-184" or "smooth-sil-950" or "smooth-sil-940" or
+        "dragon-skin-30" or "elastosil-m-4601" or "other"; default sylgard-184 (published).
+    cure_c : float
+        Cure in the mould; 0 for the temperature at which the silicone shrinks by mould.shrinkage_pct. Range: 0
+        to 200 C; default 0.0 (chosen).
+    oven_c : float
+        Hottest oven for a post-cure of the layer outside the mould, with which Sylgard 184 reaches the
+        published 50 Shore A; 25 without an oven. Range: 20 to 250 C; default 150.0 (chosen).
+    pins : str
+        Steel of the pins, for the shopping list; the friction of other surfaces is not measured. Range:
+        "tin-plated" or "music-wire" or "dowel"; default tin-plated (published).
+    coating : str
+        Coating of the tendon, for the shopping list; the friction of other coatings is not measured. Range:
+        "polyamide" or "ptfe" or "none"; default polyamide (published).
+    """
+
+    _table = "process"
+    _keys = (
+        "material", "silicone", "cure_c", "oven_c", "pins", "coating",
+    )
+    material: str
+    silicone: str
+    cure_c: float
+    oven_c: float
+    pins: str
+    coating: str
+
+
 class Mesh(Section):
     """Table ``[mesh]``.
 
@@ -590,9 +730,11 @@ class Sections:
     support: Support
     mould: Mould
     mount: Mount
+    rig: Rig
     parts: Parts
     label: Label
     print: Print
+    process: Process
     mesh: Mesh
     drawing: Drawing
     friction: Friction
@@ -610,9 +752,11 @@ SECTIONS: dict[str, type[Section]] = {
     "support": Support,
     "mould": Mould,
     "mount": Mount,
+    "rig": Rig,
     "parts": Parts,
     "label": Label,
     "print": Print,
+    "process": Process,
     "mesh": Mesh,
     "drawing": Drawing,
     "friction": Friction,

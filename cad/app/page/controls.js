@@ -133,6 +133,8 @@ class Control {
       this.isRestoring = false;
     }
     this.showError(problem);
+    // An answer about an earlier value does not remove this message.
+    this.isRefused = false;
     this.hasInvalidText = true;
   }
 
@@ -251,7 +253,7 @@ class Controls {
     const before = [...this.controls.values()].filter((c) => c.isRefused);
     for (const control of before) { control.showError(''); control.isRefused = false; }
     const control = trouble && this.controls.get(trouble.field);
-    if (control) {
+    if (control && !control.hasInvalidText) {
       control.showError(`${troubleText(trouble, control.name)}.`, fix);
       control.isRefused = true;
     }

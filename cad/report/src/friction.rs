@@ -210,7 +210,7 @@ mod tests {
             labels += usize::from(is_label);
             assert_eq!(
                 is_label || content == "physics",
-                y.parse::<u32>().unwrap() > fine::<u32>(1) * AXES,
+                y.parse::<u32>().unwrap() >= fine::<u32>(1) * AXES,
                 "{content}"
             );
         }

@@ -206,7 +206,7 @@ mod tests {
             let content = after.split('<').next().unwrap_or_default().trim();
             let y = before.split(" y=\"").nth(1).unwrap().split('"').next().unwrap();
             let is_label =
-                content.contains("band") || content.contains("capstan") || content.contains("published");
+                ["band", "capstan", "published", "switches at"].iter().any(|word| content.contains(word));
             labels += usize::from(is_label);
             assert_eq!(
                 is_label || content == "physics",

@@ -36,7 +36,7 @@ pub(super) const FORMAT: Format =
 /// Width and height of the picture of a plate, pixels.
 const PLATE_PIXELS: (u32, u32) = (900, 675);
 /// Width and height of the picture of a step, pixels.
-const STEP_PIXELS: (u32, u32) = (480, 330);
+const STEP_PIXELS: (u32, u32) = (420, 290);
 /// Direction of the camera above a plate.
 pub(super) const PLATE_VIEW: View = View { turn_deg: 0.0, rise_deg: 55.0 };
 

@@ -8,7 +8,7 @@ use nalgebra::Point2;
 use pinswitch_solid::profile::{ChordTolerance, Contour, Edge, polar};
 use pinswitch_switch::config::{Configuration, assign};
 use pinswitch_switch::design::Design;
-use pinswitch_switch::parts::{Material, Part, printed, reference_bodies, silicone_layer};
+use pinswitch_switch::parts::{Part, Substance, printed, reference_bodies, silicone_layer};
 
 type Polygons = Vec<Vec<[f64; 2]>>;
 
@@ -194,7 +194,7 @@ fn mould_cavity_equals_layer() {
         let design = design(&["layout.pins=[5, 8, 11]", &format!("mould.kind={kind}")]);
         let c = design.configuration();
         let layer = silicone_layer(&design).unwrap();
-        assert_eq!(layer.material(), Material::Silicone);
+        assert_eq!(layer.material(), Substance::Silicone);
         let parts = printed(&design).unwrap();
         // Heights just above the mould's floor, and just below the layer's width.
         for height in [0.05, design.layer_width_mm() - 0.05] {

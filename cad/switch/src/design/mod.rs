@@ -171,7 +171,11 @@ fn unmodelled(c: &Configuration) -> Vec<String> {
     if is_cast && product != default.process.silicone {
         all.push(no_law("process.silicone", product.as_str(), default.process.silicone.as_str(), effect));
     }
-    let (pins, coating) = (c.process.pins, c.process.coating);
+    let material = c.process.material;
+    if !is_cast && material != default.process.material {
+        all.push(no_law("process.material", material.as_str(), default.process.material.as_str(), effect));
+    }
+    let (pins, coating) = (c.process.pins, crate::process::coating(c));
     if pins != default.process.pins && !c.layout.pins.is_empty() {
         all.push(no_law("process.pins", pins.as_str(), default.process.pins.as_str(), effect));
     }

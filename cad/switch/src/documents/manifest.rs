@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::{Bill, PlateEntry, PrintEntry, bill_of_materials};
-use crate::config::{Configuration, Origin};
+use crate::config::{Choice, Configuration, Origin};
 use crate::design::Design;
 use crate::measured::Comparison;
 use crate::output::{OutputFile, SetError};
-use crate::parts::{Material, Part, Touch, touches};
+use crate::parts::{Part, Touch, touches};
 use crate::prediction::Prediction;
 use crate::process::part_density_g_cm3;
 use pinswitch_solid::validity::MeshFacts;
@@ -53,8 +53,8 @@ pub struct PartEntry {
     pub name: String,
     /// STL file.
     pub file: String,
-    /// Material.
-    pub material: Material,
+    /// Material (`process.material`).
+    pub material: &'static str,
     /// Volume of the exact solid, mm³.
     pub volume_mm3: f64,
     /// Surface of the exact solid, mm².
@@ -303,7 +303,7 @@ fn part_entry(part: &Part, facts: &MeshFacts, design: &Design) -> PartEntry {
     PartEntry {
         name: part.name.clone(),
         file: format!("{}.stl", part.name),
-        material: part.material(),
+        material: design.configuration().process.material.as_str(),
         volume_mm3,
         surface_mm2: part.solid.surface_mm2(),
         mass_g: volume_mm3 / 1000.0 * part_density_g_cm3(design.configuration()),

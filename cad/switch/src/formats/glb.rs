@@ -5,7 +5,7 @@ use crate::built::Built;
 use crate::documents::Manifest;
 use crate::hardware::hardware;
 use crate::output::{OutputFile, SetError};
-use crate::parts::Material;
+use crate::parts::Substance;
 use crate::prediction::Prediction;
 use pinswitch_solid::files::{GlbBody, GlbMaterial, glb};
 use pinswitch_solid::mesh::Mesh;
@@ -27,11 +27,11 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
         .filter_map(|body| {
             let mesh = body.part.pose?.apply(body.mesh.clone());
             let (name, opacity) = match body.part.material() {
-                Material::Abs => (built.design().configuration().process.material.data().name, 1.0),
-                Material::Silicone => ("silicone", SILICONE_OPACITY),
-                Material::Steel => ("steel", 1.0),
+                Substance::Plastic => (built.design().configuration().process.material.data().name, 1.0),
+                Substance::Silicone => ("silicone", SILICONE_OPACITY),
+                Substance::Steel => ("steel", 1.0),
             };
-            let metal = body.part.material() == Material::Steel;
+            let metal = body.part.material() == Substance::Steel;
             let material = GlbMaterial { name, colour: body.part.role.colour(), opacity, metal };
             Some((body.part.name.as_str(), mesh, material))
         })

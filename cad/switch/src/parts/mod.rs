@@ -37,7 +37,7 @@ pub(crate) use mould::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT, cast, k
 pub(crate) use mount::SPACER;
 pub use mount::spacer_mm;
 pub use omission::LeftOut;
-pub use part::{Material, Part, Role};
+pub use part::{Part, Role, Substance};
 pub(crate) use rig::{cell_bolts, cell_length_mm, front_mm, middle_mm, stand_holes};
 pub use sector::Sector;
 pub(crate) use stroke_font::{HEIGHT as LETTER_HEIGHT, WIDTH as LETTER_WIDTH, strokes as letter_strokes};

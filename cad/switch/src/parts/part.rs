@@ -18,9 +18,9 @@ const THIN_ROUNDING_MM: f64 = 1e-6;
 /// The material of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Material {
+pub enum Substance {
     /// Printed.
-    Abs,
+    Plastic,
     /// Cast.
     Silicone,
     /// Bought.
@@ -62,11 +62,11 @@ pub enum Role {
 
 impl Role {
     /// Returns the material of parts with this role.
-    pub const fn material(self) -> Material {
+    pub const fn material(self) -> Substance {
         match self {
-            Self::Layer => Material::Silicone,
-            Self::Pin { .. } | Self::Tendon => Material::Steel,
-            _ => Material::Abs,
+            Self::Layer => Substance::Silicone,
+            Self::Pin { .. } | Self::Tendon => Substance::Steel,
+            _ => Substance::Plastic,
         }
     }
 
@@ -139,7 +139,7 @@ impl Part {
     }
 
     /// Returns the material.
-    pub const fn material(&self) -> Material {
+    pub const fn material(&self) -> Substance {
         self.role.material()
     }
 
@@ -204,7 +204,7 @@ impl Part {
 
     /// Returns the places of a printed part with less than two printed lines of material, the thinnest first.
     pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
-        if self.material() != Material::Abs {
+        if self.material() != Substance::Plastic {
             return Vec::new();
         }
         let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;

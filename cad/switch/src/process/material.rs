@@ -31,6 +31,8 @@ pub struct PartMaterial {
     pub density_g_cm3: Option<f64>,
     /// Name of the filament for a slicer; `None` for a material that is not extruded.
     pub filament: Option<&'static str>,
+    /// What joins two parts of it.
+    pub glue: &'static str,
     /// Preparation without which addition-cured silicone stays tacky on the material.
     pub inhibition: Option<&'static str>,
 }
@@ -42,6 +44,7 @@ const ABS: PartMaterial = PartMaterial {
     shrinkage_pct: 0.7,
     density_g_cm3: None,
     filament: Some("ABS"),
+    glue: "ABS cement or epoxy",
     inhibition: None,
 };
 const PETG: PartMaterial = PartMaterial {
@@ -51,6 +54,7 @@ const PETG: PartMaterial = PartMaterial {
     shrinkage_pct: 0.3,
     density_g_cm3: Some(1.27),
     filament: Some("PET"),
+    glue: "epoxy",
     inhibition: None,
 };
 const PLA: PartMaterial = PartMaterial {
@@ -60,6 +64,7 @@ const PLA: PartMaterial = PartMaterial {
     shrinkage_pct: 0.2,
     density_g_cm3: Some(1.24),
     filament: Some("PLA"),
+    glue: "epoxy",
     inhibition: None,
 };
 const RESIN: PartMaterial = PartMaterial {
@@ -69,6 +74,7 @@ const RESIN: PartMaterial = PartMaterial {
     shrinkage_pct: 0.0,
     density_g_cm3: Some(1.15),
     filament: None,
+    glue: "epoxy",
     inhibition: Some("wash the mould, cure it under UV light, and bake it for 2 h at 50 C"),
 };
 

@@ -19,6 +19,7 @@ mod stock;
 
 use crate::config::{Choice, Configuration, MouldKind};
 use pinswitch_friction::Substrate;
+use pinswitch_friction::physics::modulus_of_shore_a_mpa;
 
 pub use cure::Cure;
 pub use material::{Material, PartMaterial};
@@ -90,9 +91,12 @@ impl Process {
         let temperature_c = mould_temperature_c(c, silicone, material);
         process.conflicts.extend(conflict_of_mould(c, silicone, material, temperature_c));
         let wanted = c.silicone.hardness_shore_a;
+        let hottest_c = hottest_available_c(c);
         match silicone.cure_for(wanted, temperature_c) {
-            Some(post_c) if post_c <= c.process.oven_c.max(ROOM_C) => {
-                let post_c = (post_c > temperature_c).then(|| rounded_c(post_c).min(silicone.hottest_c));
+            // A cure in the mould that is too hot for the oven is a conflict of the mould.
+            Some(post_c) if post_c <= hottest_c.max(temperature_c) => {
+                let most_c = silicone.hottest_c.min(hottest_c);
+                let post_c = (post_c > temperature_c).then(|| rounded_c(post_c).min(most_c));
                 process.post_cure = post_c.map(|temperature_c| Cure { temperature_c, hours: POST_CURE_H });
                 let hottest = post_c.unwrap_or(temperature_c);
                 process.hardness_shore_a =
@@ -125,11 +129,14 @@ impl Process {
     /// Relative standard deviation of the modulus of the layer, from the scatter of its hardness. 0 where it is not known,
     /// and for a rigid proxy.
     pub fn modulus_scatter(&self) -> f64 {
-        let modulus = pinswitch_friction::physics::modulus_of_shore_a_mpa;
-        self.hardness_shore_a.map_or(0.0, |[shore_a, scatter]| {
-            (modulus(shore_a + scatter) - modulus(shore_a - scatter)) / (2.0 * modulus(shore_a))
-        })
+        self.hardness_shore_a.map_or(0.0, |[shore_a, scatter]| relative_modulus_sd(shore_a, scatter))
     }
+}
+
+/// Relative standard deviation of the modulus of a silicone, from the hardness and its standard deviation, Shore A.
+pub(crate) fn relative_modulus_sd(shore_a: f64, sd_shore_a: f64) -> f64 {
+    (modulus_of_shore_a_mpa(shore_a + sd_shore_a) - modulus_of_shore_a_mpa(shore_a - sd_shore_a))
+        / (2.0 * modulus_of_shore_a_mpa(shore_a))
 }
 
 /// Temperature of the cure in the mould, °C: the configured one, or that of the shrinkage of the mould.
@@ -144,11 +151,16 @@ fn mould_temperature_c(c: &Configuration, silicone: &Silicone, material: &PartMa
     }
 }
 
+/// Hottest cure with the configured oven, °C: a room needs none.
+fn hottest_available_c(c: &Configuration) -> f64 {
+    c.process.oven_c.max(ROOM_C)
+}
+
 fn rounded_c(temperature_c: f64) -> f64 {
     (temperature_c / STEP_C).round() * STEP_C
 }
 
-/// Whether cavity and cure have the same shrinkage, and the cure spares the mould.
+/// Whether cavity and cure have the same shrinkage, the oven reaches the cure, and the cure spares the mould.
 fn conflict_of_mould(
     c: &Configuration,
     silicone: &Silicone,
@@ -157,6 +169,13 @@ fn conflict_of_mould(
 ) -> Option<Conflict> {
     let shrinkage = silicone.shrinkage_pct(temperature_c, material);
     let most_c = material.hottest_cure_c.min(silicone.hottest_in_mould_c);
+    let needs = || match c.process.cure_c > 0.0 {
+        true => format!("the cure in the mould is at {temperature_c} C"),
+        false => format!(
+            "{} shrinks by {:.2} % only when cured at {temperature_c} C",
+            silicone.name, c.mould.shrinkage_pct
+        ),
+    };
     if temperature_c > most_c {
         let why = if material.hottest_cure_c < silicone.hottest_in_mould_c {
             format!("a mould of {} softens above {} C", material.name, material.hottest_cure_c)
@@ -166,14 +185,20 @@ fn conflict_of_mould(
         let least = silicone.shrinkage_pct(most_c, material);
         return Some(Conflict {
             subject: Subject::Mould,
-            problem: match c.process.cure_c > 0.0 {
-                true => format!("{why}, and the cure in the mould is at {temperature_c} C"),
-                false => format!(
-                    "{} shrinks by {:.2} % only when cured at {temperature_c} C, and {why}",
-                    silicone.name, c.mould.shrinkage_pct
-                ),
-            },
+            problem: format!("{}, and {why}", needs()),
             help: format!("set mould.shrinkage_pct to at most {:.1}", (10.0 * least).floor() / 10.0),
+        });
+    }
+    let oven_c = hottest_available_c(c);
+    if temperature_c > oven_c {
+        let least = silicone.shrinkage_pct(oven_c, material);
+        return Some(Conflict {
+            subject: Subject::Mould,
+            problem: format!("{}, and process.oven_c is {}", needs(), c.process.oven_c),
+            help: format!(
+                "set process.oven_c to {temperature_c}, or mould.shrinkage_pct to {:.1} and process.cure_c to 0",
+                (10.0 * least).floor() / 10.0
+            ),
         });
     }
     ((shrinkage - c.mould.shrinkage_pct).abs() > SHRINKAGE_TOLERANCE_PCT).then(|| Conflict {
@@ -222,6 +247,11 @@ fn conflict_of_hardness(
             (10.0 * nearest).round() / 10.0
         ),
     }
+}
+
+/// The coating of the tendon: none where its thickness is 0.
+pub fn coating(c: &Configuration) -> Coating {
+    if c.tendon.coating_mm > 0.0 { c.process.coating } else { Coating::Bare }
 }
 
 /// Density of the printed parts, g/cm³: the configured one for ABS, else that of the material.

@@ -43,6 +43,15 @@ impl PinStock {
         }
     }
 
+    /// Returns the material in a parts list.
+    pub const fn material(self) -> &'static str {
+        match self {
+            Self::TinPlated => "Steel, polished",
+            Self::MusicWire => "Spring steel",
+            Self::Dowel => "Steel, hardened",
+        }
+    }
+
     /// Returns the diameters on sale, mm; empty where any diameter is.
     pub const fn diameters_mm(self) -> &'static [f64] {
         match self {
@@ -73,6 +82,15 @@ impl Coating {
             Self::Polyamide => "polyamide-12 coating",
             Self::Ptfe => "PTFE coating",
             Self::Bare => "no coating",
+        }
+    }
+
+    /// Returns the material in a parts list, with that of the rope.
+    pub const fn with_rope(self) -> &'static str {
+        match self {
+            Self::Polyamide => "Steel, polyamide 12",
+            Self::Ptfe => "Steel, PTFE",
+            Self::Bare => "Steel",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Direction::{Lower, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, advise, require};
 use crate::config::{Choice, MouldKind};
-use crate::process::{Process, nearest_pin_mm, pin_is_sold};
+use crate::process::{Coating, Process, nearest_pin_mm, pin_is_sold};
 use pinswitch_friction::Substrate;
 
 /// Coldest cure that counts as one, °C; 0 leaves it to the shrinkage.
@@ -12,6 +12,7 @@ const LEAST_CURE_C: f64 = 18.0;
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "process.cure_c", severity: Severity::Error, assess: cure_is_warm },
     Rule { field: "process.cure_c", severity: Severity::Error, assess: cure_agrees_with_the_mould },
+    Rule { field: "process.coating", severity: Severity::Error, assess: bare_rope_has_no_coating },
     Rule { field: "mould.shrinkage_pct", severity: Severity::Warning, assess: shrinkage_can_be_made },
     Rule { field: "silicone.hardness_shore_a", severity: Severity::Warning, assess: hardness_can_be_made },
     Rule { field: "silicone.mix_ratio", severity: Severity::Warning, assess: ratio_of_the_product },
@@ -52,11 +53,23 @@ fn cure_agrees_with_the_mould(i: &Inspection<'_>) -> Assessment {
             &[
                 Set("process.cure_c", "0.0"),
                 Lower("process.cure_c"),
+                Raise("process.oven_c"),
                 Raise("mould.shrinkage_pct"),
                 Lower("mould.shrinkage_pct"),
                 Set("process.silicone", "\"sylgard-184\""),
                 Set("process.material", "\"abs\""),
             ],
+        )
+    })
+}
+
+fn bare_rope_has_no_coating(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let is_consistent = c.process.coating != Coating::Bare || c.tendon.coating_mm == 0.0;
+    require(is_consistent, || {
+        (
+            format!("the coating of the tendon is {} mm thick (tendon.coating_mm)", c.tendon.coating_mm),
+            &[Set("tendon.coating_mm", "0.0"), Set("process.coating", "\"polyamide\"")],
         )
     })
 }

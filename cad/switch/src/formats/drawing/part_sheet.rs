@@ -3,7 +3,7 @@
 use super::fits::fits;
 use super::words;
 use crate::design::Design;
-use crate::parts::{Material, Part, Role};
+use crate::parts::{Part, Role, Substance};
 use pinswitch_drafting::{Fits, Paper, PartDrawing, Sheet, Terms, TitleBlock};
 use pinswitch_solid::profile::{Edge, Point2};
 use pinswitch_solid::solid::Solid;
@@ -19,7 +19,7 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: &TitleBlock, paper
     // The fits of a plate are in the frame of the assembly, and turn with it.
     let fits = rotated(fits(design, if turn_rad == 0.0 { &drawn } else { part }), turn_rad);
     let part = &drawn;
-    let is_printed = part.material() == Material::Abs;
+    let is_printed = part.material() == Substance::Plastic;
     let drawing = PartDrawing {
         chamfer_mm: if is_printed { design.configuration().print.elephant_foot_mm } else { 0.0 },
         half_span_rad: Some(design.half_span_rad()),

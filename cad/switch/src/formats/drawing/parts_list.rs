@@ -4,6 +4,7 @@ use super::words;
 use crate::built::Built;
 use crate::documents::{STOP_SCREWS, bill_of_materials};
 use crate::parts::{Part, Role};
+use crate::process::coating;
 use crate::rig::RigBolts;
 use pinswitch_drafting::number;
 
@@ -103,7 +104,13 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         number(bill.tendon.rope_diameter_mm),
         number(bill.tendon.length_mm)
     );
-    add("1".to_owned(), tendon, "bought".to_owned(), "Steel, polyamide 12".to_owned(), "tendon");
+    add(
+        "1".to_owned(),
+        tendon,
+        "bought".to_owned(),
+        coating(design.configuration()).with_rope().to_owned(),
+        "tendon",
+    );
     for part in built.printed().iter().map(|p| p.part()) {
         if !assembled.iter().any(|a| a.name == part.name) {
             let place = if part.role == Role::Stand { "on the table" } else { "not in the assembly" };

@@ -3,17 +3,17 @@
 use super::fits::is_coupon;
 use crate::design::Design;
 use crate::documents::layout_text;
-use crate::parts::{Material, Part, Role};
+use crate::parts::{Part, Role, Substance};
 use pinswitch_drafting::{lettering, number};
 
 /// The material in the title block.
-pub(super) fn material(design: &Design, material: Material) -> String {
+pub(super) fn material(design: &Design, material: Substance) -> String {
     match material {
-        Material::Abs => format!("{}, printed", design.configuration().process.material.data().name),
-        Material::Silicone => {
+        Substance::Plastic => format!("{}, printed", design.configuration().process.material.data().name),
+        Substance::Silicone => {
             format!("Silicone, {} Shore A", number(design.configuration().silicone.hardness_shore_a))
         }
-        Material::Steel => "Steel, polished".to_owned(),
+        Substance::Steel => design.configuration().process.pins.material().to_owned(),
     }
 }
 
@@ -23,13 +23,13 @@ const GENERAL_PROFILE_MM: f64 = 0.6;
 
 /// The general tolerances in the title block: of sizes by ISO 2768-1, of geometry by ISO 22081, and of cast parts by
 /// ISO 3302-1.
-pub(super) fn general_tolerance(material: Material) -> String {
+pub(super) fn general_tolerance(material: Substance) -> String {
     match material {
-        Material::Abs => {
+        Substance::Plastic => {
             format!("ISO 2768-1 c (milled: m); profile of surfaces {GENERAL_PROFILE_MM} (ISO 22081)")
         }
-        Material::Silicone => "ISO 3302-1 M3, cast".to_owned(),
-        Material::Steel => "ISO 2768-1 m".to_owned(),
+        Substance::Silicone => "ISO 3302-1 M3, cast".to_owned(),
+        Substance::Steel => "ISO 2768-1 m".to_owned(),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::design::Design;
 use crate::design::rules::{Check, checklist};
 use crate::documents::{Manifest, friction_csv, layout_text};
 use crate::output::SetError;
-use crate::parts::{Material, Role};
+use crate::parts::{Role, Substance};
 use crate::prediction::Prediction;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
@@ -55,7 +55,7 @@ struct MeshData {
 #[derive(Debug, Serialize)]
 struct Body {
     name: String,
-    material: Material,
+    material: Substance,
     colour: [u8; 3],
     mesh: usize,
     /// From the mesh to the assembly, column by column.

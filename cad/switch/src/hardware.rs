@@ -4,7 +4,7 @@
 
 use crate::config::MountKind;
 use crate::design::{AXLE_HEAD_MM, Design, Hole, Recess, STOP_SCREW, Thread, axle_recess, stop_recess};
-use crate::documents::{AXLE_NUT_MM, BEARING_MM, bill_of_materials};
+use crate::documents::{AXLE_NUT_MM, AXLE_WASHER_MM, BEARING_MM, bill_of_materials};
 use crate::parts::spacer_mm;
 use crate::rig::rig_hardware;
 use pinswitch_solid::profile::{Contour, Point2, polar};
@@ -14,8 +14,6 @@ use pinswitch_solid::solid::{Facing, Solid};
 const AXLE_MM: f64 = 4.0;
 const WASHER_MM: [f64; 2] = [4.2, 8.0];
 const BEARING_RING_MM: [f64; 2] = [4.0, 11.0];
-/// Thickness of the washer, mm.
-const WASHER_HIGH_MM: f64 = 1.6;
 /// Radius of an M3 shank, mm.
 const STOP_SHANK_MM: f64 = 1.5;
 /// Share of a hole that a screw without a metric thread fills.
@@ -112,9 +110,26 @@ impl HardwareKind {
             Self::Weight => "weight",
         }
     }
-}
 
-impl HardwareKind {
+    /// Returns whether the body belongs to the stand of the rig: feet, cell, drive and load.
+    pub(crate) const fn is_of_stand(self) -> bool {
+        matches!(
+            self,
+            Self::FootBolt
+                | Self::FootWasher
+                | Self::FootNut
+                | Self::Cell
+                | Self::CellBolt
+                | Self::EyeBolt
+                | Self::Line
+                | Self::Actuator
+                | Self::DriveBolt
+                | Self::DriveNut
+                | Self::Hook
+                | Self::Weight
+        )
+    }
+
     /// Returns the colour in pictures: red, green, blue.
     pub const fn colour(self) -> [u8; 3] {
         match self {
@@ -263,7 +278,7 @@ fn on_the_bolts(design: &Design, add: &mut impl FnMut(HardwareKind, bool, Option
 fn on_the_bolt(design: &Design, axle: Hole, add: &mut impl FnMut(HardwareKind, bool, Option<Solid>)) {
     let bearing = faces_mm(design)[1] + spacer_mm(design);
     let washer = bearing + BEARING_MM;
-    let nut = washer + WASHER_HIGH_MM;
+    let nut = washer + AXLE_WASHER_MM;
     let ring = |[inner, outer]: [f64; 2], span| {
         let bore = Contour::circle(axle.centre, inner).reversed();
         prism(&Contour::circle(axle.centre, outer), Some(bore), span)

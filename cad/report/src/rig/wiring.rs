@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use pinswitch_friction::published::GRAVITY_M_S2;
+
 use super::{Drive, RigFacts};
 use crate::html::escape;
 
@@ -76,7 +78,7 @@ pub fn wiring_svg(facts: &RigFacts) -> String {
     }
     let notes = [
         format!(
-            "Load = (weight + hook of {} g) x 9.80665 m/s2; the heaviest is {:.2} N, the cell's range {} N.",
+            "Load = (weight + hook of {} g) x {GRAVITY_M_S2} m/s2; the heaviest is {:.2} N, the cell's range {} N.",
             facts.hook_mass_g,
             facts.heaviest_n(),
             facts.cell_limit_n

@@ -53,8 +53,22 @@ const CELL_PLAY_MM: f64 = 0.5;
 pub(crate) const DRIVE_DEPTH_MM: f64 = 40.0;
 /// Radius of the drum of the crank, mm.
 pub(crate) const DRUM_MM: f64 = 20.0;
+/// Thickness of the face plate of the drum, and width of the bottom of its groove, mm.
+pub(crate) const DRUM_FACE_MM: f64 = 8.0;
+pub(crate) const DRUM_GROOVE_MM: f64 = 9.0;
+/// Radius and width of the rim of the drum's flange, mm. The slope from the groove to the rim is 45 deg.
+pub(crate) const DRUM_FLANGE_MM: f64 = 26.0;
+const DRUM_RIM_MM: f64 = 2.0;
 /// Height of the middle of the drum's groove over its outer face, mm.
-pub(crate) const DRUM_MIDDLE_MM: f64 = 12.5;
+pub(crate) const DRUM_MIDDLE_MM: f64 = DRUM_FACE_MM + DRUM_GROOVE_MM / 2.0;
+/// Length of the drum and of the knob of the crank along their axes, mm.
+pub(crate) const DRUM_LENGTH_MM: f64 =
+    DRUM_FACE_MM + DRUM_GROOVE_MM + (DRUM_FLANGE_MM - DRUM_MM) + DRUM_RIM_MM;
+pub(crate) const KNOB_LENGTH_MM: f64 = 45.0;
+/// Length of the lever of the crank without a table below it, and its least distance from the table, mm: for the knob and
+/// the fingers around it.
+const LEVER_MM: f64 = 75.0;
+const LEVER_ROOM_MM: f64 = 18.0;
 /// Radius of the circle of the drum's locking holes, mm, and their number.
 pub(crate) const LOCK_MM: f64 = 30.0;
 pub(crate) const LOCKS: usize = 24;
@@ -176,7 +190,10 @@ impl Dimensions {
         let pin_x_mm = [lowered, lowered + rig.stroke_mm];
         let drive = match rig.drive {
             DriveKind::Actuator => Point2::new(lowered + rig.retracted_mm + rig.stroke_mm, line_y_mm),
-            DriveKind::Crank => Point2::new(pin_x_mm[1] + DRUM_APART_MM, line_y_mm + DRUM_MM),
+            DriveKind::Crank => {
+                let winding_mm = DRUM_MM + self.tendon_diameter_mm() / 2.0;
+                Point2::new(pin_x_mm[1] + DRUM_APART_MM, line_y_mm + winding_mm)
+            }
         };
         let mut layout = RigLayout {
             load_axle,
@@ -285,6 +302,6 @@ impl Dimensions {
 
     /// Returns the length of the lever of the crank, mm: it clears the table.
     pub(crate) fn lever_mm(&self) -> f64 {
-        (self.configuration().rig.tendon_height_mm + DRUM_MM - 18.0).min(75.0)
+        (self.configuration().rig.tendon_height_mm + DRUM_MM - LEVER_ROOM_MM).min(LEVER_MM)
     }
 }

@@ -13,8 +13,9 @@ use pinswitch_friction::Substrate;
 const BEARING: &str = "608";
 /// Number of screws of the sheath stop.
 pub const STOP_SCREWS: usize = 2;
-/// Width of a 608 bearing (ISO 15), and height of an M8 nut (ISO 4032), mm.
+/// Width of a 608 bearing (ISO 15), of an M8 washer (ISO 7089), and height of an M8 nut (ISO 4032), mm.
 pub(crate) const BEARING_MM: f64 = 7.0;
+pub(crate) const AXLE_WASHER_MM: f64 = 1.6;
 pub(crate) const AXLE_NUT_MM: f64 = 6.8;
 
 /// Steel pins.
@@ -101,7 +102,7 @@ pub struct Dowels {
 /// Hardware of a mounting plate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountHardware {
-    /// Number of holes for screws of the plate, or for pins of a link.
+    /// Number of holes for screws of the plate, or at the end of the proximal link.
     pub holes: usize,
     /// Diameter of these holes, mm.
     pub hole_diameter_mm: f64,
@@ -225,14 +226,19 @@ fn dowels(design: &Design) -> Option<Dowels> {
 fn mount(design: &Design) -> Option<MountHardware> {
     let c = design.configuration();
     let mounting = design.mounting()?;
-    // The head is in the plate; spacer, bearing and nut follow.
-    let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
+    // The head is in the plate; spacer, bearing, washer and nut follow.
+    let stack = c.mount.plate_mm - axle_recess().depth_mm
+        + spacer_mm(design)
+        + BEARING_MM
+        + AXLE_WASHER_MM
+        + AXLE_NUT_MM;
     let axle_length_mm = mounting.axle.map(|_| bolt_mm(stack));
     let axle = axle_length_mm.map(|length| format!("M8 x {length} hexagon bolt (ISO 4017), washer and nut"));
     let joint = design.joint();
     let axle = axle.or_else(|| joint.as_ref().and_then(axle_of_joint));
     let axle_length_mm = axle_length_mm.or_else(|| joint.as_ref().and_then(|joint| joint.axle_length_mm));
-    let crimp_sleeve = joint.map(|_| format!("crimp sleeve for a rope of {} mm", c.tendon.rope_diameter_mm));
+    let crimp_sleeve =
+        joint.map(|_| format!("crimp sleeve for a rope of {} mm", design.tendon_diameter_mm()));
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
     let stop_screw_length_mm = mounting.sheath.and_then(|_| STOP_SCREW.at_least_mm(stack));
     let stop_screw = stop_screw_length_mm.map(|length| format!("{} x {length}", STOP_SCREW.name));

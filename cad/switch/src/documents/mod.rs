@@ -7,7 +7,7 @@ mod manifest;
 mod plate_entry;
 mod print_entry;
 
-pub(crate) use bill::{AXLE_NUT_MM, BEARING_MM};
+pub(crate) use bill::{AXLE_NUT_MM, AXLE_WASHER_MM, BEARING_MM};
 pub use bill::{Bill, STOP_SCREWS, bill_of_materials};
 pub use friction_csv::friction_csv;
 pub use layout::layout_text;

@@ -314,7 +314,8 @@ fn bodies_of_a_rig_do_not_overlap() {
         let design = design(set);
         let parts = assembled(&design);
         assert_eq!(overlap(&parts), None, "{set:?}");
-        let large = ["load-cell", "actuator", "weight", "eye-bolt", "foot-washer", "bolt-nut", "bearing"];
+        let large =
+            ["load-cell", "actuator", "weight", "eye-bolt", "foot-washer", "bolt-nut", "bearing", "line"];
         let bought =
             hardware(&design).into_iter().filter(|b| large.iter().any(|name| b.name.starts_with(name)));
         let stand: Vec<Part> =

@@ -1,7 +1,10 @@
 //! Bolts of the rig: threads and lengths.
 
 use crate::config::{CellKind, DriveKind};
-use crate::design::rig::{CELL_PLATE_MM, CELL_WALL_MM, DRIVE_DEPTH_MM, FOOT_DEPTH_MM, WASHER_MM};
+use crate::design::rig::{
+    CELL_PLATE_MM, CELL_WALL_MM, DRIVE_DEPTH_MM, DRUM_FACE_MM, DRUM_LENGTH_MM, FOOT_DEPTH_MM, KNOB_LENGTH_MM,
+    WASHER_MM,
+};
 use crate::design::{Design, clearance};
 use crate::parts::cell_bolts;
 
@@ -16,11 +19,6 @@ const M6_LOCK_NUT_MM: f64 = 8.0;
 const M8_LOCK_NUT_MM: f64 = 9.5;
 /// Least engagement of the bolt of a cell, in diameters of its thread.
 const ENGAGEMENT: f64 = 0.8;
-/// Length of the drum and of the knob of the crank along their axes, mm.
-pub(super) const DRUM_LENGTH_MM: f64 = 25.0;
-const KNOB_MM: f64 = 45.0;
-/// Thickness of the face plate of the drum, mm.
-const FACE_MM: f64 = 8.0;
 
 /// Returns the shortest available bolt of at least `least_mm`, or the longest one.
 pub(crate) fn bolt_mm(least_mm: f64) -> f64 {
@@ -69,8 +67,8 @@ impl RigBolts {
                 CELL_PLATE_MM + 2.0 * M6_NUT_MM + layout.cell_height_mm,
                 DRIVE_DEPTH_MM + WASHER_MM + DRUM_LENGTH_MM + WASHER_MM + M8_LOCK_NUT_MM,
                 Some([
-                    bolt_mm(DRIVE_DEPTH_MM + WASHER_MM + FACE_MM),
-                    bolt_mm(FACE_MM + WASHER_MM + KNOB_MM + WASHER_MM + M6_LOCK_NUT_MM),
+                    bolt_mm(DRIVE_DEPTH_MM + WASHER_MM + DRUM_FACE_MM),
+                    bolt_mm(DRUM_FACE_MM + WASHER_MM + KNOB_LENGTH_MM + WASHER_MM + M6_LOCK_NUT_MM),
                 ]),
             ),
         };

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use super::RigBolts;
-use super::bolts::{DRUM_LENGTH_MM, M6_NUT_MM};
+use super::bolts::M6_NUT_MM;
 use crate::config::{CellKind, DriveKind};
 use crate::design::rig::{
-    CELL_PLATE_MM, CELL_ROOM_MM, CELL_WALL_MM, DRIVE_DEPTH_MM, EYE_MM, FOOT_DEPTH_MM, LOCK_MM, WASHER_MM,
-    flats_mm,
+    CELL_PLATE_MM, CELL_ROOM_MM, CELL_WALL_MM, DRIVE_DEPTH_MM, DRUM_LENGTH_MM, EYE_MM, FOOT_DEPTH_MM,
+    LOCK_MM, WASHER_MM, flats_mm,
 };
 use crate::design::{Design, RigLayout};
 use crate::hardware::{HardwareKind, hexagon, prism, stepped};

@@ -1,7 +1,7 @@
 //! The isometric and the exploded view of the assembly, in the free space of its sheet.
 
 use crate::built::Built;
-use crate::hardware::{HardwareKind, hardware};
+use crate::hardware::{Hardware, HardwareKind, hardware};
 use crate::parts::{Part, Role};
 use pinswitch_drafting::view::{Shifted, Stroke, draw_strokes, isometric, legible};
 use pinswitch_drafting::{Draft, Extent, Layer, Point, Sheet};
@@ -38,7 +38,9 @@ pub(super) struct Picture {
 /// Returns the exploded and the isometric view of these bodies with the bought hardware.
 pub(super) fn pictures(built: &Built, bodies: &[(&Part, Pose)]) -> Vec<Picture> {
     let design = built.design();
-    let bought = hardware(design);
+    // The stand is not on the sheet: the switch would be too small.
+    let bought: Vec<Hardware> =
+        hardware(design).into_iter().filter(|body| !body.kind.is_of_stand()).collect();
     let has_mount = bodies.iter().any(|(part, _)| part.role == Role::Mount);
     let of = |view, title, explosion: f64| {
         let parts = bodies.iter().map(|(part, pose)| {

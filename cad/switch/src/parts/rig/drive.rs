@@ -6,7 +6,8 @@ use super::super::{Part, Pose, Role, offset_error};
 use super::{PLAY_MM, layout, middle_mm};
 use crate::config::ConfigError;
 use crate::design::rig::{
-    DRIVE_DEPTH_MM, DRUM_MIDDLE_MM, DRUM_MM, FOOT_BASE_MM, LOCK_MM, LOCKS, M6_HOLE_MM, WASHER_MM,
+    DRIVE_DEPTH_MM, DRUM_FACE_MM, DRUM_FLANGE_MM, DRUM_GROOVE_MM, DRUM_LENGTH_MM, DRUM_MIDDLE_MM, DRUM_MM,
+    FOOT_BASE_MM, KNOB_LENGTH_MM, LOCK_MM, LOCKS, M6_HOLE_MM, WASHER_MM,
 };
 use crate::design::{Design, Hole};
 use pinswitch_solid::profile::{Contour, Disc, Point2, hull, polar};
@@ -19,19 +20,14 @@ const WEB_HALF_MM: f64 = 14.0;
 pub(super) const AXLE_HOLE_MM: f64 = 8.4;
 /// Hole for the locking pin, an M5 bolt, mm.
 pub(super) const LOCK_HOLE_MM: f64 = 5.5;
-/// Thickness of the face plate of the drum, its radius, and the radius of the flange, mm.
-const FACE_MM: f64 = 8.0;
+/// Radius of the face plate of the drum, mm.
 const FACE_RADIUS_MM: f64 = 37.0;
-const FLANGE_MM: f64 = 26.0;
-/// Width of the bottom of the groove and of the rim of the flange, mm.
-const GROOVE_MM: f64 = 9.0;
-const RIM_MM: f64 = 2.0;
 /// Radius of the end of the lever, mm.
 const LEVER_END_MM: f64 = 8.0;
 /// Hole for the knot of the tendon: radius and distance from the axis, mm.
 const KNOT_MM: [f64; 2] = [1.5, 24.0];
-/// Radius and length of the knob, mm.
-const KNOB_MM: [f64; 2] = [11.0, 45.0];
+/// Radius of the knob, mm.
+const KNOB_RADIUS_MM: f64 = 11.0;
 
 /// Returns the height of the front face of the foot of the drive in the assembly, mm.
 pub(crate) fn front_mm(design: &Design, is_crank: bool) -> f64 {
@@ -121,13 +117,13 @@ fn drum(design: &Design, axis: Point2) -> Result<Solid, ConfigError> {
         .chain([hole(axis + knot, KNOT_MM[0])])
         .collect();
     let mut solid = Solid::new();
-    let (bottom, deck) = solid.extrude_chamfered(&face, 0.0, FACE_MM, chamfer).map_err(&foot)?;
-    let (mut bottoms, mut decks) = solid.through_holes(&holes, 0.0, FACE_MM, chamfer).map_err(&foot)?;
-    let slope = FACE_MM + GROOVE_MM;
-    let rim = slope + FLANGE_MM - DRUM_MM;
-    let top = rim + RIM_MM;
-    let (barrel, neck) = solid.extrude(&circle(DRUM_MM), FACE_MM, slope);
-    let (edge, upper) = solid.extrude(&circle(FLANGE_MM), rim, top);
+    let (bottom, deck) = solid.extrude_chamfered(&face, 0.0, DRUM_FACE_MM, chamfer).map_err(&foot)?;
+    let (mut bottoms, mut decks) = solid.through_holes(&holes, 0.0, DRUM_FACE_MM, chamfer).map_err(&foot)?;
+    let slope = DRUM_FACE_MM + DRUM_GROOVE_MM;
+    let rim = slope + DRUM_FLANGE_MM - DRUM_MM;
+    let top = DRUM_LENGTH_MM;
+    let (barrel, neck) = solid.extrude(&circle(DRUM_MM), DRUM_FACE_MM, slope);
+    let (edge, upper) = solid.extrude(&circle(DRUM_FLANGE_MM), rim, top);
     solid.wall(neck, edge);
     decks.push(barrel);
     let bore = hole(axis, AXLE_HOLE_MM / 2.0);
@@ -142,19 +138,18 @@ fn drum(design: &Design, axis: Point2) -> Result<Solid, ConfigError> {
 /// The knob on the lever. It turns on an M6 bolt.
 pub(in crate::parts) fn crank_knob(design: &Design) -> Result<Part, ConfigError> {
     let axis = layout(design)?.drive;
-    let [radius, length] = KNOB_MM;
     let about = |centre: Point2| {
         let bore = Contour::circle(centre, M6_HOLE_MM / 2.0).reversed();
         Solid::prism(
-            &Contour::circle(centre, radius),
+            &Contour::circle(centre, KNOB_RADIUS_MM),
             &[bore],
             0.0,
-            length,
+            KNOB_LENGTH_MM,
             design.configuration().print.elephant_foot_mm,
         )
         .map_err(offset_error("print.elephant_foot_mm"))
     };
-    let z_mm = middle_mm(design) - DRUM_MIDDLE_MM + FACE_MM + WASHER_MM;
+    let z_mm = middle_mm(design) - DRUM_MIDDLE_MM + DRUM_FACE_MM + WASHER_MM;
     let lever = axis + polar(design.lever_mm(), 0.0).coords;
     let part = Part::new("crank-knob", Role::Stand, about(lever)?, Some(Pose::upright(z_mm)));
     Ok(Part { drawn: Some(about(Point2::origin())?), ..part })

@@ -13,7 +13,11 @@ pub(super) fn cover(design: &Design, prediction: &Prediction, manifest: &Manifes
         Block::Paragraph(what_it_is(design)),
         Block::Picture {
             file: "assembly.png".to_owned(),
-            alt: "Exploded view of the assembly".to_owned(),
+            // The picture of a rig is not exploded.
+            alt: match design.rig_layout() {
+                Some(_) => "The assembled rig".to_owned(),
+                None => "Exploded view of the assembly".to_owned(),
+            },
             source: PictureSource::Exploded,
         },
         Block::Heading { number: None, text: "What it will do".to_owned() },
@@ -84,12 +88,8 @@ fn what_it_does(design: &Design, prediction: &Prediction, manifest: &Manifest) -
         f.band_n[0],
         f.band_n[1],
         f.load_n,
-        status_name(f.trust)
+        f.trust.as_str()
     )
-}
-
-fn status_name(status: PredictionStatus) -> String {
-    format!("{status:?}").to_lowercase()
 }
 
 /// The support of the prediction by measurements.
@@ -104,6 +104,6 @@ fn support(manifest: &Manifest) -> String {
     format!(
         "The line is the prediction, and the shaded band has a probability of 95 %. The prediction is {}: {meaning}. \
          `friction.csv` and `friction.svg` contain the curve.",
-        status_name(manifest.friction.trust)
+        manifest.friction.trust.as_str()
     )
 }

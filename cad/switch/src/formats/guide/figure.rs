@@ -80,7 +80,7 @@ pub(crate) fn curve_figure(curve: &FrictionCurve, threshold_n: Option<f64>) -> F
     let text = |align, at, text: String| Shape::Text(Ink::Axis, align, at, text);
     shapes.push(Shape::Line(Ink::Axis, vec![[left, high], [left, low], [x(load), low]]));
     for (step, most, is_load) in [(tick(load), load, true), (tick(friction), friction, false)] {
-        let decimals = if step < 1.0 { 1 } else { 0 };
+        let decimals = (-libm::floor(libm::log10(step) + 1e-9)).max(0.0) as usize;
         for i in 0..=(most / step + 1e-9) as u32 {
             let n = step * f64::from(i);
             let words = format!("{n:.decimals$}");

@@ -1,10 +1,10 @@
 //! The shopping list and the list of tools.
 
 use super::document::{Block, Table};
-use crate::config::{FastenerKind, MouldKind};
-use crate::design::Design;
+use crate::config::{FastenerKind, MouldKind, MountKind};
+use crate::design::{AXLE_HEAD_MM, Design};
 use crate::documents::{Bill, Manifest};
-use crate::process::{Cure, ROOM_C};
+use crate::process::{Coating, Cure, ROOM_C, coating};
 use pinswitch_friction::Substrate;
 
 /// Hexagon keys of socket screws (ISO 4762): thread and width across flats, mm.
@@ -40,16 +40,18 @@ fn items(design: &Design, manifest: &Manifest) -> Vec<Row> {
     }
     rows.extend(silicone(design, bill));
     let t = &bill.tendon;
-    rows.push(row(
-        format!(
-            "wire rope, {} mm, with {} {} mm",
-            t.rope_diameter_mm,
-            design.configuration().process.coating.title(),
-            t.outer_diameter_mm
-        ),
-        format!("{} mm", t.length_mm),
-        "tendon",
-    ));
+    let rope = match coating(design.configuration()) {
+        Coating::Bare => format!("bare wire rope, {} mm", t.rope_diameter_mm),
+        coating => {
+            format!(
+                "wire rope, {} mm, with {} {} mm",
+                t.rope_diameter_mm,
+                coating.title(),
+                t.outer_diameter_mm
+            )
+        }
+    };
+    rows.push(row(rope, format!("{} mm", t.length_mm), "tendon"));
     rows.extend(fasteners(design, bill));
     if let Some(d) = &bill.dowels {
         rows.push(row(
@@ -62,8 +64,14 @@ fn items(design: &Design, manifest: &Manifest) -> Vec<Row> {
         rows.push(row(format!("ball bearing {bearing}"), "1", "guide pulley"));
     }
     if let Some(m) = &bill.mount {
-        rows.extend(m.bearing.map(|b| row(format!("ball bearing {b}"), "1", "guide pulley")));
-        rows.extend(m.axle.as_ref().map(|axle| row(axle.clone(), "1", "axle of the guide pulley")));
+        let is_joint = design.configuration().mount.kind == MountKind::Joint;
+        let (number, purpose) =
+            if is_joint { (1, "axle of the joint") } else { (m.pulleys, "axles of the guide pulleys") };
+        rows.extend(
+            m.bearing.map(|b| row(format!("ball bearing {b}"), m.pulleys.to_string(), "guide pulleys")),
+        );
+        rows.extend(m.axle.as_ref().map(|axle| row(axle.clone(), number.to_string(), purpose)));
+        rows.extend(m.crimp_sleeve.as_ref().map(|s| row(s.clone(), "1", "end of the tendon")));
         rows.extend(m.sheath_stop.as_ref().map(|s| row(s.clone(), "1 set", "sheath stop")));
     }
     rows
@@ -91,7 +99,7 @@ fn silicone(design: &Design, bill: &Bill) -> Vec<Row> {
 fn fasteners(design: &Design, bill: &Bill) -> Vec<Row> {
     let Some(f) = &bill.fasteners else {
         let c = design.configuration();
-        let glue = row("ABS cement or epoxy", "a few drops", "joints of shell and supports");
+        let glue = row(c.process.material.data().glue, "a few drops", "joints of shell and supports");
         return if c.fasteners.count == 0 { vec![glue] } else { Vec::new() };
     };
     let screw = |number: usize, length: f64| {
@@ -152,7 +160,11 @@ fn tools(design: &Design, bill: &Bill) -> Vec<String> {
         add(c.fasteners.kind == FastenerKind::Insert, "a soldering iron with a clean tip for the inserts");
         add(f.inserts == 0, "adhesive tape to keep the screws in place");
     }
-    add(bill.mount.as_ref().is_some_and(|m| m.axle.is_some()), "a spanner of 13 mm for the nut of the axle");
+    if bill.mount.as_ref().is_some_and(|m| m.axle.is_some()) {
+        let flats = design.joint().map_or(AXLE_HEAD_MM[0], |joint| joint.axle.head_mm[0]);
+        add(true, &format!("a spanner of {flats} mm for the nut of the axle"));
+        add(design.joint().is_some(), "pliers to crimp the sleeve");
+    }
     let bearing = bill.mount.as_ref().and_then(|m| m.bearing).or(bill.pulley_bearing);
     add(bearing.is_some(), "a vice to press the bearing into the pulley");
     add(

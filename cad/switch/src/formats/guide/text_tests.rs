@@ -150,12 +150,22 @@ fn covered_marks_are_noted() {
 }
 
 #[test]
+fn a_joint_has_its_axle_and_its_sleeve() {
+    let joint = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"joint\"\naxle_mm = 6.0\n");
+    let (list, _) = joint.split_once("## 2. Print").unwrap();
+    assert!(list.contains("2 washers and lock nut | 1 | axle of the joint |"), "{list}");
+    assert!(list.contains("crimp sleeve for a rope of ") && list.contains("a spanner of 10 mm"), "{list}");
+    assert!(!list.contains("guide pulley"), "{list}");
+}
+
+#[test]
 fn a_guide_pulley_has_its_bearing_and_its_step() {
     let alone = guide("[layout]\npins = [5, 8, 11]\n[parts]\nguide_pulley = true\n");
     assert!(alone.contains("Press a 608 bearing into `guide-pulley`"), "{alone}");
     let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
     let (list, steps) = rig.split_once("## 2. Print").unwrap();
-    assert!(list.contains("ball bearing 608 | 1 |"), "{rig}");
+    assert!(list.contains("ball bearing 608 | 2 |"), "{rig}");
+    assert!(list.contains("washer and nut | 2 | axles of the guide pulleys |"), "{rig}");
     assert_eq!(steps.matches("608").count(), 1, "{rig}");
     assert!(rig.contains("Put `pulley-spacer` on the bolt (M8 x "), "{rig}");
 }

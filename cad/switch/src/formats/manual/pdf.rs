@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Pictures, of_step};
+use super::Pictures;
 use crate::formats::guide::document::{Block, Document, Step, Table};
 use crate::formats::guide::figure::{Align, Figure, Ink, Shape, TEXT_MM};
 use crate::formats::guide::inline::{Run, runs};
@@ -51,7 +51,7 @@ pub(super) fn pdf(document: &Document, pictures: &Pictures) -> Vec<u8> {
     let mut writer = Writer::new(pictures);
     writer.title(&document.title);
     for block in &document.blocks {
-        writer.block(block, pictures);
+        writer.block(block);
     }
     writer.finish(&document.title)
 }
@@ -183,7 +183,7 @@ impl Writer {
         self.top_mm = self.lines(&setting, SIDE_MM, self.top_mm, INK) + GAP_MM;
     }
 
-    fn block(&mut self, block: &Block, pictures: &Pictures) {
+    fn block(&mut self, block: &Block) {
         match block {
             Block::Heading { number: Some(number), text } => {
                 self.heading(&format!("{number}. {text}"), SECTION_MM, BELOW_HEADING_MM);
@@ -206,7 +206,7 @@ impl Writer {
                 }
             }
             Block::Figure { figure, .. } => self.figure(figure),
-            Block::Step(step) => self.step(step, pictures),
+            Block::Step(step) => self.step(step),
         }
     }
 
@@ -243,11 +243,10 @@ impl Writer {
         self.add(PageItem::Line { points: corners, width_mm: RULE_MM, colour: RULE });
     }
 
-    fn step(&mut self, step: &Step, pictures: &Pictures) {
+    fn step(&mut self, step: &Step) {
         let name = step.picture.as_ref().map(|(number, _)| step_picture(*number));
         let picture = name.and_then(|name| self.index.get(&name).copied());
-        let has_picture = step.picture.as_ref().is_some_and(|(n, _)| of_step(pictures, *n).is_some());
-        let (left, width) = match picture.filter(|_| has_picture) {
+        let (left, width) = match picture {
             Some(_) => (SIDE_MM + STEP_PICTURE_MM + GUTTER_MM, WIDTH_MM - STEP_PICTURE_MM - GUTTER_MM),
             None => (SIDE_MM, WIDTH_MM),
         };

@@ -115,8 +115,9 @@ impl Assembly<'_> {
         let dowels = if self.bill.dowels.is_some() { " The dowels locate the supports." } else { "" };
         let supports = if dowels.is_empty() { "the plates of both supports" } else { "the supports" };
         format!(
-            "This set has no screws (`fasteners.count = 0`).{dowels} Glue {supports} to the ends of the shell with ABS cement or epoxy. \
-             Keep slots and grooves free of it."
+            "This set has no screws (`fasteners.count = 0`).{dowels} Glue {supports} to the ends of the shell with {}. \
+             Keep slots and grooves free of it.",
+            self.design().configuration().process.material.data().glue
         )
     }
 }

@@ -116,7 +116,7 @@ impl Assembly<'_> {
 
     /// Steps of a plate to which the switch is screwed: the plate is first, on the table.
     pub(super) fn plate_on_the_table(&self) -> Vec<Step> {
-        let has_bolt = !self.names(&["bolt"]).is_empty();
+        let has_bolt = !self.names(&["bolt", "axle"]).is_empty();
         let moves = self.plate_moves(true);
         let view = if has_bolt { FROM_BELOW } else { ON_BENCH };
         let mut step = Step::new("Prepare the mounting plate").text(format!(

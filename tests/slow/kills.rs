@@ -102,7 +102,7 @@ fn read_in(place: &Path) {
 const WRITER_KILLS: usize = 165;
 
 /// Commands that write, each with two different results for one folder.
-const WRITERS: [[&[&str]; 2]; 11] = [
+const WRITERS: [[&[&str]; 2]; 12] = [
     [&["simulate", "one.toml", "--out", "o"], &["simulate", "two.toml", "--next", "--out", "o"]],
     [&["calibrate", "one/plateaus.csv", "--out", "o"], &["calibrate", "two/plateaus.csv", "--out", "o"]],
     [
@@ -114,6 +114,10 @@ const WRITERS: [[&[&str]; 2]; 11] = [
         &["import", "two.txt", "--yes", "--out", "o/t.csv"],
     ],
     [&["finger", "three-double", "--out", "o"], &["finger", "three-single", "--out", "o"]],
+    [
+        &["export", "three-double", "--to", "mujoco", "--draws", "3", "--out", "o"],
+        &["export", "three-single", "--to", "urdf", "--draws", "1", "--out", "o"],
+    ],
     [&["physics", "three-double", "--out", "o"], &["physics", "three-single", "--out", "o"]],
     [
         &["init", "three-double", "--out", "o/m.toml"],

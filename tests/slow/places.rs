@@ -16,7 +16,7 @@ const LONGEST: Duration = Duration::from_secs(60);
 const LONGEST_ERROR: usize = 700;
 
 /// Commands that write; the last argument is followed by the place.
-const WRITERS: [&[&str]; 12] = [
+const WRITERS: [&[&str]; 13] = [
     &["generate", "three-double", "--format", "stl", "--out"],
     &["batch", "sweep.toml", "--out"],
     &["merge", "one", "--out"],
@@ -26,6 +26,7 @@ const WRITERS: [&[&str]; 12] = [
     &["import", "one/plateaus.csv", "--yes", "--out"],
     &["finger", "three-double", "--out"],
     &["physics", "three-double", "--out"],
+    &["export", "three-double", "--set", "friction.points=5", "--to", "mujoco", "--draws", "2", "--out"],
     &["init", "three-double", "--out"],
     &["render", "three-double", "--out"],
     &["man", "--out"],

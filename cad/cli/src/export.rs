@@ -5,6 +5,7 @@ use std::process::Command;
 
 use clap::{Args, ValueEnum};
 use pinswitch_diagnostic::Diagnostic;
+use pinswitch_friction::finger::{FlexionWrap, JointPath, Wrap};
 use pinswitch_friction::{Contact, FrictionCurve};
 use pinswitch_robot::{FMU_LIBRARY, FMU_SOURCE, Finger, Surface, fmu_sources, zip_fmu};
 use pinswitch_switch::design::Design;
@@ -13,12 +14,14 @@ use pinswitch_switch::prediction::loads_n;
 
 use super::Failure;
 use super::calibrated_curve::calibrated_curve;
+use super::finger::refuse_assumptions;
 use super::law::LawChoice;
 use super::source::Source;
 use super::terminal::warn;
 use crate::write::SetFolder;
 
-/// Wrap angles of the table of a finger, from the straight to the flexed one.
+const COMMAND: &str = "export";
+/// Rows of the table of a finger, from the straight to the flexed one.
 const WRAPS: u32 = 15;
 /// Smallest wrap angle of a table, degrees. Hosts interpolate to zero friction at zero wrap.
 const LEAST_WRAP_DEG: f64 = 2.0;
@@ -50,7 +53,7 @@ pub(super) struct Arguments {
     model: Option<PathBuf>,
     #[command(flatten)]
     law: LawChoice,
-    /// Also write N models with frictions drawn from the band of the curve, in the folders draw-001, draw-002, ...
+    /// Also write N models with frictions drawn from the band of the curve, numbered from 001.
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=MOST_DRAWS))]
     draws: u32,
@@ -64,27 +67,27 @@ pub(super) struct Arguments {
 /// Dimensions of the two-link finger. The paper prints none: every default is assumed.
 #[derive(Args, Debug)]
 struct FingerOptions {
-    /// Length of the proximal link in mm.
-    #[arg(long, value_name = "MM", default_value_t = Finger::default().proximal_mm)]
-    proximal: f64,
-    /// Length of the distal link in mm.
-    #[arg(long, value_name = "MM", default_value_t = Finger::default().distal_mm)]
-    distal: f64,
+    /// Length of the proximal link in mm [default: 60]; not for a configuration with a joint.
+    #[arg(long, value_name = "MM")]
+    proximal: Option<f64>,
+    /// Length of the distal link in mm [default: 50]; not for a joint.
+    #[arg(long, value_name = "MM")]
+    distal: Option<f64>,
     /// Mass of the distal link in g.
     #[arg(long, value_name = "G", default_value_t = Finger::default().distal_mass_g)]
     distal_mass: f64,
     /// Mass at the fingertip in g.
     #[arg(long, value_name = "G", default_value_t = Finger::default().payload_g)]
     payload: f64,
-    /// Largest flexion in degrees.
-    #[arg(long, value_name = "DEG", default_value_t = Finger::default().flexion_deg)]
-    flexion: f64,
-    /// Wrap angle of the tendon at the straight finger, in degrees.
-    #[arg(long, value_name = "DEG", default_value_t = Finger::default().wrap_at_straight_deg)]
-    wrap_at_straight: f64,
-    /// Increase of the wrap angle per degree of flexion, in degrees.
-    #[arg(long, value_name = "SHARE", default_value_t = Finger::default().wrap_per_flexion)]
-    wrap_per_flexion: f64,
+    /// Largest flexion in degrees [default: 89]; not for a joint.
+    #[arg(long, value_name = "DEG")]
+    flexion: Option<f64>,
+    /// Wrap angle of the tendon at the straight finger, in degrees [default: 0]; not for a joint.
+    #[arg(long, value_name = "DEG")]
+    wrap_at_straight: Option<f64>,
+    /// Increase of the wrap angle per degree of flexion, in degrees [default: 1]; not for a joint.
+    #[arg(long, value_name = "SHARE")]
+    wrap_per_flexion: Option<f64>,
 }
 
 /// A kind of model.
@@ -102,25 +105,22 @@ enum Format {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
-    let finger = finger(arguments, &design);
+    let finger = finger(arguments, &design)?;
     finger.check().map_err(Failure::bad_input)?;
     let out = SetFolder::lock(&arguments.out)?;
     let surface = surface(arguments, &design, &finger)?;
-    let mut files = files(arguments.to, &surface, &finger)?;
+    let mut all = Vec::new();
     for (number, drawn) in (1..).zip(surface.draws(arguments.draws, arguments.seed)) {
-        let folder = format!("draw-{number:03}");
-        let path = arguments.out.join(&folder);
-        std::fs::create_dir_all(&path).map_err(|e| crate::write::write_error(&path, e))?;
-        let drawn = self::files(arguments.to, &drawn, &finger)?;
-        files.splice(0..0, drawn.into_iter().map(|(name, bytes)| (format!("{folder}/{name}"), bytes)));
+        all.extend(files(arguments.to, &drawn, &finger, &format!("-{number:03}"))?);
     }
-    let (inner, top): (Vec<_>, Vec<_>) = files.into_iter().partition(|(name, _)| name.contains('/'));
-    for (name, bytes) in inner {
-        crate::write::write_file(&arguments.out.join(name), &bytes)?;
-    }
-    let top: Vec<OutputFile> = top.into_iter().map(|(name, bytes)| OutputFile { name, bytes }).collect();
-    out.replace_listed(&top, "export", &[])?;
-    let names: Vec<&str> = top.iter().map(|file| file.name.as_str()).collect();
+    let top = files(arguments.to, &surface, &finger, "")?;
+    let names: Vec<String> = top.iter().map(|file| file.name.clone()).collect();
+    all.extend(top);
+    // Models of an earlier export that this one does not have.
+    let earlier = out.written_by(COMMAND)?;
+    let stale: Vec<&str> =
+        earlier.iter().map(String::as_str).filter(|name| all.iter().all(|file| file.name != *name)).collect();
+    out.replace_listed(&all, COMMAND, &stale)?;
     let draws = match arguments.draws {
         0 => String::new(),
         count => format!(", and {count} drawn models"),
@@ -129,23 +129,54 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn finger(arguments: &Arguments, design: &Design) -> Finger {
+/// Returns the finger of a joint, or an assumed one.
+fn finger(arguments: &Arguments, design: &Design) -> Result<Finger, Failure> {
     let options = &arguments.finger;
-    Finger {
-        proximal_mm: options.proximal,
-        distal_mm: options.distal,
+    let assumed = Finger {
         thickness_mm: design.configuration().shell.width_mm,
         distal_mass_g: options.distal_mass,
         payload_g: options.payload,
-        moment_arm_mm: design.contact().bed().axis_radius_mm(),
-        flexion_deg: options.flexion,
-        wrap_at_straight_deg: options.wrap_at_straight,
-        wrap_per_flexion: options.wrap_per_flexion,
+        ..Finger::default()
+    };
+    if let Some(joint) = design.joint() {
+        let given = [
+            ("--proximal", options.proximal),
+            ("--distal", options.distal),
+            ("--flexion", options.flexion),
+            ("--wrap-at-straight", options.wrap_at_straight),
+            ("--wrap-per-flexion", options.wrap_per_flexion),
+        ];
+        refuse_assumptions(&design.configuration().switch.name.to_string(), &given)?;
+        let [least_mm, largest_mm] = joint.moment_arms_mm();
+        return Ok(Finger {
+            proximal_mm: joint.proximal.length_mm,
+            distal_mm: joint.distal.length_mm,
+            moment_arm_mm: f64::midpoint(least_mm, largest_mm),
+            flexion_deg: joint.flexion_deg,
+            wrap_deg: joint.flexion_deg.map(|deg| joint.contact(deg).wrap_rad().to_degrees()),
+            ..assumed
+        });
     }
+    let path =
+        JointPath::new(options.wrap_at_straight.unwrap_or_default(), options.wrap_per_flexion.unwrap_or(1.0))
+            .map_err(Failure::bad_input)?;
+    let flexion_deg = [assumed.flexion_deg[0], options.flexion.unwrap_or(assumed.flexion_deg[1])];
+    let wrap = |deg: f64| path.wrap_deg(deg).map_err(Failure::bad_input);
+    Ok(Finger {
+        proximal_mm: options.proximal.unwrap_or(assumed.proximal_mm),
+        distal_mm: options.distal.unwrap_or(assumed.distal_mm),
+        moment_arm_mm: design.contact().bed().axis_radius_mm(),
+        flexion_deg,
+        wrap_deg: [wrap(flexion_deg[0])?, wrap(flexion_deg[1])?],
+        ..assumed
+    })
 }
 
 /// Predicts the tensions over the wrap angles of the finger; for a unit or a calibrated model, at that of the
 /// configuration.
+///
+/// The rows of a joint are the contacts at equal steps of its flexion, each at the wrap angle that the model of the finger
+/// has there.
 fn surface(arguments: &Arguments, design: &Design, finger: &Finger) -> Result<Surface, Failure> {
     let name = design.configuration().switch.name.to_string();
     let contact = design.contact();
@@ -153,44 +184,66 @@ fn surface(arguments: &Arguments, design: &Design, finger: &Finger) -> Result<Su
         Some(model) => vec![(contact.wrap_rad(), calibrated_curve(design, model)?)],
         None if arguments.to == Format::Fmu => vec![(contact.wrap_rad(), curve(arguments, contact, design)?)],
         None => {
-            let (from, to) = (finger.wrap_deg(0.0).max(LEAST_WRAP_DEG), finger.wrap_deg(finger.flexion_deg));
-            let step = (to - from) / f64::from(WRAPS - 1);
-            let wraps = (0..WRAPS).map(|i| from + step * f64::from(i)).map(f64::to_radians);
-            // Without a change of the wrap, all angles are one.
-            let wraps: Vec<f64> = if step > 0.0 { wraps.collect() } else { wraps.take(1).collect() };
-            let at = |wrap_rad: f64| {
-                let contact = contact.at_wrap(wrap_rad).map_err(Failure::bad_input)?;
-                Ok((wrap_rad, curve(arguments, &contact, design)?))
+            let at = |wrap_deg: f64, wrap: Wrap| {
+                let contact = contact
+                    .at_wrap_about(wrap.wrap_deg.to_radians(), wrap.middle_deg.to_radians())
+                    .map_err(Failure::bad_input)?;
+                Ok((wrap_deg.to_radians(), curve(arguments, &contact, design)?))
             };
-            wraps.into_iter().map(at).collect::<Result<_, Failure>>()?
+            match design.joint() {
+                Some(joint) => steps(finger.flexion_deg)
+                    .into_iter()
+                    .map(|deg| Ok((finger.wrap_deg_at(deg), joint.wrap(deg).map_err(Failure::bad_input)?)))
+                    .filter(|row: &Result<(f64, Wrap), Failure>| {
+                        row.as_ref().map_or(true, |(deg, wrap)| deg.min(wrap.wrap_deg) >= LEAST_WRAP_DEG)
+                    })
+                    .map(|row| row.and_then(|(deg, wrap)| at(deg, wrap)))
+                    .collect::<Result<_, Failure>>()?,
+                None => steps([finger.wrap_deg[0].max(LEAST_WRAP_DEG), finger.wrap_deg[1]])
+                    .into_iter()
+                    .map(|deg| at(deg, Wrap { wrap_deg: deg, middle_deg: 0.0 }))
+                    .collect::<Result<_, Failure>>()?,
+            }
         }
     };
     Surface::new(&name, curves).map_err(Failure::bad_input)
+}
+
+/// Returns equal steps between two angles; one angle if the second is not larger.
+fn steps([from, to]: [f64; 2]) -> Vec<f64> {
+    let step = (to - from) / f64::from(WRAPS - 1);
+    let all = (0..WRAPS).map(|i| from + step * f64::from(i));
+    if step > 0.0 { all.collect() } else { vec![from] }
 }
 
 fn curve(arguments: &Arguments, contact: &Contact, design: &Design) -> Result<FrictionCurve, Failure> {
     arguments.law.curve(contact, &loads_n(design)).map_err(Failure::bad_input)
 }
 
-/// Returns the files of one model, the table as JSON last.
-fn files(format: Format, surface: &Surface, finger: &Finger) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    const TABLE: &str = "switch.json";
+/// Returns the files of one model, the table as JSON last. `suffix` follows the name of each.
+fn files(
+    format: Format,
+    surface: &Surface,
+    finger: &Finger,
+    suffix: &str,
+) -> Result<Vec<OutputFile>, Failure> {
+    let table = format!("switch{suffix}.json");
+    let file = |name: String, bytes: Vec<u8>| OutputFile { name, bytes };
     let model = match format {
         Format::Mujoco => {
-            Some(("finger.xml", finger.mjcf(surface, TABLE).map_err(Failure::bad_input)?.into_bytes()))
+            let xml = finger.mjcf(surface, &table).map_err(Failure::bad_input)?;
+            Some(file(format!("finger{suffix}.xml"), xml.into_bytes()))
         }
         Format::Urdf => {
-            Some(("finger.urdf", finger.urdf(surface, TABLE).map_err(Failure::bad_input)?.into_bytes()))
+            let urdf = finger.urdf(surface, &table).map_err(Failure::bad_input)?;
+            Some(file(format!("finger{suffix}.urdf"), urdf.into_bytes()))
         }
-        Format::Fmu => Some(("switch.fmu", fmu(surface)?)),
+        Format::Fmu => Some(file(format!("switch{suffix}.fmu"), fmu(surface)?)),
         Format::Csv => None,
     };
-    let model = model.map(|(name, bytes)| (name.to_owned(), bytes));
-    let table = [
-        ("switch.csv".to_owned(), surface.to_csv().into_bytes()),
-        (TABLE.to_owned(), surface.to_json().map_err(Failure::failed)?.into_bytes()),
-    ];
-    Ok(model.into_iter().chain(table).collect())
+    let csv = file(format!("switch{suffix}.csv"), surface.to_csv().into_bytes());
+    let json = file(table, surface.to_json().map_err(Failure::failed)?.into_bytes());
+    Ok(model.into_iter().chain([csv, json]).collect())
 }
 
 /// Returns a unit with the library of this platform; without a compiler, with sources only.

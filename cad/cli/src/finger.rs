@@ -229,18 +229,14 @@ fn flexions(range: Range<f64>, path: &impl FlexionWrap) -> Result<Vec<f64>, Fail
     Ok(whole.chain([range.to]).collect())
 }
 
-/// Refuses an assumption about the wrap for a configuration with a joint.
-fn refuse_assumptions(arguments: &Arguments, name: &str) -> Result<(), Failure> {
-    let given = [
-        ("--wrap-at-straight", arguments.wrap_at_straight),
-        ("--wrap-per-flexion", arguments.wrap_per_flexion),
-    ];
-    match given.into_iter().find_map(|(option, value)| value.map(|value| (option, value))) {
+/// Refuses an assumption about the finger for a configuration with a joint.
+pub(super) fn refuse_assumptions(name: &str, given: &[(&str, Option<f64>)]) -> Result<(), Failure> {
+    match given.iter().find_map(|(option, value)| value.map(|value| (*option, value))) {
         None => Ok(()),
         Some((option, value)) => Err(Failure::bad_input(
-            Diagnostic::new(format!("{name} has a joint, whose parts determine the wrap"))
+            Diagnostic::new(format!("{name} has a joint, whose parts determine links, stops and wrap"))
                 .with_location(Location::field(option, value.to_string()))
-                .with_help("leave the option out, or compare configurations without a joint"),
+                .with_help("leave the option out, or give a configuration without a joint"),
         )),
     }
 }
@@ -254,7 +250,11 @@ fn layout(name: &str, arguments: &Arguments, path: &JointPath) -> Result<Layout,
     let joint = design.joint();
     let (over_joint, measured_joint_deg) = match &joint {
         Some(joint) => {
-            refuse_assumptions(arguments, name)?;
+            let given = [
+                ("--wrap-at-straight", arguments.wrap_at_straight),
+                ("--wrap-per-flexion", arguments.wrap_per_flexion),
+            ];
+            refuse_assumptions(name, &given)?;
             let [from, to] = joint.flexion_deg;
             let range = arguments.joint.unwrap_or(Range { from, to });
             (curves(design.contact(), arguments, joint, range, loads_n)?, joint.measured_joint_deg())

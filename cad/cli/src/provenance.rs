@@ -141,6 +141,12 @@ impl Provenance {
         all
     }
 
+    /// Returns name and SHA-256 of each file that `command` wrote.
+    pub(crate) fn files_of(&self, command: &str) -> impl Iterator<Item = (&str, &str)> {
+        let records = self.records.iter().filter(move |record| record.command == command);
+        records.flat_map(|record| &record.files).map(|entry| (entry.file.as_str(), entry.sha256.as_str()))
+    }
+
     /// Compares a file of the folder with its entry. Returns the record of the command that wrote it; `None` if the
     /// manifest does not list `name`.
     ///

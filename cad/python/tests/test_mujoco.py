@@ -234,8 +234,8 @@ def exported(command: list[str], folder: Path) -> Optional[Path]:
 
 def test_exported_fingers_hold_and_lift(tmp_path: Path) -> None:
     folder = exported(["--to", "mujoco", "--draws", "2"], tmp_path)
-    assert folder is not None and (folder / "draw-002" / "finger.xml").is_file()
-    assert (folder / "draw-001" / "switch.json").read_text() != (folder / "switch.json").read_text()
+    assert folder is not None and (folder / "finger-002.xml").is_file()
+    assert (folder / "switch-001.json").read_text() != (folder / "switch.json").read_text()
     host = Host.load(folder / "finger.xml")
     data = mujoco.MjData(host.model)
     switch = host["flexor"]

@@ -9,7 +9,8 @@ use crate::surface::Surface;
 /// A finger of two links. The proximal link is fixed; the tendon runs over the switch at the joint and flexes the
 /// distal link, which gravity extends.
 ///
-/// The paper shows such a finger and prints no dimension of it: every default is assumed.
+/// The paper shows such a finger and prints no dimension of it: every default is assumed. A set with a joint has the
+/// dimensions of its parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Finger {
     /// Length of the proximal link, mm.
@@ -24,12 +25,10 @@ pub struct Finger {
     pub payload_g: f64,
     /// Moment arm of the tendon at the joint, mm: the radius of the switch at the middle of the tendon.
     pub moment_arm_mm: f64,
-    /// Largest flexion, degrees.
-    pub flexion_deg: f64,
-    /// Wrap of the tendon on the switch at the straight finger, degrees.
-    pub wrap_at_straight_deg: f64,
-    /// Increase of the wrap per flexion.
-    pub wrap_per_flexion: f64,
+    /// Least and largest flexion, degrees.
+    pub flexion_deg: [f64; 2],
+    /// Wrap of the tendon on the switch at these flexions, degrees. Between them it is linear.
+    pub wrap_deg: [f64; 2],
 }
 
 impl Default for Finger {
@@ -41,9 +40,8 @@ impl Default for Finger {
             distal_mass_g: 40.0,
             payload_g: 500.0,
             moment_arm_mm: 22.0,
-            flexion_deg: 89.0,
-            wrap_at_straight_deg: 0.0,
-            wrap_per_flexion: 1.0,
+            flexion_deg: [0.0, 89.0],
+            wrap_deg: [0.0, 89.0],
         }
     }
 }
@@ -61,9 +59,10 @@ impl Finger {
             ("distal_mass_g", self.distal_mass_g, 0.1, 100_000.0),
             ("payload_g", self.payload_g, 0.0, 1_000_000.0),
             ("moment_arm_mm", self.moment_arm_mm, 1.0, 200.0),
-            ("flexion_deg", self.flexion_deg, 1.0, 180.0),
-            ("wrap_at_straight_deg", self.wrap_at_straight_deg, 0.0, 180.0),
-            ("wrap_per_flexion", self.wrap_per_flexion, 0.0, 2.0),
+            ("flexion_deg", self.flexion_deg[0], 0.0, 179.0),
+            ("flexion_deg", self.flexion_deg[1], self.flexion_deg[0] + 1.0, 180.0),
+            ("wrap_deg", self.wrap_deg[0], 0.0, 540.0),
+            ("wrap_deg", self.wrap_deg[1], self.wrap_deg[0], 540.0),
         ];
         match values.iter().find(|(_, value, low, high)| !(low..=high).contains(&value)) {
             None => Ok(()),
@@ -73,9 +72,14 @@ impl Finger {
         }
     }
 
+    /// Returns the increase of the wrap per flexion.
+    fn wrap_per_flexion(&self) -> f64 {
+        (self.wrap_deg[1] - self.wrap_deg[0]) / (self.flexion_deg[1] - self.flexion_deg[0])
+    }
+
     /// Returns the wrap angle at a flexion, both in degrees.
-    pub fn wrap_deg(&self, flexion_deg: f64) -> f64 {
-        self.wrap_at_straight_deg + self.wrap_per_flexion * flexion_deg
+    pub fn wrap_deg_at(&self, flexion_deg: f64) -> f64 {
+        self.wrap_deg[0] + self.wrap_per_flexion() * (flexion_deg - self.flexion_deg[0])
     }
 
     /// Returns the tension that holds the finger straight without friction, N: the largest of the payload.
@@ -122,7 +126,7 @@ impl Finger {
       <geom type=\"capsule\" fromto=\"0 0 0 {proximal} 0 0\" size=\"{half}\" mass=\"0.05\" rgba=\"0.7 0.7 0.7 1\" contype=\"0\" conaffinity=\"0\"/>
       <geom name=\"switch\" type=\"cylinder\" pos=\"{proximal} 0 0\" euler=\"90 0 0\" size=\"{arm} {half}\" mass=\"0.01\" rgba=\"0.9 0.7 0.2 0.5\" contype=\"0\" conaffinity=\"0\"/>
       <body name=\"distal\" pos=\"{proximal} 0 0\">
-        <joint name=\"flexion\" type=\"hinge\" axis=\"0 -1 0\" range=\"0 {flexion}\" limited=\"true\"/>
+        <joint name=\"flexion\" type=\"hinge\" axis=\"0 -1 0\" range=\"{low} {high}\" limited=\"true\"/>
         <geom type=\"capsule\" fromto=\"0 0 0 {distal} 0 0\" size=\"{half}\" mass=\"{mass}\" rgba=\"0.5 0.5 0.5 1\" contype=\"0\" conaffinity=\"0\"/>
 {payload}        <site name=\"tip\" pos=\"{distal} 0 0\" size=\"0.003\"/>
       </body>
@@ -145,9 +149,10 @@ impl Finger {
 ",
             name = escaped(surface.name()),
             file = escaped(surface_file),
-            start = self.wrap_at_straight_deg.to_radians(),
-            slope = self.wrap_per_flexion / (self.moment_arm_mm * 1e-3),
-            flexion = self.flexion_deg,
+            start = self.wrap_deg_at(0.0).to_radians(),
+            slope = self.wrap_per_flexion() / (self.moment_arm_mm * 1e-3),
+            low = self.flexion_deg[0],
+            high = self.flexion_deg[1],
             mass = kilograms(self.distal_mass_g),
         ))
     }
@@ -195,7 +200,7 @@ impl Finger {
     <child link=\"distal\"/>
     <origin xyz=\"{length:.6} 0 0\"/>
     <axis xyz=\"0 -1 0\"/>
-    <limit lower=\"0\" upper=\"{upper:.6}\" effort=\"{effort:.6}\" velocity=\"20\"/>
+    <limit lower=\"{lower:.6}\" upper=\"{upper:.6}\" effort=\"{effort:.6}\" velocity=\"20\"/>
   </joint>
   <transmission name=\"flexor\">
     <type>transmission_interface/SimpleTransmission</type>
@@ -209,7 +214,8 @@ impl Finger {
             proximal = link("proximal", self.proximal_mm, self.distal_mass_g, 0.0),
             distal = link("distal", self.distal_mm, self.distal_mass_g, self.payload_g),
             length = self.proximal_mm * 1e-3,
-            upper = self.flexion_deg.to_radians(),
+            lower = self.flexion_deg[0].to_radians(),
+            upper = self.flexion_deg[1].to_radians(),
             arm = self.moment_arm_mm * 1e-3,
         ))
     }
@@ -233,6 +239,6 @@ mod tests {
         let error = Finger { moment_arm_mm: 0.0, ..Finger::default() }.check().unwrap_err();
         assert_eq!(error.location().unwrap().field.as_deref(), Some("moment_arm_mm"));
         assert!(Finger { payload_g: f64::NAN, ..Finger::default() }.check().is_err());
-        assert_eq!(Finger::default().wrap_deg(60.0), 60.0);
+        assert_eq!(Finger::default().wrap_deg_at(60.0), 60.0);
     }
 }

@@ -177,6 +177,23 @@ impl SetFolder {
         read_existing(&path).map_err(WriteError::at(&path))
     }
 
+    /// Returns the names of the unchanged files that earlier runs of `command` wrote here.
+    ///
+    /// # Errors
+    /// [`WriteError`] of a damaged or foreign manifest, or a file that cannot be read.
+    pub(crate) fn written_by(&self, command: &str) -> Result<Vec<String>, WriteError> {
+        let provenance = self.provenance()?;
+        let mut unchanged = Vec::new();
+        for (name, sha256) in provenance.files_of(command) {
+            if is_plain(name)
+                && self.existing(name)?.is_some_and(|bytes| crate::provenance::sha256(&bytes) == sha256)
+            {
+                unchanged.push(name.to_owned());
+            }
+        }
+        Ok(unchanged)
+    }
+
     /// Returns `files` with the manifest that lists them, before the last file.
     fn listed(
         &self,

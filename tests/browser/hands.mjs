@@ -79,7 +79,7 @@ export async function numbers(visit, site, { findings }) {
     await visit.addressHas(`silicone.thickness_mm=${value}`);
     findings.check(`${text} is shown as a number`, await visit.page.$eval(input, (e) => e.value) === String(value), await visit.page.$eval(input, (e) => e.value));
   }
-  for (const text of ['2,5,5', 'two', '2 N', '1,234']) {
+  for (const text of ['2,5,5', 'two', '2 N', '1,234', '0.05 + 0.05 in']) {
     const before = await hashOf(visit);
     await visit.type(input, text);
     await visit.check(`${text} is refused aloud`, () => document.querySelector('#f-silicone-thickness_mm-error').checkVisibility());

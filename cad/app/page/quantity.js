@@ -8,6 +8,8 @@ const QUANTITY_UNITS = {
   g: { g: 1, kg: 1000, mg: 1e-3, oz: 28.349523125 },
   '%': { '%': 1 },
   C: { c: 1, '°c': 1 },
+  'mm/s': { 'mm/s': 1, 'cm/s': 10, 'm/s': 1000, 'in/s': 25.4 },
+  Hz: { hz: 1, khz: 1000 },
   'Shore A': { a: 1, shore: 1 },
   'g/cm3': { 'g/cm3': 1, 'g/cm³': 1, 'kg/m3': 1e-3, 'kg/m³': 1e-3 },
 };
@@ -96,6 +98,9 @@ function readQuantity(text, unit) {
     const result = product();
     for (let by = sign('+', '-'); by; by = sign('+', '-')) {
       const other = product();
+      // In 1 + 2 in, the 1 has the unit of the field or inches.
+      const scales = [result.scale, other.scale];
+      if (scales.includes(null) && scales.some((scale) => scale !== null && scale !== 1)) fail(TEXT.quantity.mixed(text.trim()));
       result.value += by === '+' ? other.value : -other.value;
       result.scale ??= other.scale;
     }
@@ -112,7 +117,7 @@ function readQuantity(text, unit) {
   }
 }
 
-// The unit of a field as it is shown.
+// The label of a field's unit.
 const unitLabel = (unit) => TEXT.units[unit] ?? unit;
 
 // Makes a text input a number input: the arrow keys change the number by `step`, ten of them with Shift.

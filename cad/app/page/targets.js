@@ -1,8 +1,5 @@
 // Targets of the design, the search, and the proposed designs as cards.
 
-// Fields that a search varies.
-const VARIED = ['layout.pins', 'segment.span_deg', 'silicone.thickness_mm'];
-
 class Targets {
   constructor(state, engine, curve, handles) {
     Object.assign(this, { state, engine, curve, handles });
@@ -102,10 +99,10 @@ class Targets {
     const endReports = reportElapsed((seconds) => { byId('search-status').textContent = TEXT.searching(seconds); });
     try {
       const answer = await this.engine.request({ ask: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
-      this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), input: this.searchInput(targets, values, model) };
+      this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), varied: answer.varied, input: this.searchInput(targets, values, model, answer.varied) };
       byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
       this.showBlocked(answer.blocked);
-      this.showDesigns(answer.designs);
+      this.showDesigns(answer.designs, answer.varied);
     } catch (problem) {
       byId('search-status').textContent = problem instanceof Superseded ? TEXT.stopped : problem.message;
     } finally {
@@ -117,8 +114,8 @@ class Targets {
   }
 
   // Everything that the result of a search depends on: all but what it varies.
-  searchInput(targets, values, model) {
-    const rest = Object.entries(values).filter(([path]) => !VARIED.includes(path));
+  searchInput(targets, values, model, varied) {
+    const rest = Object.entries(values).filter(([path]) => !varied.includes(path));
     return JSON.stringify([targets, rest, model?.packed ?? null]);
   }
 
@@ -126,7 +123,7 @@ class Targets {
   markOutdated() {
     if (!this.lastSearch || byId('search').disabled) return;
     const { targets, values, model } = this.state.now;
-    const isOutdated = this.lastSearch.input !== this.searchInput(targets, values, model);
+    const isOutdated = this.lastSearch.input !== this.searchInput(targets, values, model, this.lastSearch.varied);
     byId('results').classList.toggle('outdated', isOutdated);
     byId('search-status').textContent = isOutdated ? TEXT.searchOutdated : this.lastSearch.summary;
   }
@@ -139,12 +136,12 @@ class Targets {
     byId('search').focus();
   }
 
-  showDesigns(designs) {
+  showDesigns(designs, varied) {
     this.curve.setExtra('preview', null);
-    byId('designs').replaceChildren(...designs.map((design, i) => this.card(design, i)));
+    byId('designs').replaceChildren(...designs.map((design, i) => this.card(design, i, varied)));
   }
 
-  card(design, i) {
+  card(design, i, varied) {
     const card = make('li', undefined, { class: 'design' });
     const percent = Math.round(100 * design.probability);
     const head = make('div', undefined, { class: 'design-head' });
@@ -160,11 +157,11 @@ class Targets {
       this.curve.setExtra('preview', null);
       // Everything that the search does not vary stays unchanged.
       const values = { ...this.state.now.values };
-      for (const path of VARIED) { if (path in design.values) values[path] = design.values[path]; else delete values[path]; }
+      for (const path of varied) { if (path in design.values) values[path] = design.values[path]; else delete values[path]; }
       this.state.change({ values });
       showToast(TEXT.designApplied);
     }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
-    const changes = this.changes(design.values);
+    const changes = this.changes(design.values, varied);
     const sources = design.uncertainty.filter((s) => s.share >= 0.01).map((s) => TEXT.sourceShare(s.source, Math.round(100 * s.share)));
     card.append(head, bar, make('p', TEXT.designPins(design.pins)), targets, make('p', rest, { class: 'dim' }));
     if (changes.length) card.append(make('p', changes.join(', '), { class: 'dim' }));
@@ -175,12 +172,12 @@ class Targets {
     return card;
   }
 
-  // Fields other than the pins in which a proposed design differs from the present one.
-  changes(values) {
+  // Varied fields other than the pins in which a proposed design differs from the present one.
+  changes(values, varied) {
     const { fields } = this.state;
     const { values: now } = this.state.now;
     const of = (all, path) => all[path] ?? fields.get(path)?.default;
-    return VARIED.slice(1).filter((path) => !sameValue(of(values, path), of(now, path)))
+    return varied.filter((path) => path !== 'layout.pins' && !sameValue(of(values, path), of(now, path)))
       .map((path) => TEXT.changedTo(fieldName(fields.get(path)), `${formatValue(of(values, path))} ${unitName(fields.get(path))}`.trim()));
   }
 

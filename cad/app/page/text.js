@@ -48,6 +48,7 @@ const TEXT = {
     notNumber: (text) => `${text} is not a number. Enter a number such as 2.5 or 2,5, or a sum such as 20 + 2*1.2.`,
     ambiguous: (text, decimal, grouped) => `${text} can be ${decimal} or ${grouped}. Enter one of them.`,
     otherUnit: (word, unit) => `${word} cannot be converted to ${unit}.`, noUnit: (word) => `${word} is not part of a number without a unit.`,
+    mixed: (text) => `${text} mixes numbers with and without a unit. Enter a unit after each number.`,
   },
   notNumber: 'Enter a number.', notWhole: 'Enter a whole number.', notList: 'Enter groove numbers, separated by commas: 5, 8, 11.',
   setTo: (name, value) => `Set ${name} to ${value}`,

@@ -66,14 +66,20 @@ pub(crate) fn points(table: &PlateauTable) -> Vec<MeasuredPoint> {
         .collect()
 }
 
-/// Returns residuals before and after, evenly thinned.
+/// Returns residuals before and after, evenly thinned in each direction: the directions of a table alternate.
 pub(crate) fn residuals(table: &PlateauTable, calibration: &Calibration) -> Vec<Residual> {
     let readings = calibration.evidence.readings_n();
     let step = readings.len().div_ceil(MOST_RESIDUALS).max(1);
+    let mut seen = [0usize; 2];
     readings
         .iter()
         .enumerate()
-        .step_by(step)
+        .filter(|(row, _)| {
+            let is_pull = table.rows.get(*row).is_some_and(|row| row.direction == Direction::Concentric);
+            let earlier = &mut seen[usize::from(is_pull)];
+            *earlier += 1;
+            (*earlier - 1).is_multiple_of(step)
+        })
         .filter_map(|(row, reading)| {
             Some(Residual {
                 load_n: table.rows.get(row)?.load_n,

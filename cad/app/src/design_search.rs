@@ -60,6 +60,8 @@ struct TargetValue {
 struct SearchResult {
     designs: Vec<ProposedDesign>,
     summary: String,
+    /// Fields of the configuration that the search has varied.
+    varied: Vec<&'static str>,
     /// Why no design reaches all targets; the designs are then the nearest.
     blocked: Option<Explanation>,
     /// Largest relative deviation from a target at which a made part still counts.
@@ -110,7 +112,9 @@ fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
     let summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);
     let blocked = found.blocked.as_ref().map(|b| Explanation { problem: b.problem(), help: b.help() });
     let designs = found.proposals.iter().filter_map(|proposal| design(proposal, model.as_ref())).collect();
-    Ok(SearchResult { designs, summary, blocked, tolerance: DEFAULT_WITHIN })
+    let parameters = ask.vary.parameters.iter().map(|varied| varied.parameter.field());
+    let varied = ask.vary.pattern.then_some("layout.pins").into_iter().chain(parameters).collect();
+    Ok(SearchResult { designs, summary, varied, blocked, tolerance: DEFAULT_WITHIN })
 }
 
 /// Returns the targets of a request. Without a model the search varies what that of the command line varies; a calibrated

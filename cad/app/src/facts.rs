@@ -129,6 +129,20 @@ fn choices(value: &Value, range: &str) -> Option<Vec<String>> {
 mod tests {
     use super::*;
 
+    /// The page reads numbers with a unit: it has a table of each unit of a field.
+    #[test]
+    fn every_unit_can_be_typed() {
+        let script = include_str!("../page/quantity.js");
+        let (_, table) = script.split_once("const QUANTITY_UNITS = {").unwrap();
+        let (table, _) = table.split_once("\n};").unwrap();
+        for field in facts().fields.iter().filter(|field| !field.unit.is_empty()) {
+            let unit = field.unit;
+            let is_there =
+                table.contains(&format!("\n  {unit}: {{")) || table.contains(&format!("\n  '{unit}': {{"));
+            assert!(is_there, "{}: {unit}", field.path);
+        }
+    }
+
     #[test]
     fn every_parameter_has_a_control() {
         let facts = facts();

@@ -74,14 +74,6 @@ struct Predicted {
     numbers: Numbers,
 }
 
-fn trust(status: PredictionStatus) -> &'static str {
-    match status {
-        PredictionStatus::Published => "published",
-        PredictionStatus::Interpolated => "interpolated",
-        PredictionStatus::Extrapolated => "extrapolated",
-    }
-}
-
 impl Predicted {
     fn new(fields: Vec<String>, rows: Vec<(Vec<Value>, RowOutcome)>) -> Self {
         let mut predicted = Self {
@@ -99,7 +91,7 @@ impl Predicted {
             let (status, error) = match outcome {
                 RowOutcome::Predicted(curve) => {
                     let threshold_n = Transition::threshold_n(&curve.load_n, &curve.silicone_share);
-                    predicted.add("predicted", String::new(), curve.law.as_str(), trust(curve.status));
+                    predicted.add("predicted", String::new(), curve.law.as_str(), curve.status.as_str());
                     predicted.threshold_n.push(threshold_n.unwrap_or(f64::NAN));
                     predicted.numbers.add(&curve);
                     continue;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Half width of a standard normal distribution at 95 %.
-pub(crate) const NORMAL_95: f64 = 1.96;
+pub const NORMAL_95: f64 = 1.96;
 
 /// Uncertainty of `ln D` from one source: half widths at 95 %, load by load, none negative.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -127,7 +127,7 @@ pub mod validation;
 
 pub use band::Band;
 pub use band_physics::BandPhysics;
-pub use band_source::BandSource;
+pub use band_source::{BandSource, NORMAL_95};
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
 pub use contact::{Contact, ContactError};
 pub use curve::{FrictionCurve, PublishedPoint, published_points};

@@ -30,6 +30,17 @@ pub enum PredictionStatus {
     Extrapolated,
 }
 
+impl PredictionStatus {
+    /// Returns its word, as in files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Published => "published",
+            Self::Interpolated => "interpolated",
+            Self::Extrapolated => "extrapolated",
+        }
+    }
+}
+
 /// Whether the paper measured the condition: bare silicone or a published layout, on the published
 /// rig.
 pub(crate) fn is_measured(contact: &Contact) -> bool {

@@ -1,7 +1,7 @@
 //! The columns of a table of curves, and its lines: one per row and load.
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_friction::{FrictionCurve, PredictionStatus, Transition};
+use pinswitch_friction::{FrictionCurve, Transition};
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::documents::toml_to_json;
 use toml_edit::Value;
@@ -65,7 +65,7 @@ pub(super) fn lines(
         RowOutcome::Predicted(curve) => {
             let threshold_n = Transition::threshold_n(&curve.load_n, &curve.silicone_share);
             start.extend([text("predicted"), Cell::Empty, text(curve.law.as_str())]);
-            start.push(text(trust(curve.status)));
+            start.push(text(curve.status.as_str()));
             start.push(threshold_n.map_or(Cell::Empty, Cell::Real));
             let series = [
                 &curve.load_n,
@@ -89,13 +89,4 @@ pub(super) fn lines(
     start.extend([text(status), text(&error.to_string())]);
     start.resize(length, Cell::Empty);
     push(start)
-}
-
-/// Returns the word of a prediction status, as in JSON.
-fn trust(status: PredictionStatus) -> &'static str {
-    match status {
-        PredictionStatus::Published => "published",
-        PredictionStatus::Interpolated => "interpolated",
-        PredictionStatus::Extrapolated => "extrapolated",
-    }
 }

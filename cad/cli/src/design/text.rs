@@ -36,14 +36,14 @@ fn write_proposal(
     ask: &Request,
     range_n: (f64, f64),
 ) -> std::fmt::Result {
-    let trust = format!("{:?}", p.trust).to_lowercase();
     writeln!(
         text,
-        "{name}: {:.0} % of made parts meet the request (+-{:.0}); pins {:?}, {}; {trust}",
+        "{name}: {:.0} % of made parts meet the request (+-{:.0}); pins {:?}, {}; {}",
         100.0 * p.probability.all,
         196.0 * p.standard_error,
         p.pins,
-        parameters(p, ask)
+        parameters(p, ask),
+        p.trust.as_str()
     )?;
     let threshold = p.threshold_n.map_or("none".to_owned(), |t| format!("{t:.2} N"));
     writeln!(text, "   threshold {threshold}; {:.2} N at {:.2} N of load", p.friction_n, range_n.1)?;

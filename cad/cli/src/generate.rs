@@ -17,7 +17,7 @@ use super::{Failure, print_data, print_text};
 use crate::input::sha256_read;
 use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::feasibility;
-use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
+use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, default_names, named};
 use pinswitch_switch::output::{BuildError, OutputFile};
 use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     measured: AsMeasured,
     /// Kinds of files to write, in addition to the curve and the manifest.
-    #[arg(long, value_parser = formats(), value_name = "FORMAT", value_delimiter = ',', default_values = default_formats())]
+    #[arg(long, value_parser = formats(), value_name = "FORMAT", value_delimiter = ',', default_values = default_names())]
     format: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
@@ -81,11 +81,6 @@ fn formats() -> PossibleValuesParser {
     let by_name = FORMATS.iter().filter(|f| f.inclusion != Inclusion::Always);
     let values: Vec<_> = by_name.map(|f| PossibleValue::new(f.name).help(f.about)).chain([all]).collect();
     PossibleValuesParser::new(values)
-}
-
-/// The formats that are written where none is named.
-fn default_formats() -> Vec<&'static str> {
-    FORMATS.iter().filter(|f| f.inclusion == Inclusion::Default).map(|f| f.name).collect()
 }
 
 /// Name of the file with a fixed configuration.

@@ -8,7 +8,7 @@ use pinswitch::diagnostic::Diagnostic;
 use pinswitch::solid::mesh::{Mesh, Point3};
 use pinswitch::solid::render::{Body, View, render};
 use pinswitch::switch::built::{Built, BuiltPart};
-use pinswitch::switch::formats::named;
+use pinswitch::switch::formats::{default_names, named};
 use pinswitch::switch::prediction::Prediction;
 use pinswitch::switch::set::Set;
 use pinswitch::switch::{documents::SourceEntry, feasibility, output::BuildError};
@@ -106,19 +106,20 @@ impl Parts {
         Ok(PyBytes::new(py, &png.map_err(Diagnostic::from_error).or_raise(py)?))
     }
 
-    /// Makes the files of a set, by name.
+    /// Makes the files of a set, by name; without formats, those of `pinswitch generate`.
     #[pyo3(signature = (curve, formats, source))]
     fn files<'py>(
         &self,
         py: Python<'py>,
         curve: PyRef<'_, Curve>,
-        formats: Vec<String>,
+        formats: Option<Vec<String>>,
         source: String,
     ) -> PyResult<Bound<'py, PyDict>> {
         let built = Arc::clone(&self.built);
         let prediction = Prediction { curve: curve.curve().clone(), others: curve.others().to_vec() };
         let set = task::run(py, None, move |_| -> Result<Set, Diagnostic> {
-            let names: Vec<&str> = formats.iter().map(String::as_str).collect();
+            let names =
+                formats.as_ref().map_or_else(default_names, |all| all.iter().map(String::as_str).collect());
             let set = Set::new(&built, &prediction, &named(&names)?)?;
             Ok(set.made_from(SourceEntry::new(source))?)
         })?;

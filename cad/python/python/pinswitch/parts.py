@@ -96,7 +96,7 @@ class Parts:
         curve : Curve, optional
             The curve in the documents. Without it, that of :func:`pinswitch.predict`.
         """
-        names = list(formats) if formats is not None else ["stl", "3mf", "drawing", "guide", "page"]
+        names = None if formats is None else list(formats)
         chosen = predict(self.config) if curve is None else curve
         return self._native.files(chosen._native, names, self.config.switch.name)
 

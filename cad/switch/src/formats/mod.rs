@@ -80,6 +80,11 @@ pub fn named(names: &[&str]) -> Result<Vec<&'static Format>, Diagnostic> {
     Ok(FORMATS.iter().filter(is_included).collect())
 }
 
+/// Returns the names of the formats of a set for which none is named.
+pub fn default_names() -> Vec<&'static str> {
+    FORMATS.iter().filter(|f| f.inclusion == Inclusion::Default).map(|f| f.name).collect()
+}
+
 /// Renders a picture as PNG.
 fn png(bodies: &[Body], view: View, width: u32, height: u32) -> Result<Vec<u8>, SetError> {
     render(bodies, view, width, height).png().map_err(SetError::encoding)

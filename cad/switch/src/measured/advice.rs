@@ -40,13 +40,16 @@ impl Measured {
         advice.push(format!(
             "use the corrected curve: this switch switches at {made:.2} N, not at {planned:.2} N"
         ));
-        advice.extend(self.hardness_to_cast(design, planned));
+        let hardness = self.hardness_to_cast(design, planned);
+        // The hardness makes up for the thickness: who changes both is off by as much again.
+        let or = if hardness.is_some() { "or, with the hardness as it is, " } else { "" };
+        advice.extend(hardness);
         if let Some(thickness) = self.mean(THICKNESS) {
             let wanted = design.configuration().silicone.thickness_mm;
             let next = (100.0 * (2.0 * wanted - thickness)).round() / 100.0;
             if (next - wanted).abs() >= 0.01 {
                 advice.push(format!(
-                    "to cast {wanted} mm from the next mould, generate it with silicone.thickness_mm = {next}"
+                    "{or}to cast {wanted} mm from the next mould, generate it with silicone.thickness_mm = {next}"
                 ));
             }
         }

@@ -48,13 +48,18 @@ fn mix_step(design: &Design, manifest: &Manifest) -> Option<Step> {
     } else {
         "some remains in the cup"
     };
+    let pot_life = c.process.silicone.data().map_or(String::new(), |product| {
+        format!(" Pour within {:.0} min of mixing: it thickens at room temperature.", product.pot_life_min)
+    });
     Some(
         Step::new("Mix the silicone")
             .text(format!(
                 "Weigh {:.1} g of base and {:.1} g of curing agent of {product} ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.",
                 s.base_g, s.agent_g, s.mix_ratio, s.mix_g, s.pour_ml, s.pour_g
             ))
-            .text("Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.")
+            .text(format!(
+                "Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.{pot_life}"
+            ))
             .risk("The ratio is wrong.", "The cured rest in the cup is sticky or brittle.")
             .risk("Bubbles remain.", "The surface of the mix is not flat; wait for 30 minutes or degas again."),
     )

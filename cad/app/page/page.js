@@ -335,13 +335,11 @@ class Page {
     this.writeAddress();
     // An address of this computer opens nowhere else: there the design itself is shared, as a text that the page opens.
     const isLocal = location.protocol === 'file:' || ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-    const host = document.documentElement.dataset.host ?? '';
-    const address = isLocal && host ? host + location.hash : location.href;
     try {
-      await navigator.clipboard.writeText(isLocal && !host ? await this.configurationText() : address);
-      showToast(isLocal && !host ? TEXT.sharedText : TEXT.shared);
+      await navigator.clipboard.writeText(isLocal ? await this.configurationText() : location.href);
+      showToast(isLocal ? TEXT.sharedText : TEXT.shared);
     } catch {
-      showToast(isLocal && !host ? TEXT.shareFileByHand : TEXT.shareByHand);
+      showToast(isLocal ? TEXT.shareFileByHand : TEXT.shareByHand);
     }
   }
 

@@ -15,20 +15,9 @@ const TRIANGLE_MM: (f64, f64) = (2.2, 1.3);
 /// Lengths of the stem of a datum that are tried, mm.
 const STEMS_MM: [f64; 8] = [4.0, 6.0, 8.0, 11.0, 14.0, 18.0, 23.0, 29.0];
 
-/// Geometrical characteristic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Characteristic {
-    /// Position of an axis or of a median plane.
-    Position,
-    /// Profile of a surface.
-    SurfaceProfile,
-}
-
-/// Indicator of a geometrical tolerance: characteristic, width of the zone, and datums.
+/// Indicator of a position tolerance: width of the zone, and datums.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Indicator {
-    /// Characteristic.
-    pub characteristic: Characteristic,
     /// Width of the zone in mm, such as `0.1`, or its diameter, such as `⌀0.2`.
     pub zone: String,
     /// Letters of the datums, in their order.
@@ -49,17 +38,13 @@ fn text(at: Point, content: &str) -> (Layer, Shape) {
 impl Indicator {
     /// Creates the indicator of a position tolerance.
     pub fn position(zone: impl Into<String>, datums: &[char]) -> Self {
-        Self { characteristic: Characteristic::Position, zone: zone.into(), datums: datums.to_vec() }
+        Self { zone: zone.into(), datums: datums.to_vec() }
     }
 
     /// Returns the indicator in words, such as `position 0.1 A B`.
     #[must_use]
     pub fn words(&self) -> String {
-        let name = match self.characteristic {
-            Characteristic::Position => "position",
-            Characteristic::SurfaceProfile => "surface profile",
-        };
-        std::iter::once(name.to_owned()).chain(self.cells()).collect::<Vec<_>>().join(" ")
+        std::iter::once("position".to_owned()).chain(self.cells()).collect::<Vec<_>>().join(" ")
     }
 
     /// Texts of the cells after the symbol.
@@ -83,7 +68,7 @@ impl Indicator {
         };
         let first = cell(INDICATOR_MM);
         let mut all: Vec<_> = rectangle(first).collect();
-        all.extend(self.symbol(first.middle()));
+        all.extend(symbol(first.middle()));
         for content in self.cells() {
             let extent = cell(cell_width_mm(&content));
             all.extend(rectangle(extent));
@@ -91,41 +76,16 @@ impl Indicator {
         }
         all
     }
+}
 
-    fn symbol(&self, middle: Point) -> Vec<(Layer, Shape)> {
-        let line = |x: f64, y: f64| {
-            let half = Point::new(x, y);
-            (Layer::Dimension, Shape::Line { from: middle - half, to: middle + half })
-        };
-        match self.characteristic {
-            Characteristic::Position => vec![
-                (Layer::Dimension, Shape::Circle { centre: middle, radius_mm: 1.1 }),
-                line(1.9, 0.0),
-                line(0.0, 1.9),
-            ],
-            Characteristic::SurfaceProfile => {
-                let foot = Point::new(0.0, -0.9);
-                vec![
-                    (
-                        Layer::Dimension,
-                        Shape::Arc {
-                            centre: middle + foot,
-                            radius_mm: 1.7,
-                            start_rad: 0.0,
-                            sweep_rad: std::f64::consts::PI,
-                        },
-                    ),
-                    (
-                        Layer::Dimension,
-                        Shape::Line {
-                            from: middle + foot - Point::new(1.7, 0.0),
-                            to: middle + foot + Point::new(1.7, 0.0),
-                        },
-                    ),
-                ]
-            }
-        }
-    }
+/// The symbol of a position: a circle with a cross.
+fn symbol(middle: Point) -> [(Layer, Shape); 3] {
+    let line = |x: f64, y: f64| {
+        let half = Point::new(x, y);
+        (Layer::Dimension, Shape::Line { from: middle - half, to: middle + half })
+    };
+    let circle = (Layer::Dimension, Shape::Circle { centre: middle, radius_mm: 1.1 });
+    [circle, line(1.9, 0.0), line(0.0, 1.9)]
 }
 
 fn cell_width_mm(content: &str) -> f64 {

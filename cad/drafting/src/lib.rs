@@ -100,7 +100,7 @@ pub use draft::Draft;
 pub use dxf::drawing_dxf;
 pub use escape::escape;
 pub use geometry::{Extent, Point};
-pub use indicator::{Characteristic, DatumMark, Indicator};
+pub use indicator::{DatumMark, Indicator};
 pub use layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, assembly_formats, part_formats};
 pub use pages::{Page, PageItem, PngPixels, Rgb, Typeface, pages_pdf};
 pub use part::{FaceDatum, Fit, Fits, PartDrawing, RadialSize, RadiusFit, RoundFit, Terms, number};

@@ -137,7 +137,8 @@ impl HardwareKind {
             Self::Cell => [120, 160, 205],
             Self::Actuator => [92, 100, 112],
             Self::Weight => [196, 160, 84],
-            _ => [158, 160, 164],
+            Self::Insert => [204, 160, 60],
+            _ => [104, 112, 126],
         }
     }
 }

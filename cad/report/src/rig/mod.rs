@@ -15,6 +15,10 @@ use pinswitch_friction::{Substrate, published};
 
 /// Time of one move of the drive, s: the paper's actuator.
 pub(crate) const MOVE_S: f64 = 0.5;
+/// Lowest and highest speed of the actuator, %: the paper's.
+const ACTUATOR_SPEEDS_PCT: [f64; 2] = [40.0, 70.0];
+/// Speed in the logs of a crank, %: that of the paper's table without a speed.
+const CRANK_SPEED_PCT: f64 = 50.0;
 
 /// The drive of a rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,9 +94,9 @@ impl RigFacts {
         let layouts = if is_layout { vec![self.pins.clone()] } else { Vec::new() };
         let is_plain = layouts.is_empty() && !self.has_silicone;
         let speeds_pct = match self.drive {
-            Drive::Actuator { .. } => [40.0, 70.0],
+            Drive::Actuator { .. } => ACTUATOR_SPEEDS_PCT,
             // Cranking by hand has one speed, which is not recorded.
-            Drive::Crank { .. } => [50.0, 50.0],
+            Drive::Crank { .. } => [CRANK_SPEED_PCT; 2],
         };
         RigLimits {
             loads_g: self.weights_g.clone(),

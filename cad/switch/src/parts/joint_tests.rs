@@ -98,9 +98,9 @@ fn nothing_overlaps_at_any_flexion() {
                 assert!(depth < TOUCHING_MM, "{name}: {} at {flexion_deg}: {depth}", part.name);
             }
             let tendon = tendon_at_flexion(&design, flexion_deg).unwrap();
-            assert!(overlap_mm(distal[0], turn, &lifted(&tendon, &design)) < TOUCHING_MM, "{name}");
+            assert!(overlap_mm(distal[0], turn, &tendon) < TOUCHING_MM, "{name}");
             for part in fixed.iter().filter(|part| !matches!(part.role, Role::Accessory)) {
-                let depth = overlap_mm(part, 0.0, &lifted(&tendon, &design));
+                let depth = overlap_mm(part, 0.0, &tendon);
                 assert!(depth < TOUCHING_MM, "{name}: tendon and {} at {flexion_deg}: {depth}", part.name);
             }
         }
@@ -112,12 +112,6 @@ fn nothing_overlaps_at_any_flexion() {
             assert!(depth > 0.1, "{name}: no stop at {beyond}");
         }
     }
-}
-
-/// The tendon at its height in the assembly.
-fn lifted(tendon: &Part, _: &Design) -> Part {
-    assert!(tendon.pose.is_some());
-    tendon.clone()
 }
 
 /// The bore is a bearing: the axle is free in it over hub and link, with the switch in place.
@@ -215,7 +209,7 @@ fn bare_silicone_wraps_by_the_flexion() {
     assert!(joint.largest_turns_rad().iter().all(|turn| *turn < 1e-9));
 }
 
-/// A single pin in the middle, with guide and anchor on its tangents: lines from a point to a disc.
+/// A single pin, with guide and anchor on its tangents: lines from a point to a disc.
 #[test]
 fn one_pin_deflects_the_tendon_as_computed() {
     // The pin is the only body that the tendon meets near the straight joint: the flexion is small.

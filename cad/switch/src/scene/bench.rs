@@ -1,7 +1,6 @@
 //! The bodies that pictures of steps show, each with its name, in its place.
 
 use crate::built::Built;
-use crate::hardware::HardwareKind;
 use crate::hardware::hardware;
 use crate::parts::{Role, cast};
 use pinswitch_solid::mesh::{Mesh, Vector3};
@@ -48,8 +47,6 @@ const SHELL: [u8; 3] = [142, 160, 184];
 const PIN: [u8; 3] = [206, 72, 52];
 const TENDON: [u8; 3] = [38, 128, 96];
 const MOUNT: [u8; 3] = [146, 118, 190];
-const FASTENER: [u8; 3] = [104, 112, 126];
-const BRASS: [u8; 3] = [204, 160, 60];
 
 const fn colour(role: Role) -> [u8; 3] {
     match role {
@@ -116,7 +113,7 @@ fn switch(built: &Built) -> Vec<Item> {
     });
     let bought = hardware(design).into_iter().filter_map(|body| {
         let mesh = body.solid.mesh(design.tolerance()).ok()?;
-        let colour = if body.kind == HardwareKind::Insert { BRASS } else { FASTENER };
+        let colour = body.kind.colour();
         Some(Item { name: body.name, mesh, colour, is_silicone: false, from_right: body.from_right })
     });
     made.chain(bought).collect()

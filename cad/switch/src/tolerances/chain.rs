@@ -10,7 +10,7 @@ use crate::request::Tolerances;
 
 /// Standard deviations within a tolerance: a tolerance of ±t is ± two standard deviations, as in [`Tolerances`].
 pub const DEVIATIONS_PER_TOLERANCE: f64 = 2.0;
-/// Radius of the largest dimension in each range of [`IT9_MM`], mm.
+/// Largest dimension in each range of [`IT9_MM`], mm.
 const IT_RANGES_MM: [f64; 8] = [3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0];
 /// Widths of the tolerance grade IT9 by range of nominal size, mm (ISO 286-1:2010, table 1).
 const IT9_MM: [f64; 9] = [0.025, 0.030, 0.036, 0.043, 0.052, 0.062, 0.074, 0.087, 0.100];

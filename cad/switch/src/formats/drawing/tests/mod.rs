@@ -254,7 +254,7 @@ fn plates_are_square_to_the_sheet() {
     for (mount, part) in [("kind = \"rig\"\n", "rig-plate"), ("kind = \"joint\"\n", "link-proximal")] {
         let built = built(&format!("[layout]\npins = [5, 8, 11]\n[mount]\n{mount}")).unwrap();
         let all = sheets(&built);
-        let Some(sheet) = all.iter().find(|s| s.name == part) else { continue };
+        let sheet = all.iter().find(|s| s.name == part).unwrap();
         let front = sheet.views.iter().position(|v| v.name == "FRONT");
         let lines = sheet.entities.iter().filter(|e| e.view == front && e.layer == Layer::Visible);
         let longest = lines

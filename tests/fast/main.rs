@@ -39,6 +39,7 @@ mod provenance;
 mod readme;
 mod reference_shell;
 mod rig_set;
+mod schemas;
 mod segment_raw;
 mod several_sessions;
 mod slicing;

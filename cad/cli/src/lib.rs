@@ -42,7 +42,7 @@ const SEED: u64 = 1;
 #[derive(Debug, Parser)]
 #[command(name = "pinswitch", version, max_term_width = 100, propagate_version = true)]
 #[command(after_help = "Commands by task:
-  make parts        generate, init, layouts, view, render
+  make parts        generate, init, schema, layouts, view, render
   make many         batch, merge
   predict           predict, physics, finger, tolerances, export
   design            design
@@ -97,6 +97,7 @@ commands! {
     Render: render,
     Layouts: layouts,
     Init: init,
+    Schema: schema,
     Import: import,
     Segment: segment,
     Calibrate: calibrate,

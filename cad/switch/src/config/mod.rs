@@ -7,6 +7,7 @@ mod parameters;
 mod read;
 mod reference;
 mod rewrite;
+mod schema;
 mod text;
 
 pub(crate) use error::field_location;
@@ -22,4 +23,6 @@ pub(crate) use read::shown;
 pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub use reference::{reference_toml, to_toml};
 pub use rewrite::{rewritten, rewritten_fields};
+pub use schema::json_schema;
+pub(crate) use schema::{DIALECT, closed_object};
 pub use text::text;

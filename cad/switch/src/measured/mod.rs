@@ -26,7 +26,7 @@ use toml_edit::{Document, Item, Value};
 
 use self::quantity::{HARDNESS, QUANTITIES, Quantity};
 use crate::config::parameter::number;
-use crate::config::syntax_error;
+use crate::config::{DIALECT, closed_object, syntax_error};
 use crate::design::Design;
 use crate::process::relative_modulus_sd;
 
@@ -113,6 +113,23 @@ impl Measured {
         };
         design.with_contact(contact.with_bed(bed).with_modulus_scatter(scatter))
     }
+}
+
+/// Returns the JSON Schema (2020-12) of a file of readings.
+pub fn json_schema() -> serde_json::Value {
+    let property = |quantity: &Quantity| {
+        let [low, high] = quantity.range;
+        let reading = serde_json::json!({ "type": "number", "minimum": low, "maximum": high });
+        serde_json::json!({
+            "description": format!("{}, {low} to {high} {}: one reading or several", quantity.name, quantity.unit),
+            "anyOf": [reading, { "type": "array", "items": reading, "minItems": 1 }],
+        })
+    };
+    let mut schema = closed_object(QUANTITIES.iter().map(|q| (q.key.to_owned(), property(q))).collect());
+    schema["$schema"] = serde_json::json!(DIALECT);
+    schema["title"] = serde_json::json!("Readings of a made friction switch (pinswitch)");
+    schema["minProperties"] = serde_json::json!(1);
+    schema
 }
 
 /// Mean of readings, of which there is one at least.

@@ -1,0 +1,98 @@
+//! The schemas of `pinswitch schema` accept what the program reads, and refuse what it refuses.
+
+use crate::harness::done;
+use pinswitch_switch::config::{self, Configuration};
+use pinswitch_switch::measured::Measured;
+use pinswitch_switch::templates::{EXAMPLES, TEMPLATES};
+use proptest::prelude::*;
+use serde_json::Value;
+use toml_edit::Value as TomlValue;
+
+fn validator(kind: &str) -> jsonschema::Validator {
+    let folder = tempfile::tempdir().unwrap();
+    let schema: Value = serde_json::from_str(&done(folder.path(), &["schema", kind])).unwrap();
+    assert!(jsonschema::meta::is_valid(&schema));
+    jsonschema::validator_for(&schema).unwrap()
+}
+
+fn json(toml: &str) -> Value {
+    serde_json::to_value(toml::from_str::<toml::Table>(toml).unwrap()).unwrap()
+}
+
+#[test]
+fn every_template_is_valid() {
+    let configuration = validator("configuration");
+    for template in TEMPLATES {
+        assert!(configuration.is_valid(&json(template.text)), "{}", template.name);
+    }
+    assert!(configuration.is_valid(&json(&config::reference_toml())));
+    let (_, measured) = EXAMPLES.iter().find(|example| example.0 == "measured").unwrap();
+    assert!(validator("measured").is_valid(&json(measured)));
+    for wrong in ["[shel]\nwidth_mm = 12", "[shell]\nwidth = 12", "width_mm = 12"] {
+        assert!(!configuration.is_valid(&json(wrong)), "{wrong}");
+    }
+}
+
+/// Values of every type, in and out of ranges, near the ends `low` and `high`.
+fn values(low: f64, high: f64) -> impl Strategy<Value = TomlValue> {
+    prop_oneof![
+        (low - 1.0..=high + 1.0).prop_map(TomlValue::from),
+        Just(low.into()),
+        Just(high.into()),
+        (-2_i64..400).prop_map(TomlValue::from),
+        any::<bool>().prop_map(TomlValue::from),
+        proptest::collection::vec(-1_i64..20, 0..4)
+            .prop_map(|list| TomlValue::Array(list.into_iter().collect())),
+        Just("mine".into()),
+    ]
+}
+
+#[test]
+fn the_schema_and_the_reader_agree() {
+    let schema = validator("configuration");
+    let accepted = std::cell::Cell::new([0; 2]);
+    // Texts are not checked by the schema, and 3.0 is whole for JSON Schema and not for TOML.
+    let parameters: Vec<_> = Configuration::PARAMETERS
+        .iter()
+        .filter(|p| !(p.get)(&Configuration::default()).is_str() || !(p.choices)().is_empty())
+        .collect();
+    let cases = (0..parameters.len()).prop_flat_map(|i| {
+        let [low, high] = (parameters[i].ends)().unwrap_or([0.0, 9.0]);
+        let choices = (parameters[i].choices)();
+        let choice = (0..choices.len().max(1)).prop_map(move |k| choices.get(k).cloned().unwrap_or(3.into()));
+        (Just(i), prop_oneof![3 => values(low, high), 1 => choice])
+    });
+    let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(2000));
+    runner
+        .run(&cases, |(i, value)| {
+            let parameter = parameters[i];
+            let is_whole_float = value.as_float().is_some_and(|v| v.fract() == 0.0);
+            prop_assume!(!(is_whole_float && (parameter.get)(&Configuration::default()).is_integer()));
+            let text = format!("[{}]\n{} = {value}\n", parameter.section, parameter.key);
+            let reads = config::read(&text, "x.toml").is_ok();
+            prop_assert_eq!(schema.is_valid(&json(&text)), reads, "{}", text);
+            let mut count = accepted.get();
+            count[usize::from(reads)] += 1;
+            accepted.set(count);
+            Ok(())
+        })
+        .unwrap();
+    assert!(accepted.get().iter().all(|count| *count > 300), "{:?}", accepted.get());
+}
+
+#[test]
+fn readings_and_their_schema_agree() {
+    let schema = validator("measured");
+    for text in [
+        "hardness_shore_a = 46",
+        "hardness_shore_a = [46, 47.5]",
+        "hardness_shore_a = 4",
+        "hardness_shore_a = []",
+        "hardness_shore_a = [46, 99]",
+        "hardness_shore_a = '46'",
+        "hardness = 46",
+        "",
+    ] {
+        assert_eq!(schema.is_valid(&json(text)), Measured::read(text, "x.toml").is_ok(), "{text}");
+    }
+}

@@ -16,6 +16,9 @@ use crate::vocabulary;
 
 /// Rows in which the kind of a column's cells is examined.
 const SAMPLE_ROWS: usize = 500;
+/// Shortest time between two samples that is assumed to be in seconds: that of 10 kHz, less rounding. Days, as spreadsheets
+/// count them, have shorter ones.
+const SHORTEST_STEP_S: f64 = 0.99e-4;
 /// Largest wrap angle in radians: two revolutions.
 const MAX_RADIANS: f64 = 12.6;
 
@@ -141,7 +144,10 @@ pub(crate) fn assign(
             column.quantity = Quantity::LoadMass;
         }
     }
+    remove_averages(&mut columns);
     remove_duplicates(&mut columns, questions);
+    ask_for_loads(&columns, map, questions);
+    ask_for_numbers(&columns, map, questions);
     let forces = columns.iter().filter(|column| column.quantity == Quantity::Force).count();
     for column in &mut columns {
         // The number in a name counts trials only if there are several.
@@ -176,7 +182,8 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         direction: choice.direction.or(reading.direction),
         load: reading.load,
         angle: choice.angle.or(reading.angle),
-        repetition: choice.repetition.or(reading.repetition),
+        // The number in the name is the angle, if that was decided.
+        repetition: choice.repetition.or(reading.repetition.filter(|_| choice.angle.is_none())),
         reason: if choice.quantity == Some(Quantity::Ignore) {
             "left out on request"
         } else {
@@ -188,6 +195,12 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         is_decided: choice.quantity.is_some(),
         has_factor: choice.factor.is_some(),
     };
+    if column.quantity == Quantity::Force
+        && !column.is_decided
+        && vocabulary::is_spread(&vocabulary::words(name))
+    {
+        column.ignore("the spread of readings");
+    }
     if let Some(load) = &choice.load {
         column.load = name::load_in(load).or(column.load);
     }
@@ -278,6 +291,78 @@ fn split_load_and_force(columns: &mut [Column]) {
             .filter(|column| is_load(column))
             .for_each(|column| column.quantity = Quantity::Force);
     }
+}
+
+/// A mean next to the readings that it is computed from is not another reading.
+fn remove_averages(columns: &mut [Column]) {
+    let place = |c: &Column| {
+        (
+            c.direction,
+            c.load.map(|(value, unit)| value.times(unit.factor).to_string()),
+            c.angle.map(|a| a.to_string()),
+        )
+    };
+    let is_average = |c: &Column| vocabulary::is_average(&vocabulary::words(&c.name));
+    let singles: Vec<_> = columns
+        .iter()
+        .filter(|c| c.quantity == Quantity::Force && c.repetition.is_some() && !is_average(c))
+        .map(place)
+        .collect();
+    let averages =
+        columns.iter_mut().filter(|c| c.quantity == Quantity::Force && !c.is_decided && is_average(c));
+    averages.filter(|c| singles.contains(&place(c))).for_each(|c| c.ignore("computed from other columns"));
+}
+
+/// A load in a name with a separator before three digits, such as `1,000 g`.
+fn ask_for_loads(columns: &[Column], map: &Map, questions: &mut Vec<Question>) {
+    let either: Vec<_> = columns
+        .iter()
+        .filter(|c| c.quantity == Quantity::Force)
+        .filter(|c| map.column(&c.name, c.index + 1).is_none_or(|choice| choice.load.is_none()))
+        .filter_map(|c| Some((c, name::either_load(&c.name)?)))
+        .collect();
+    let Some((first, _)) = either.first() else { return };
+    let answer = |large: usize| {
+        let option = |(column, readings): &(&Column, [(Decimal, &'static Unit); 2])| {
+            let (value, unit) = readings[large];
+            format!("load.{}={value} {}", reference(column), unit.name)
+        };
+        either.iter().map(option).collect::<Vec<_>>().join("\n")
+    };
+    questions.push(Question::new(
+        format!("the load in the name '{}'", first.name),
+        [("a decimal separator".to_owned(), answer(0)), ("thousands".to_owned(), answer(1))],
+    ));
+}
+
+/// The numbers in the names of the columns of a wide table count trials from 0 or 1 on; others may be wrap angles.
+fn ask_for_numbers(columns: &[Column], map: &Map, questions: &mut Vec<Question>) {
+    let numbered: Vec<(&Column, u32)> = columns
+        .iter()
+        .filter(|c| c.quantity == Quantity::Force)
+        .filter(|c| {
+            map.column(&c.name, c.index + 1)
+                .is_none_or(|choice| choice.repetition.is_none() && choice.angle.is_none())
+        })
+        .filter_map(|c| Some((c, c.repetition?)))
+        .collect();
+    let numbers: std::collections::BTreeSet<u32> = numbered.iter().map(|(_, number)| *number).collect();
+    let counts_from = |first: u32| numbers.iter().zip(first..).all(|(number, expected)| *number == expected);
+    if numbers.len() < 2 || counts_from(0) || counts_from(1) {
+        return;
+    }
+    let shown: Vec<String> = numbers.iter().map(u32::to_string).collect();
+    let options = |key: &str| {
+        let each = numbered.iter().map(|(column, number)| format!("{key}.{}={number}", reference(column)));
+        each.collect::<Vec<_>>().join("\n")
+    };
+    questions.push(Question::new(
+        format!("the numbers {} in the names of columns", shown.join(", ")),
+        [
+            ("they are wrap angles in degrees".to_owned(), options("wrap_angle_deg")),
+            ("they are trials".to_owned(), options("repetition")),
+        ],
+    ));
 }
 
 /// Keeps one column of each quantity, and the columns of a wide table.
@@ -446,7 +531,8 @@ fn assumed_unit(column: &Column, sheet: &Sheet, header: &Header) -> Option<&'sta
         // No load cell has a sample every 0.1 ms and writes fractions of milliseconds.
         Quantity::Time => {
             let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
-            let is_seconds = !steps.is_empty() && steps.iter().all(|step| *step < 1.0);
+            let is_seconds =
+                !steps.is_empty() && steps.iter().all(|step| (SHORTEST_STEP_S..1.0).contains(step));
             if is_seconds { Unit::parse("s") } else { None }
         }
         _ => None,
@@ -458,7 +544,8 @@ fn unknown_unit(column: &Column) -> Question {
         Quantity::Load => &["N", "kg", "g", "lbf"],
         Quantity::LoadMass => &["g", "kg"],
         Quantity::Force => &["N", "kN", "kgf", "lbf", "counts"],
-        Quantity::Time | Quantity::Dwell => &["s", "ms"],
+        Quantity::Time => &["s", "ms", "d"],
+        Quantity::Dwell => &["s", "ms"],
         Quantity::Position => &["mm", "m", "in"],
         Quantity::WrapAngle => &["deg", "rad", "turns"],
         Quantity::Speed => &["%", "mm/s"],

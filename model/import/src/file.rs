@@ -153,6 +153,8 @@ impl FileReading {
         let mut counts = [0_usize; 4];
         // Columns with four digits and more without a separator, and with a comma before three digits.
         let (mut long_whole, mut with_comma) = (BTreeSet::new(), BTreeSet::new());
+        // Columns with one separator before three digits, and those with a number that shows what the separator is.
+        let (mut unsure, mut sure) = ([BTreeMap::new(), BTreeMap::new()], BTreeSet::new());
         let used: Vec<&Column> =
             self.columns.iter().filter(|c| c.quantity.is_number() && !c.is_clock).collect();
         for row in self.header.first_data..sheet.len() {
@@ -174,6 +176,9 @@ impl FileReading {
                             && cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
                         if is_long {
                             long_whole.insert(column.index);
+                        } else {
+                            // Less than 1000: as numbers around it have a separator for thousands, it has none.
+                            sure.insert(column.index);
                         }
                         continue;
                     }
@@ -182,6 +187,11 @@ impl FileReading {
                 counts[at] += 1;
                 if at == 3 {
                     with_comma.insert(column.index);
+                }
+                if at < 2 {
+                    sure.insert(column.index);
+                } else {
+                    unsure[at - 2].entry(column.index).or_insert_with(|| (sheet.line(row), cell.to_owned()));
                 }
                 if first[at].is_none() {
                     first[at] = Some((sheet.line(row), cell.to_owned()));
@@ -201,8 +211,17 @@ impl FileReading {
                 self.questions.push(Question::new(problem, sign_answers("decimal comma", "decimal point")));
                 DecimalSign::Point
             }
-            (true, false, _) => DecimalSign::Point,
-            (false, true, _) => DecimalSign::Comma,
+            // The sign of one column is not that of another one, which has it before three digits in every number.
+            (true, false, _) | (false, true, _) => {
+                let is_point = counts[0] > 0;
+                if let Some((_, number)) =
+                    unsure[usize::from(is_point)].iter().find(|(column, _)| !sure.contains(*column))
+                {
+                    self.questions
+                        .push(separator_question(Some(number), if is_point { "comma" } else { "point" }));
+                }
+                if is_point { DecimalSign::Point } else { DecimalSign::Comma }
+            }
             // Whole numbers of four digits and more have no thousands separator, so the comma is
             // none either in the same column; a spreadsheet may format one column alone.
             (false, false, true) if counts[2] == 0 && with_comma.is_subset(&long_whole) => DecimalSign::Comma,
@@ -221,6 +240,7 @@ impl FileReading {
 
     /// Finds the rows with readings; decides whether they are a table or a log.
     fn find_rows(&mut self, map: &Map) -> Result<(), Diagnostic> {
+        self.refuse_another_header(map)?;
         let mut verdicts: Vec<RowVerdict> =
             (self.header.first_data..self.recording.sheet.len()).map(|row| self.judge(row)).collect();
         // Lines between the last reading and a repeated header belong to that header.
@@ -242,6 +262,7 @@ impl FileReading {
             .filter(|(_, v)| matches!(v, RowVerdict::Use))
             .map(|(i, _)| first_row + i)
             .collect();
+        self.refuse_unused_constants(map)?;
         self.decide_kind(map);
         self.ask_for_date_order(map);
         self.ask_for_minutes(map);
@@ -288,11 +309,68 @@ impl FileReading {
         Ok(())
     }
 
+    /// Data below another header are other columns, or the same in other units: one header cannot read both.
+    fn refuse_another_header(&self, map: &Map) -> Result<(), Diagnostic> {
+        // Names that the user gave are for all rows.
+        if map.names.is_some() || self.header.names_row.is_none() {
+            return Ok(());
+        }
+        let sheet = &self.recording.sheet;
+        let Some((row, other)) = header::find_other(sheet, &self.header) else { return Ok(()) };
+        let shown = |header: &Header| {
+            let unit = |i: usize| header.units.get(i).copied().flatten();
+            let names = header.names.iter().enumerate().filter(|(_, name)| !name.is_empty());
+            let named = names.map(|(i, name)| match unit(i) {
+                Some(unit) => format!("{name} [{}]", unit.name),
+                None => name.clone(),
+            });
+            named.collect::<Vec<_>>().join(", ")
+        };
+        let problem =
+            format!("another header ({}) than the first one ({})", shown(&other), shown(&self.header));
+        Err(Diagnostic::new(problem)
+            .with_location(Location::line(&self.name, sheet.line(row)))
+            .with_help("give each block of columns in a file of its own; `import` takes several files"))
+    }
+
+    /// A constant that the user gave, and a column with a value in every row: one of them is wrong.
+    fn refuse_unused_constants(&self, map: &Map) -> Result<(), Diagnostic> {
+        for (key, value) in &map.constants {
+            let quantities = match key.as_str() {
+                "load_N" | "load_kg" | "load_g" | "load_mass_g" => vec![Quantity::Load, Quantity::LoadMass],
+                _ => Quantity::of_table_column(key).into_iter().collect(),
+            };
+            let full = self.columns.iter().find(|column| {
+                let cell = |row: &usize| self.recording.sheet.cell(*row, column.index);
+                quantities.contains(&column.quantity)
+                    && !self.rows.is_empty()
+                    && !self.rows.iter().any(|row| is_missing(cell(row)))
+                    && self.rows.iter().any(|row| cell(row) != value)
+            });
+            if let Some(column) = full {
+                let help = format!(
+                    "leave out --set {key}, or the column with --set 'column.{}=ignore'",
+                    column::reference(column)
+                );
+                return Err(Diagnostic::new(format!("the column '{}' has other values", column.name))
+                    .with_location(Location::field(key.clone(), value.clone()))
+                    .with_help(help));
+            }
+        }
+        Ok(())
+    }
+
     /// Decides whether a row has a reading.
     fn judge(&self, row: usize) -> RowVerdict {
         let sheet = &self.recording.sheet;
         let (mut has_force, mut has_number) = (false, false);
         let mut bad = None;
+        let is_blanks = self.recording.delimiter == Some(crate::dialect::Delimiter::Blanks);
+        if is_blanks && sheet.width(row) < self.header.names.len() && header::is_data(sheet, row) {
+            let cell = sheet.row(row).collect::<Vec<_>>().join(" ");
+            let problem = "fewer cells than names, and blanks do not show which one is empty";
+            return RowVerdict::Bad { column: "row".to_owned(), cell, problem };
+        }
         for column in self.columns.iter().filter(|column| column.quantity.is_number()) {
             let cell = sheet.cell(row, column.index);
             if is_missing(cell) {
@@ -327,24 +405,6 @@ impl FileReading {
 
     /// Returns why a row is not one of readings, whatever its numbers are.
     fn reason_to_skip(&self, row: usize) -> Option<&'static str> {
-        const SUMMARY: [&str; 16] = [
-            "mean",
-            "average",
-            "avg",
-            "mittelwert",
-            "maximum",
-            "max",
-            "minimum",
-            "min",
-            "std",
-            "sd",
-            "standard",
-            "median",
-            "sum",
-            "summe",
-            "stdev",
-            "total",
-        ];
         let sheet = &self.recording.sheet;
         if header::is_comment(sheet, row) {
             return Some("comment");
@@ -359,7 +419,7 @@ impl FileReading {
             return Some("repeated units");
         }
         let first = sheet.row(row).find(|cell| !cell.is_empty()).map(vocabulary::words).unwrap_or_default();
-        first.first().is_some_and(|word| SUMMARY.contains(&word.as_str())).then_some("summary")
+        first.first().is_some_and(|word| vocabulary::is_summary(word)).then_some("summary")
     }
 
     fn problem(&self, cell: &str, column: &Column) -> &'static str {
@@ -377,7 +437,9 @@ impl FileReading {
         let is_wide = self.forces().any(Column::is_wide);
         let has_load = has(Quantity::Load) || has(Quantity::LoadMass);
         let has_time = has(Quantity::Time) || map.sample_rate_hz.is_some();
-        let is_table = is_wide || has(Quantity::Direction) || has_load;
+        let is_given = |quantity: Quantity| map.constants.contains_key(quantity.column());
+        let is_given = [Quantity::Load, Quantity::LoadMass, Quantity::Direction].into_iter().any(is_given);
+        let is_table = is_wide || has(Quantity::Direction) || has_load || (is_given && !has_time);
         (self.kind, self.kind_reason) = match (is_table, is_wide) {
             (_, true) => (Kind::Table, "several readings in a row"),
             (true, _) => (Kind::Table, "a load or a direction in each row"),

@@ -136,6 +136,26 @@ pub(crate) fn find(sheet: &Sheet, line: Option<usize>) -> Option<Header> {
     best.map(|(header, _)| header)
 }
 
+/// Finds a later row of names directly above data, whose names or units are not those of this header: the data below are other
+/// columns. Such a row names two quantities at least, as a line of text does not.
+pub(crate) fn find_other(sheet: &Sheet, header: &Header) -> Option<(usize, Header)> {
+    let next = next_rows(sheet);
+    let is_equal = |a: &str, b: &str| a.trim().eq_ignore_ascii_case(b.trim());
+    (header.first_data..sheet.len()).find_map(|row| {
+        if is_data(sheet, row) || is_units_row(sheet, row) || is_comment(sheet, row) {
+            return None;
+        }
+        let (other, _) = candidate(sheet, row, &next)?;
+        let known =
+            other.names.iter().zip(&other.units).filter(|(n, u)| name::read(n, **u).quantity.is_some());
+        let are_names_equal = other.names.len() == header.names.len()
+            && other.names.iter().zip(&header.names).all(|(a, b)| is_equal(a, b));
+        // A repeated header without its row of units has those of the first one.
+        let are_units_equal = other.units_row.is_none() || other.units == header.units;
+        (known.count() > 1 && !(are_names_equal && are_units_equal)).then_some((row, other))
+    })
+}
+
 /// Returns for each row the first row from it on that is not a comment.
 fn next_rows(sheet: &Sheet) -> Vec<Option<usize>> {
     let mut next = vec![None; sheet.len()];

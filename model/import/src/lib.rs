@@ -45,6 +45,8 @@ mod round_trip;
 mod sheet;
 mod table;
 mod times;
+#[cfg(test)]
+mod two_readings;
 mod understanding;
 mod unit;
 mod vocabulary;

@@ -2,7 +2,7 @@
 //!
 //! Source: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)".
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, Location};
 
 use crate::clock::{self, DateOrder};
 use crate::decimal::Decimal;
@@ -47,6 +47,27 @@ impl Declared {
     }
 }
 
+/// Which columns of a segment are times (`X_Columns`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Times {
+    /// None: times follow from `X0` and `Delta_X`.
+    Computed,
+    /// The first column is the time of all channels.
+    Shared,
+    /// Each channel has its times in the column before it.
+    Each,
+}
+
+impl Times {
+    /// Column of the readings of a channel.
+    const fn column(self, channel: usize) -> usize {
+        match self {
+            Self::Computed | Self::Shared => channel + 1,
+            Self::Each => 2 * channel + 1,
+        }
+    }
+}
+
 /// Cells of an LVM file as a sheet with one row of names.
 #[derive(Debug)]
 pub(crate) struct LvmSheet {
@@ -63,7 +84,8 @@ pub(crate) struct LvmSheet {
 /// A [`Diagnostic`] if no segment has data.
 pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
     let mut declared = Declared { separator: separator(text), sign: DecimalSign::Point, segment: Vec::new() };
-    let mut multi = "No".to_owned();
+    let mut times = Times::Computed;
+    let mut is_absolute = false;
     let mut sheet = Sheet::default();
     let mut notes = Vec::new();
     let (mut names, mut segments): (Vec<String>, usize) = (Vec::new(), 0);
@@ -75,12 +97,26 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
         let key = cells.first().copied().unwrap_or_default();
         if is_data {
             if !line.trim().is_empty() && !key.starts_with("***") && is_row(&cells, declared.sign) {
-                let time = segment_time(&declared, &multi, &cells, row_of_segment, offset);
+                if times == Times::Each
+                    && let Some(other) = (1..names.len())
+                        .filter_map(|channel| cells.get(2 * channel))
+                        .find(|cell| !cell.is_empty() && **cell != key)
+                {
+                    let problem = format!("channels with different times: {key} and {other}");
+                    return Err(Diagnostic::new(problem)
+                        .with_location(Location { line: Some(i + 1), ..Location::default() })
+                        .with_help("export the channels with one time column: X_Columns One"));
+                }
+                let time = segment_time(&declared, times, &cells, row_of_segment);
+                if is_absolute && row_of_segment == 0 {
+                    // Absolute times need no start of a segment.
+                    offset = session_start.get_or_insert(time).negated();
+                }
                 row_of_segment += 1;
-                sheet.push(&time);
-                // The first cell is the time, or empty.
-                for column in 1..=names.len() {
-                    sheet.push(cells.get(column).copied().unwrap_or_default());
+                let text = time.plus(offset).to_string();
+                sheet.push(&if declared.sign == DecimalSign::Comma { text.replace('.', ",") } else { text });
+                for channel in 0..names.len() {
+                    sheet.push(cells.get(times.column(channel)).copied().unwrap_or_default());
                 }
                 sheet.end_row(i + 1)?;
                 continue;
@@ -100,12 +136,19 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
                     DecimalSign::Point
                 };
             }
-            "X_Columns" => multi = cells.get(1).copied().unwrap_or("No").to_owned(),
+            "X_Columns" => {
+                times = match cells.get(1).copied() {
+                    Some("One") => Times::Shared,
+                    Some("Multi") => Times::Each,
+                    _ => Times::Computed,
+                }
+            }
+            "Time_Pref" => is_absolute = cells.get(1) == Some(&"Absolute"),
             END => {}
             // The names of the columns follow the block of the segment.
             "X_Value" => {
                 let channels = declared.values("Channels").and_then(|v| v.first()?.parse::<usize>().ok());
-                let found = column_names(&cells, channels, &declared);
+                let found = column_names(&cells, channels, times, &declared);
                 if segments == 0 {
                     sheet.push("X_Value [s]");
                     found.iter().for_each(|name| sheet.push(name));
@@ -114,7 +157,7 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
                 } else if found != names {
                     notes.push(format!("line {}: the segment has other columns than the first one", i + 1));
                 }
-                if let Some(start) = declared.start() {
+                if let Some(start) = declared.start().filter(|_| !is_absolute) {
                     let first = *session_start.get_or_insert(start);
                     offset = start.plus(first.negated());
                 }
@@ -134,9 +177,6 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
     if segments == 0 || sheet.len() < 2 {
         return Err(Diagnostic::new("the LVM file has no data after its headers")
             .with_help("export the measurement again, with its column headers"));
-    }
-    if multi == "Multi" {
-        notes.push("X_Columns is Multi: only the first channel has its own times".to_owned());
     }
     if segments > 1 {
         notes.push(format!("{segments} segments, joined by their dates and times"));
@@ -158,26 +198,22 @@ fn is_row(cells: &[&str], sign: DecimalSign) -> bool {
     (first.is_empty() || is_number(first)) && cells.iter().take(2).any(|cell| is_number(cell))
 }
 
-/// Returns the time of a row, with a decimal point or comma as in the file.
-fn segment_time(declared: &Declared, multi: &str, cells: &[&str], row: u64, offset: Decimal) -> String {
+/// Returns the time of a row within its segment.
+fn segment_time(declared: &Declared, times: Times, cells: &[&str], row: u64) -> Decimal {
     let x = cells.first().and_then(|cell| number::parse(cell, declared.sign)).map(|(x, _)| x);
-    let time = match x.filter(|_| multi != "No") {
-        Some(x) => x,
-        None => {
-            let start = declared.number("X0", 0).unwrap_or(Decimal::ZERO);
-            let step = declared.number("Delta_X", 0).unwrap_or(Decimal::ONE);
-            start.plus(step.times(Decimal::new(u128::from(row), 0)))
-        }
-    };
-    let text = format!("{}", time.plus(offset));
-    if declared.sign == DecimalSign::Comma { text.replace('.', ",") } else { text }
+    x.filter(|_| times != Times::Computed).unwrap_or_else(|| {
+        let start = declared.number("X0", 0).unwrap_or(Decimal::ZERO);
+        let step = declared.number("Delta_X", 0).unwrap_or(Decimal::ONE);
+        start.plus(step.times(Decimal::new(u128::from(row), 0)))
+    })
 }
 
 /// Returns the names of the channels with their units.
-fn column_names(cells: &[&str], channels: Option<usize>, declared: &Declared) -> Vec<String> {
-    let count = channels.unwrap_or(cells.len().saturating_sub(1));
+fn column_names(cells: &[&str], channels: Option<usize>, times: Times, declared: &Declared) -> Vec<String> {
+    let columns = cells.len().saturating_sub(1);
+    let count = channels.unwrap_or(if times == Times::Each { columns.div_ceil(2) } else { columns });
     let units = declared.values("Y_Unit_Label").unwrap_or_default();
-    let name = |channel: usize| cells.get(channel + 1).copied().filter(|n| !n.is_empty());
+    let name = |channel: usize| cells.get(times.column(channel)).copied().filter(|n| !n.is_empty());
     (0..count.min(1_000))
         .map(|channel| {
             let name = name(channel).map_or_else(|| format!("channel {}", channel + 1), str::to_owned);
@@ -214,6 +250,42 @@ mod tests {
         assert_eq!(lvm.sheet.len(), 5);
         assert_eq!(lvm.sheet.cell(3, 0), "1,5");
         assert_eq!(lvm.sheet.cell(4, 0), "1,5025");
+    }
+
+    #[test]
+    fn every_channel_may_have_its_times() {
+        let multi = |second: &str| {
+            format!(
+                "LabVIEW Measurement\t\nX_Columns\tMulti\n***End_of_Header***\t\n\t\nChannels\t2\t\t\n\
+                 Y_Unit_Label\tMillimeters\tNewtons\n***End_of_Header***\t\n\
+                 X_Value\tDrive\tX_Value\tCell\tComment\n0.0\t1.5\t{second}\t10\n0.1\t1.6\t0.1\t11\n"
+            )
+        };
+        let lvm = read(&multi("0.0")).unwrap();
+        let row = |row| lvm.sheet.row(row).map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(row(0), ["X_Value [s]", "Drive [Millimeters]", "Cell [Newtons]"]);
+        assert_eq!(row(2), ["0.1", "1.6", "11"]);
+        assert_eq!(
+            read(&multi("0.05")).unwrap_err().problem(),
+            "channels with different times: 0.0 and 0.05"
+        );
+    }
+
+    #[test]
+    fn absolute_times_are_counted_once() {
+        let segment = |clock: &str, x: &str| {
+            format!(
+                "Channels\t1\nDate\t2024/03/05\nTime\t{clock}\nY_Unit_Label\tNewtons\n***End_of_Header***\n\
+                 X_Value\tCell\n{x}\t1.5\n"
+            )
+        };
+        let text = format!(
+            "LabVIEW Measurement\t\nX_Columns\tOne\nTime_Pref\tAbsolute\n***End_of_Header***\n\n{}\n{}",
+            segment("10:00:00", "3792477600.5"),
+            segment("10:01:00", "3792477660.5")
+        );
+        let lvm = read(&text).unwrap();
+        assert_eq!([lvm.sheet.cell(1, 0), lvm.sheet.cell(2, 0)], ["0", "60"]);
     }
 
     #[test]

@@ -116,7 +116,7 @@ const CONSTANTS: [&str; 17] = [
 /// Keys of `--set`, for messages.
 const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, clock, directions, force_sign, force_unit, \
     sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, \
-    direction.NAME, load.NAME, wrap_angle_deg.NAME, and constants such as substrate, wrap_angle_deg and load_N";
+    direction.NAME, load.NAME, wrap_angle_deg.NAME, repetition.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -362,6 +362,14 @@ impl Map {
                 ColumnChoice { angle: Some(parse_number(key, value)?), ..ColumnChoice::default() }
             }
             "load" => ColumnChoice { load: Some(value.to_owned()), ..ColumnChoice::default() },
+            "repetition" => ColumnChoice {
+                repetition: Some(value.parse().map_err(|_| {
+                    Diagnostic::new("not a whole number")
+                        .with_location(Location::field(key, value))
+                        .with_help("give the number of the trial, from 0 on")
+                })?),
+                ..ColumnChoice::default()
+            },
             _ => return Err(unknown(key, value)),
         };
         let at = match self.columns.iter().position(|(other, _)| other == name) {
@@ -384,6 +392,7 @@ impl Map {
         old.direction = choice.direction.or(old.direction);
         old.angle = choice.angle.or(old.angle);
         old.load = choice.load.or(old.load.take());
+        old.repetition = choice.repetition.or(old.repetition);
         Ok(())
     }
 

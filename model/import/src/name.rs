@@ -3,7 +3,7 @@
 use pinswitch_friction::Direction;
 
 use crate::decimal::Decimal;
-use crate::number::{self, DecimalSign};
+use crate::number::{self, DecimalSign, SignEvidence, sign_evidence};
 use crate::quantity::Quantity;
 use crate::unit::{Dimension, Unit};
 use crate::vocabulary::{direction_in_name, quantities, words};
@@ -27,6 +27,15 @@ pub(crate) struct NameReading {
 
 /// Reads a column name; `row_unit` is its unit in a row of units.
 pub(crate) fn read(name: &str, row_unit: Option<&'static Unit>) -> NameReading {
+    // The unit of "Force x 10 [N]" is 10 N, which is none: without a unit, the column is a question.
+    if has_factor(name) {
+        let known = read_words(name, row_unit);
+        return NameReading { unit: None, repetition: None, ..known };
+    }
+    read_words(name, row_unit)
+}
+
+fn read_words(name: &str, row_unit: Option<&'static Unit>) -> NameReading {
     if let Some(quantity) = Quantity::of_table_column(name) {
         let unit = Unit::parse(quantity.base_unit());
         return NameReading {
@@ -69,6 +78,8 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
     for separator in [" in ", ", ", ":", ",", "_", " ", "-", "."] {
         // "5 kg" is a load, not a 5 in kilograms.
         if let Some((stem, unit)) = name.rsplit_once(separator)
+            // Within brackets is a unit that is not known as a whole, such as `[x10 N]` or `[pi rad]`.
+            && !has_open_bracket(stem)
             && (separator != " " || (load_in(name).is_none() && angle_in(name).is_none()))
         {
             add(stem, unit);
@@ -76,6 +87,24 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
     }
     add("", name);
     splits
+}
+
+/// Whether a bracket is open at the end of a text.
+fn has_open_bracket(text: &str) -> bool {
+    [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')]
+        .into_iter()
+        .any(|(open, close)| text.rfind(open).is_some_and(|at| !text[at..].contains(close)))
+}
+
+/// Whether a name has a factor before its unit, such as `Force x 10`.
+fn has_factor(stem: &str) -> bool {
+    let mut before = ' ';
+    let mut characters = stem.char_indices();
+    characters.any(|(at, c)| {
+        let is_times = matches!(c, '*' | '\u{d7}') || (matches!(c, 'x' | 'X') && !before.is_alphanumeric());
+        before = c;
+        is_times && stem[at + c.len_utf8()..].trim_start().starts_with(|next: char| next.is_ascii_digit())
+    })
 }
 
 /// Combines the words of a stem with a unit; `None` if they contradict each other.
@@ -145,23 +174,40 @@ fn angle_in(stem: &str) -> Option<Decimal> {
     value_in(stem, Quantity::WrapAngle).map(|(value, unit)| value.times(unit.factor))
 }
 
-/// Finds a number with a unit of a quantity.
+/// Finds a number with a unit of a quantity. A separator before three digits has two readings: see [`either_load`].
 fn value_in(stem: &str, quantity: Quantity) -> Option<(Decimal, &'static Unit)> {
+    texts_in(stem, quantity).find_map(|(text, unit)| {
+        let value =
+            number::parse(&text.replace(',', "."), DecimalSign::Point).filter(|_| !is_either(text))?;
+        value.1.is_none().then_some((value.0, unit))
+    })
+}
+
+/// Finds a load with a separator before three digits, such as `1,000 g`: with a decimal separator, and with one for thousands.
+pub(crate) fn either_load(stem: &str) -> Option<[(Decimal, &'static Unit); 2]> {
+    let (text, unit) = texts_in(stem, Quantity::Load).find(|(text, _)| is_either(text))?;
+    let value = |sign| number::parse(text, sign).map(|(value, _)| (value, unit));
+    let (point, comma) = (value(DecimalSign::Point)?, value(DecimalSign::Comma)?);
+    Some(if text.contains(',') { [comma, point] } else { [point, comma] })
+}
+
+fn is_either(text: &str) -> bool {
+    matches!(sign_evidence(text), Some(SignEvidence::EitherPoint | SignEvidence::EitherComma))
+}
+
+/// The numbers of a stem that a unit of the quantity follows.
+fn texts_in(stem: &str, quantity: Quantity) -> impl Iterator<Item = (&str, &'static Unit)> {
     let starts = stem.char_indices().filter(|(at, c)| {
         c.is_ascii_digit() && !stem[..*at].ends_with(|p: char| p.is_alphanumeric() || p == '.' || p == ',')
     });
-    for (at, _) in starts {
+    starts.filter_map(move |(at, _)| {
         let rest = &stem[at..];
         let digits = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(rest.len());
         let after = rest[digits..].trim_start_matches(' ');
         let letters = after.find(|c: char| !(c.is_alphabetic() || c == '°')).unwrap_or(after.len());
-        let unit = Unit::parse(&after[..letters]).filter(|u| quantity.dimensions().contains(&u.dimension));
-        let number = rest[..digits].replace(',', ".");
-        if let (Some(unit), Some((value, None))) = (unit, number::parse(&number, DecimalSign::Point)) {
-            return Some((value, unit));
-        }
-    }
-    None
+        let unit = Unit::parse(&after[..letters]).filter(|u| quantity.dimensions().contains(&u.dimension))?;
+        Some((&rest[..digits], unit))
+    })
 }
 
 #[cfg(test)]
@@ -196,6 +242,26 @@ mod tests {
         for name in ["Response (Trigger) [m/s^2]", "Temperature [C]", "Comment", "Source_file"] {
             assert_eq!(read(name, None).quantity, None, "{name}");
         }
+    }
+
+    #[test]
+    fn a_factor_before_the_unit_is_no_unit() {
+        for name in
+            ["Force [x10 N]", "Force x 10 [N]", "Force (*1000 N)", "Angle [pi rad]", "Angle (x π rad)"]
+        {
+            assert_eq!(read(name, None).unit, None, "{name}");
+        }
+        assert_eq!(read("Fx [N]", None).unit.map(|unit| unit.name), Some("N"));
+        assert_eq!(read("x 1 [mm]", None).unit, None);
+    }
+
+    #[test]
+    fn a_thousand_in_a_name_has_two_readings() {
+        assert_eq!(load_in("1,000 g up"), None);
+        let [small, large] = either_load("1,000 g up").unwrap().map(|(value, _)| value.to_f64());
+        assert_eq!([small, large], [1.0, 1000.0]);
+        assert_eq!(either_load("1.500 kg").unwrap().map(|(value, _)| value.to_f64()), [1.5, 1500.0]);
+        assert!(either_load("1.5 kg").is_none() && load_in("1.5 kg").is_some());
     }
 
     #[test]

@@ -51,7 +51,7 @@ const fn unit(
 }
 
 /// All units. Sources: SI brochure; NIST SP 811, appendix B, for pound, ounce, inch and foot.
-const UNITS: [Unit; 45] = [
+const UNITS: [Unit; 46] = [
     unit("N", Dimension::Force, 1, 0, &["newton", "newtons", "nw"]),
     unit("kN", Dimension::Force, 1, 3, &["kilonewton", "kilonewtons"]),
     unit("MN", Dimension::Force, 1, 6, &["meganewton"]),
@@ -95,6 +95,7 @@ const UNITS: [Unit; 45] = [
     unit("ns", Dimension::Time, 1, -9, &["nanosecond", "nanoseconds"]),
     unit("min", Dimension::Time, 60, 0, &["mins", "minute", "minutes", "minuten"]),
     unit("h", Dimension::Time, 3600, 0, &["hr", "hrs", "hour", "hours", "std", "stunden"]),
+    unit("d", Dimension::Time, 86_400, 0, &["day", "days", "tag", "tage", "jours", "dias", "giorni"]),
     unit("mm", Dimension::Length, 1, 0, &["millimeter", "millimeters", "millimetre", "millimetres"]),
     unit("cm", Dimension::Length, 1, 1, &["centimeter", "centimeters", "centimetre", "zentimeter"]),
     unit("m", Dimension::Length, 1, 3, &["meter", "meters", "metre", "metres"]),

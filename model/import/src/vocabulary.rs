@@ -264,9 +264,8 @@ const COMPOUNDS: [(&str, Quantity); 10] = [
 /// Returns the quantities that the words of a name may mean, most specific first.
 pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
     // A torque, or how fast or how well something is measured.
-    const OTHER: [&str; 9] =
-        ["torque", "moment", "drehmoment", "couple", "coppia", "rate", "error", "uncertainty", "std"];
-    if words.iter().any(|word| OTHER.contains(&word.as_str())) {
+    const OTHER: [&str; 6] = ["torque", "moment", "drehmoment", "couple", "coppia", "rate"];
+    if is_spread(words) || words.iter().any(|word| OTHER.contains(&word.as_str())) {
         return Vec::new();
     }
     let joined = words.join(" ");
@@ -286,6 +285,14 @@ pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
         let compound = |word: &String| COMPOUNDS.iter().find(|(end, _)| word.ends_with(end)).map(|c| c.1);
         possible.extend(words.iter().filter_map(compound));
     }
+    // The angle of something else than the tendon's wrap.
+    const TURNING: [&str; 12] = [
+        "tilt", "joint", "motor", "crank", "shaft", "encoder", "phase", "rotor", "servo", "neigung",
+        "neigungs", "gelenk",
+    ];
+    if words.iter().any(|word| TURNING.contains(&word.as_str())) {
+        possible.retain(|q| *q != Quantity::WrapAngle);
+    }
     let has = |possible: &[Quantity], quantity| possible.contains(&quantity);
     // "load mass", "test time", "direction of force": the noun decides, and it is first in the list
     // above.
@@ -297,6 +304,66 @@ pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
         possible.sort_by_key(|q| *q != Quantity::Load);
     }
     possible
+}
+
+/// Words for the spread of readings, which is not a reading.
+const SPREAD: [&str; 24] = [
+    "sd",
+    "std",
+    "stdev",
+    "stddev",
+    "stdabw",
+    "stabw",
+    "standardabweichung",
+    "standardfehler",
+    "deviation",
+    "abweichung",
+    "variance",
+    "varianz",
+    "uncertainty",
+    "unsicherheit",
+    "error",
+    "sem",
+    "se",
+    "rsd",
+    "cv",
+    "ecart",
+    "desviacion",
+    "deviazione",
+    "scarto",
+    "spread",
+];
+/// Words for what is computed from several readings.
+const AVERAGE: [&str; 12] = [
+    "mean",
+    "average",
+    "avg",
+    "mittelwert",
+    "mittel",
+    "mw",
+    "median",
+    "moyenne",
+    "media",
+    "promedio",
+    "medio",
+    "moy",
+];
+/// Further words with which a row of a summary begins.
+const SUMMARY: [&str; 9] = ["maximum", "max", "minimum", "min", "standard", "sum", "summe", "total", "range"];
+
+/// Whether the words of a name are those of a measure of spread.
+pub(crate) fn is_spread(words: &[String]) -> bool {
+    words.iter().any(|word| SPREAD.contains(&word.as_str()))
+}
+
+/// Whether the words of a name are those of a mean of readings.
+pub(crate) fn is_average(words: &[String]) -> bool {
+    words.iter().any(|word| AVERAGE.contains(&word.as_str()))
+}
+
+/// Whether a row that begins with this word has figures computed from the rows above.
+pub(crate) fn is_summary(word: &str) -> bool {
+    [&SPREAD[..], &AVERAGE[..], &SUMMARY[..]].iter().any(|words| words.contains(&word))
 }
 
 /// Words for a load that is pulled, then for a load that is released.

@@ -1,0 +1,141 @@
+//! Files that can be read in two ways, or whose header is not that of every row: each is a question or an error, never a
+//! reading in silence.
+
+use crate::{Import, Map, Output, Source, import};
+use pinswitch_diagnostic::Diagnostic;
+
+fn read(text: &str, options: &[&str]) -> Result<Import, Diagnostic> {
+    let mut map = Map::default();
+    options.iter().try_for_each(|option| map.set(option))?;
+    import(&[Source::new("table.csv", text.as_bytes())], &map)
+}
+
+/// The problems of the questions, or of the error.
+fn problems(text: &str, options: &[&str]) -> String {
+    match read(text, options) {
+        Err(diagnostic) => diagnostic.to_string(),
+        Ok(import) => {
+            import.understanding.questions.iter().map(|q| q.problem.clone()).collect::<Vec<_>>().join("\n")
+        }
+    }
+}
+
+/// The forces of the table, or of the log.
+fn forces(text: &str, options: &[&str]) -> Vec<f64> {
+    let import = read(text, options).unwrap();
+    let csv = match &import.output {
+        Some(output) => output.to_csv(),
+        None => panic!("{:?}", import.understanding.questions),
+    };
+    let mut lines = csv.lines();
+    let at = lines.next().unwrap().split(',').position(|name| name == "force_N").unwrap();
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn another_header_is_not_skipped() {
+    for (text, second) in [
+        (
+            "Load [kg],Up [N],Down [N]\n1,12.85,7.45\n2,25.69,14.91\n\nLoad [lb],Up [lbf],Down [lbf]\n5,6.5,3.8\n",
+            "Load [lb]",
+        ),
+        (
+            "Load [kg],Up [N],Down [N]\n1,12.85,7.45\nAngle [deg],Up [N],Down [N]\n45,11.3,8.5\n",
+            "Angle [deg]",
+        ),
+        (
+            "Load [kg],Up [N],Down [N]\n1,12.85,7.45\nLoad [kg],Down [N],Up [N]\n2,14.91,25.69\n",
+            "Down [N], Up [N]",
+        ),
+        (
+            "time_s,force_N,position_mm\n0,10.1,0.0\n0.01,10.2,0.1\ntime_s,position_mm,force_N\n0.04,0.4,10.2\n",
+            "position_mm, force_N",
+        ),
+        (
+            "Load,Direction,Force\nkg,,N\n1,up,12.85\n1,down,7.45\nLoad,Direction,Force\nkg,,kN\n2,up,0.02569\n",
+            "Force [kN]",
+        ),
+        (
+            "Load [N],Direction,Force (N)\n10,up,12.85\nLoad [N],Direction,Force (kN)\n10,up,0.01285\n",
+            "Force (kN)",
+        ),
+    ] {
+        let found = problems(text, &[]);
+        assert!(found.contains("another header (") && found.contains(second), "{text}{found}");
+    }
+    let repeated =
+        "Load [N],Direction,Force\n,,N\n10,up,12.85\nload [N],direction,force\n,,N\n10,down,7.45\n";
+    assert_eq!(forces(repeated, &[]), [12.85, 7.45]);
+}
+
+#[test]
+fn spreads_and_means_are_not_readings() {
+    let columns = "Load [N],Up 1 [N],Up 2 [N],Up mean [N],Up SD [N],Down 1 [N],Down 2 [N],Down SD [N]\n\
+                   10,12.8,12.9,12.85,0.03,7.4,7.5,0.03\n";
+    assert_eq!(forces(columns, &[]), [12.8, 12.9, 7.4, 7.5]);
+    assert_eq!(forces("Load [N],Mean up [N],Mean down [N]\n10,12.8,7.4\n", &[]), [12.8, 7.4]);
+    let rows =
+        "Versuch;Last [kg];Heben [N];Senken [N]\n1;1,0;12,85;7,45\nMW;1,0;12,85;7,45\nStabw;1,0;0,03;0,02\n";
+    assert_eq!(forces(rows, &[]), [12.85, 7.45]);
+}
+
+#[test]
+fn a_point_before_three_digits_next_to_commas_is_a_question() {
+    let text = "Last [kg];Richtung;Kraft [N]\n2,5;heben;31.712\n2,5;senken;18.123\n5,0;heben;63.425\n";
+    assert_eq!(problems(text, &[]), "'31.712' in line 2 has a decimal point or a thousands separator");
+    assert_eq!(forces(text, &["decimal=comma"])[0], 31712.0);
+    // A smaller number in the column shows what the point is.
+    let grouped = "Last [g];Richtung;Kraft [N]\n500;heben;6,5\n2.500;heben;31,7\n";
+    assert_eq!(forces(grouped, &[]), [6.5, 31.7]);
+}
+
+#[test]
+fn an_empty_cell_between_blanks_is_refused() {
+    let text = "time_s   force_N   position_mm\n0.00     10.1      3.0\n0.01               3.1\n0.02     10.2      3.2\n";
+    assert!(problems(text, &[]).contains("fewer cells than names"), "{}", problems(text, &[]));
+}
+
+#[test]
+fn factors_and_numbers_in_names_are_questions() {
+    for (text, options, problem) in [
+        (
+            "Angle [pi rad],Load [N],Direction,Force [N]\n0.5,10,up,12\n",
+            &[][..],
+            "column 'Angle [pi rad]' has no unit",
+        ),
+        ("Load [N],Direction,Force [x10 N]\n10,up,1.25\n", &[], "column 'Force [x10 N]' has no unit"),
+        ("Load [N],Up 45 [N],Up 90 [N]\n10,11,12\n", &[], "the numbers 45, 90 in the names of columns"),
+        (
+            "Trial,\"1,000 g up [N]\",\"2,000 g up [N]\"\n1,12.85,25.69\n",
+            &[],
+            "the load in the name '1,000 g up [N]'",
+        ),
+        (
+            "Load [N],Direction,Force [N]\n5,up,12.5\n",
+            &["load_N=10"],
+            "the column 'Load [N]' has other values",
+        ),
+        ("Zeit,Kraft [N]\n45356.4000000,1.5\n45356.4000012,1.6\n", &[], "column 'Zeit' has no unit"),
+    ] {
+        let found = problems(text, options);
+        assert!(found.contains(problem), "{text}{found}");
+    }
+    let angles = "Load [N],Up 45 [N],Up 90 [N]\n10,11,12\n";
+    let import = read(angles, &["wrap_angle_deg.Up 45 [N]=45", "wrap_angle_deg.Up 90 [N]=90"]).unwrap();
+    let Some(Output::Table(csv)) = import.output else { panic!("{:?}", import.understanding.questions) };
+    assert!(csv.contains("wrap_angle_deg"), "{csv}");
+    let thousands = "Trial,\"1,000 g up [N]\",\"2,000 g up [N]\"\n1,12.85,25.69\n";
+    let options = ["load.1,000 g up [N]=1000 g", "load.2,000 g up [N]=2000 g"];
+    assert_eq!(forces(thousands, &options), [12.85, 25.69]);
+}
+
+#[test]
+fn the_oldest_capstan_experiment_needs_two_options() {
+    let text = "Wrap angle (deg),Force (N)\n30,11.1\n60,12.3\n90,13.7\n";
+    assert_eq!(forces(text, &["load_N=10", "direction=concentric"]), [11.1, 12.3, 13.7]);
+    // The angle of something else is not the wrap.
+    assert!(
+        !problems("Tilt angle [deg],Load [N],Direction,Force [N]\n5,10,up,12\n", &["wrap_angle_deg=180"])
+            .contains("other values")
+    );
+}

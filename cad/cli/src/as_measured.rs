@@ -12,8 +12,8 @@ use crate::input::read_text_file;
 /// The file with the readings of a made switch.
 #[derive(Args, Clone, Debug)]
 pub(super) struct AsMeasured {
-    /// Readings of the made switch (`pinswitch init measured`): the curve is corrected for them, and MEASURED.md says what
-    /// to do. The parts stay those of the configuration.
+    /// Readings of the made switch (`pinswitch init measured`): the curve is corrected for them. `generate` also
+    /// writes MEASURED.md, with what to change; the parts stay those of the configuration.
     #[arg(long, value_name = "TOML", conflicts_with_all = ["law", "model"])]
     measured: Option<PathBuf>,
 }

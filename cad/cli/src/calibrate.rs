@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     /// Fit the loads up to this percentage of the highest one, and test both models on the others.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
     fit_below: Option<u8>,
-    /// Folder of the plan, written by `experiment`, by which the second table was recorded; the report then answers the
+    /// Plan that the second table followed: the folder written by `experiment`. The report then answers the
     /// questions of the plan. Repeat it for the third table, and so on.
     #[arg(long, value_name = "DIR", conflicts_with = "published")]
     plan: Vec<PathBuf>,

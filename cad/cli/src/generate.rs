@@ -27,8 +27,8 @@ use pinswitch_switch::set::Set;
 /// Writes one folder: the parts as binary STL (millimetres, print orientation) and on one plate as 3MF, friction.csv and
 /// friction.svg (the predicted curve with its band), a drawing for a workshop (drawing.svg, drawing.pdf, drawing.dxf),
 /// PRINTING.md with pictures, report.html (open it in a browser), and manifest.json (every parameter, derived dimension,
-/// volume, hash, and the bill of materials). Nothing is written if anything is wrong. The set appears whole: its manifest
-/// comes last. Files of the set before that the new one does not have are removed, unless they were changed since; other
+/// volume, hash, and the bill of materials). If a part or a file cannot be made, nothing is written. The set appears
+/// whole: its manifest comes last. Files that only the previous set contained are removed unless you edited them; other
 /// files are never changed.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:

@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     /// Folders or object stores with finished shards.
     #[arg(required = true, value_name = "DIR|URL")]
     places: Vec<String>,
-    /// Folder or object store for the result [default: the only place].
+    /// Folder or object store for the result [default: that of the shards, if it is one].
     #[arg(long, short, value_name = "DIR|URL")]
     out: Option<String>,
     /// Print the tally as JSON.

@@ -20,6 +20,8 @@ use crate::write::source_of_set_with;
 
 /// Template of a command that was given no configuration.
 const DEFAULT_TEMPLATE: &str = "three-double";
+/// Similarity (Jaro-Winkler) from which a template is suggested for an unknown name.
+const SIMILAR: f64 = 0.7;
 
 /// Field that `--tolerance` sets.
 const TOLERANCE: &str = "mesh.chord_tolerance_mm";
@@ -261,12 +263,14 @@ fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure
     templates::text(bare).map(|text| (text, name.to_owned(), Kind::Text)).ok_or_else(|| {
         let names = templates::names();
         let similarity = |a: &str| strsim::jaro_winkler(bare, a);
-        let nearest = names.iter().max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
-        let nearest = nearest.copied().unwrap_or_default();
+        let nearest = names.iter().filter(|name| similarity(name) >= SIMILAR);
+        let nearest = nearest.max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
+        let suggestion =
+            nearest.map_or_else(String::new, |name| format!("the nearest template is {name:?}; "));
         Failure::bad_input(
-            Diagnostic::new("no such file or template").with_location(Location::file(name)).with_help(
-                format!("the nearest template is {nearest:?}; `pinswitch layouts` lists all templates"),
-            ),
+            Diagnostic::new("no such file or template")
+                .with_location(Location::file(name))
+                .with_help(format!("{suggestion}`pinswitch layouts` lists all templates")),
         )
     })
 }

@@ -121,7 +121,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// A diagnostic if the file cannot be examined.
 fn check_file(file: &Path, expected: &Expectation, judgement: Judgement) -> Result<Verdict, Diagnostic> {
     let unreadable = |error: std::io::Error| {
-        Diagnostic::new(format!("cannot read the file: {error}"))
+        Diagnostic::new("cannot read the file")
+            .with_source(error)
             .with_help("give a file that exists and can be read")
     };
     // Opening a pipe or a device could wait for ever.
@@ -139,5 +140,5 @@ fn check_file(file: &Path, expected: &Expectation, judgement: Judgement) -> Resu
 /// The diagnostic of a file whose checks exceed a bound.
 fn bounded(verdict: &Verdict) -> Diagnostic {
     Diagnostic::new(format!("cannot be judged: {}", verdict.bounds().join("; ")))
-        .with_help("export it with a coarser mesh, or in several files")
+        .with_help("a coarser mesh, several files or the export of another program may meet it: cad/doc/meshes.md lists the bounds")
 }

@@ -135,15 +135,14 @@ pub(super) fn three_mf(
         .map(|object| PartVerdict::new(object.name.clone(), examine_part(&object.mesh), judgement))
         .collect();
     let mut examination = Examination { faults: package.faults, ..Examination::default() };
-    let incomplete = |bound| Incomplete { check: "overlap", level: Level::Error, bound };
-    examination.incomplete.extend(package.bound.map(incomplete));
+    examination.incomplete.extend(package.bound.map(overlap_incomplete));
     // Another size of a valid solid is a valid solid; its walls may be thinner.
     let of_size = |bound| Incomplete { check: "thin wall", level: Level::Warning, bound };
     examination.incomplete.extend(package.size_bound.map(of_size));
     if parts.iter().all(|part| part.status == Status::Valid) {
         match overlaps(&package.built) {
             Ok(faults) => examination.faults.extend(faults),
-            Err(bound) => examination.incomplete.push(incomplete(bound)),
+            Err(incomplete) => examination.incomplete.push(incomplete),
         }
     }
     if parts.is_empty() && !examination.faults.iter().any(|fault| fault.level == Level::Error) {
@@ -155,9 +154,14 @@ pub(super) fn three_mf(
     Ok((examination, parts))
 }
 
-/// Solids of different items that overlap on the plate; the bound if there are too many to compare.
+/// The search for overlaps that a bound ended.
+fn overlap_incomplete(bound: String) -> Incomplete {
+    Incomplete { check: "overlap", level: Level::Error, bound }
+}
+
+/// Solids of different items that overlap on the plate; what is left open if there are too many to compare.
 /// Solids of one item form one object, which may be composed of any.
-fn overlaps(built: &[PlacedMesh]) -> Result<Vec<Fault>, String> {
+fn overlaps(built: &[PlacedMesh]) -> Result<Vec<Fault>, Incomplete> {
     let boxes: Vec<_> = built.iter().map(|solid| solid.mesh.bounds()).collect();
     let meet = |i: usize, j: usize| match (boxes[i], boxes[j]) {
         (Some((low, high)), Some((other_low, other_high))) => {
@@ -169,7 +173,8 @@ fn overlaps(built: &[PlacedMesh]) -> Result<Vec<Fault>, String> {
     let close = pairs.filter(|(i, j)| built[*i].item != built[*j].item && meet(*i, *j));
     let close: Vec<_> = close.take(MAX_PAIRS + 1).collect();
     if close.len() > MAX_PAIRS {
-        return Err(format!("more than {MAX_PAIRS} pairs of solids on the plate are close to each other"));
+        let bound = format!("more than {MAX_PAIRS} pairs of solids on the plate are close to each other");
+        return Err(overlap_incomplete(bound));
     }
     let each = MAX_COMPARISONS / close.len().max(1);
     let overlap = |(i, j): (usize, usize)| {

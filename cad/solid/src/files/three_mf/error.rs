@@ -33,7 +33,7 @@ impl ThreeMfReadError {
     fn help(&self) -> &'static str {
         match self {
             Self::NoModel => "give a 3MF file",
-            Self::Bound(_) => "export it with a coarser mesh, or in several files",
+            Self::Bound(_) => "a coarser mesh, several files, or the export of another program may meet it",
             Self::Unsupported(_) => "check it in a program that supports this",
             Self::Archive(_) | Self::Malformed { .. } => "export the file again",
         }

@@ -245,6 +245,22 @@ mod tests {
     use crate::config::assign;
 
     #[test]
+    fn the_document_lists_every_rule_that_refuses() {
+        let document = include_str!("../../../../doc/dimensions.md");
+        let (_, rules) = document.split_once("## Invalid configurations").unwrap();
+        for rule in super::rules().filter(|rule| rule.severity == Severity::Error) {
+            let field = format!("`{}`", rule.field);
+            // The rules of the joint are with its geometry, those of the rig in its document.
+            let place = match rule.field.split('.').next() {
+                Some("joint") => document,
+                Some("rig") => include_str!("../../../../doc/rig.md"),
+                _ => rules,
+            };
+            assert!(place.contains(&field), "{field}");
+        }
+    }
+
+    #[test]
     fn every_rule_names_existing_parameters() {
         let exists = |path: &str| Configuration::PARAMETERS.iter().any(|p| p.path() == path);
         for rule in rules() {

@@ -149,7 +149,10 @@ fn pins_within_wrap(i: &Inspection<'_>) -> Assessment {
                 c.layout.wrap_angle_deg,
                 if outside == 1 { "carries" } else { "carry" },
             ),
-            format!("move them closer to the middle groove (layout.pins){raise}"),
+            format!(
+                "move {} closer to the middle groove (layout.pins){raise}",
+                if outside == 1 { "it" } else { "them" }
+            ),
         )
     })
 }
@@ -158,9 +161,7 @@ fn tendon_reaches(i: &Inspection<'_>) -> Assessment {
     let (length, least) = (i.tendon_length_mm(), i.least_tendon_mm());
     advise(length >= least, || {
         (
-            format!(
-                "tendon of {length} mm too short for the wrap, the ends and the pulleys ({least:.0} mm needed)"
-            ),
+            format!("tendon of {length} mm is too short: wrap, ends and pulleys need {least:.0} mm"),
             format!("raise tendon.length_mm to {least:.0}"),
         )
     })

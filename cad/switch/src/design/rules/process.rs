@@ -132,7 +132,7 @@ fn pins_are_sold(i: &Inspection<'_>) -> Assessment {
     }
     advise(pin_is_sold(stock, diameter), || {
         (
-            format!("process.pins = \"{}\" are not sold with {diameter} mm", stock.as_str()),
+            format!("process.pins = \"{}\": not sold with a diameter of {diameter} mm", stock.as_str()),
             format!("set pins.diameter_mm to {}", nearest_pin_mm(stock, diameter)),
         )
     })

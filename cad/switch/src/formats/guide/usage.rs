@@ -15,7 +15,7 @@ pub(super) fn usage(design: &Design, prediction: &Prediction, manifest: &Manifes
         format!(" Below {n:.1} N most of the friction comes from the pins, above from the silicone.")
     });
     let range = format!(
-        "Fix the switch. Hang the load on the end of the tendon on the side of groove 1, and pull at the other end. The curve applies \
+        "Fasten the switch to a rigid base. Hang the load on the end of the tendon on the side of groove 1, and pull at the other end. The curve applies \
          from {:.1} to {:.1} N of load.{switching}",
         c.friction.load_min_n, c.friction.load_max_n
     );
@@ -41,7 +41,7 @@ pub(super) fn usage(design: &Design, prediction: &Prediction, manifest: &Manifes
             rows,
         ),
         Block::List(vec![
-            "Move the tendon ten times over its full stroke before you measure, so that it finds its place."
+            "Move the tendon ten times over its full stroke before you measure, to seat it."
                 .to_owned(),
             "If the friction is outside the band at every load, repeat the checks of the section before."
                 .to_owned(),

@@ -209,6 +209,10 @@ impl Slicer {
         if !ended.status.success() {
             return None;
         }
+        // Opening a pipe would wait for its other end.
+        if !std::fs::symlink_metadata(file).is_ok_and(|found| found.is_file()) {
+            return None;
+        }
         let mut bytes = Vec::new();
         let file = std::fs::File::open(file).ok().filter(|f| f.metadata().is_ok_and(|f| f.is_file()))?;
         file.take(self.limits.written_bytes).read_to_end(&mut bytes).ok()?;

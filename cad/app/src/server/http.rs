@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 use std::net::SocketAddr;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use http_body_util::{BodyExt, Full};
@@ -15,7 +15,8 @@ use hyper::{HeaderMap, Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use pinswitch_switch::formats::page::page_policy;
 use tokio::net::TcpListener;
-use tokio::sync::{Semaphore, SemaphorePermit, watch};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit, watch};
+use tokio_io_timeout::TimeoutStream;
 
 use super::configurator::Configurator;
 use super::state::{State, data_after, values_after};
@@ -38,7 +39,9 @@ const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
 const CONNECTION_TIMEOUT: Duration = Duration::from_secs(600);
 /// Time in which the body of a request must arrive.
 const BODY_TIMEOUT: Duration = Duration::from_secs(30);
-/// Most requests whose bodies arrive at once: slow ones leave connections for pages.
+/// Time in which a part of an answer must be taken: a browser takes it at once.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
+/// Most posted requests at once, from their bodies to the end of their answers: slow ones leave connections for pages.
 const MAX_POSTS: usize = MAX_CONNECTIONS / 2;
 /// Most bytes of all long bodies that arrive or are answered at once. A request beyond it is refused,
 /// and can be repeated.
@@ -56,8 +59,8 @@ const POST_PATHS: [&str; 2] = ["/answer", "/save"];
 struct Site {
     states: watch::Receiver<State>,
     long_polls: Semaphore,
-    /// Requests whose bodies may still arrive at once.
-    posts: Semaphore,
+    /// Posted requests that may still be open at once.
+    posts: Arc<Semaphore>,
     /// Bytes that long bodies may still have.
     arriving_bytes: Semaphore,
     address: SocketAddr,
@@ -65,6 +68,9 @@ struct Site {
     configurator: Arc<Configurator>,
     configurator_policy: String,
 }
+
+/// The permit of the posted request of a connection.
+type HeldPermit = Mutex<Option<OwnedSemaphorePermit>>;
 
 /// Why the body of a request is not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +93,7 @@ pub(super) async fn serve(
     let site = Arc::new(Site {
         states,
         long_polls: Semaphore::new(MAX_LONG_POLLS),
-        posts: Semaphore::new(MAX_POSTS),
+        posts: Arc::new(Semaphore::new(MAX_POSTS)),
         arriving_bytes: Semaphore::new(MAX_ARRIVING_BYTES),
         address,
         policy: page_policy(),
@@ -103,17 +109,21 @@ pub(super) async fn serve(
         };
         let site = Arc::clone(&site);
         tokio::spawn(async move {
+            // The connection has the permit of its request until the answer is taken.
+            let post = Arc::new(Mutex::new(None));
             let service = service_fn(move |request| {
-                let site = Arc::clone(&site);
-                async move { Ok::<_, Infallible>(site.answer(request).await) }
+                let (site, post) = (Arc::clone(&site), Arc::clone(&post));
+                async move { Ok::<_, Infallible>(site.answer(request, &post).await) }
             });
+            let mut stream = TimeoutStream::new(stream);
+            stream.set_write_timeout(Some(WRITE_TIMEOUT));
             let connection = http1::Builder::new()
                 .timer(TokioTimer::new())
                 .header_read_timeout(HEADER_TIMEOUT)
                 .max_buf_size(MAX_HEADER_BYTES)
                 .max_headers(MAX_HEADERS)
                 .keep_alive(false)
-                .serve_connection(TokioIo::new(stream), service);
+                .serve_connection(TokioIo::new(Box::pin(stream)), service);
             // A connection that is closed or too slow ends here.
             let _ = tokio::time::timeout(CONNECTION_TIMEOUT, connection).await;
             drop(permit);
@@ -122,7 +132,7 @@ pub(super) async fn serve(
 }
 
 impl Site {
-    async fn answer(&self, request: Request<Incoming>) -> Response<Full<Bytes>> {
+    async fn answer(&self, request: Request<Incoming>, post: &HeldPermit) -> Response<Full<Bytes>> {
         let path = request.uri().path().to_owned();
         if let Some((status, reason)) = refusal(request.method(), &path, request.headers(), self.address) {
             return self.response(status, "text/plain; charset=utf-8", reason);
@@ -159,15 +169,20 @@ impl Site {
                 };
                 self.response(StatusCode::OK, "application/json", state)
             }
-            path if POST_PATHS.contains(&path) => self.answer_post(request.into_body(), path).await,
+            path if POST_PATHS.contains(&path) => self.answer_post(request.into_body(), path, post).await,
             _ => self.response(StatusCode::NOT_FOUND, "text/plain", "page not found"),
         }
     }
 
     /// Answers a request of the configurator.
-    async fn answer_post(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
-        let arrived = match self.posts.try_acquire() {
-            Ok(_post) => tokio::time::timeout(BODY_TIMEOUT, self.body(body)).await,
+    async fn answer_post(&self, body: Incoming, path: &str, post: &HeldPermit) -> Response<Full<Bytes>> {
+        let arrived = match Arc::clone(&self.posts).try_acquire_owned() {
+            Ok(permit) => {
+                if let Ok(mut held) = post.lock() {
+                    *held = Some(permit);
+                }
+                tokio::time::timeout(BODY_TIMEOUT, self.body(body)).await
+            }
             Err(_) => Ok(Err(BodyError::Busy)),
         };
         let (status, reason) = match arrived {

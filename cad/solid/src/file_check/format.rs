@@ -38,7 +38,7 @@ impl Format {
         let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
         if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
             Ok(Self::ThreeMf)
-        } else if text.starts_with(b"ISO-10303-21") {
+        } else if text.starts_with(b"ISO-10303-21;") {
             Err(unsupported_step())
         } else {
             Ok(Self::Stl)

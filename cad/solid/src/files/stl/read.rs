@@ -39,7 +39,9 @@ pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     if head.length == 0 {
         return Err(StlError::NoBytes);
     }
-    if let Some(format) = other_format(&head.bytes, head.fits()) {
+    if !head.is_exact()
+        && let Some(format) = other_format(&head.bytes, head.fits())
+    {
         return Err(StlError::OtherFormat(format));
     }
     head.check_length()?;
@@ -79,11 +81,18 @@ impl Head {
         Ok(Self { bytes, length, has_foreign_tail })
     }
 
-    /// Whether the file is an ASCII STL. A binary header may begin with `solid`, too; then the file
-    /// is exactly as long as the header announces.
+    /// Whether the file is a binary STL with as many bytes as its count of facets announces: no other file is, whatever its
+    /// header has.
+    fn is_exact(&self) -> bool {
+        self.announced().is_some_and(|(facets, expected)| facets > 0 && expected == self.length)
+    }
+
+    /// Whether the file is an ASCII STL. A binary header may begin with `solid`, too; then the file is exactly as long as the
+    /// header announces, or its count is the greatest number, which is no text.
     fn is_ascii(&self) -> bool {
-        let is_exact = self.announced().is_some_and(|(_, expected)| expected == self.length);
-        is_ascii(&self.bytes) && !is_exact
+        let is_streamed =
+            self.announced().is_some_and(|(facets, _)| facets == u32::MAX) && self.uncounted().is_some();
+        is_ascii(&self.bytes) && !self.is_exact() && !is_streamed
     }
 
     /// The facet count of a binary STL, and the size in bytes of a file with that many.
@@ -265,5 +274,26 @@ mod tests {
         bytes[..6].copy_from_slice(b"solidX");
         bytes[HEADER - 4..HEADER].copy_from_slice(&[0x20; 4]);
         assert!(read_stl(&mut Cursor::new(bytes)).is_err());
+    }
+
+    /// A binary file of exactly the announced length is one, whatever its header has; so is a streamed one.
+    #[test]
+    fn headers_of_binary_files_may_be_any() {
+        let facet = [0_u8; 12]
+            .into_iter()
+            .chain([0.0_f32, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 5.0, 0.0].into_iter().flat_map(f32::to_le_bytes))
+            .chain([0, 0])
+            .collect::<Vec<u8>>();
+        let file = |header: &str, count: u32| {
+            let mut bytes = format!("{header:<80}").into_bytes();
+            bytes.extend(count.to_le_bytes());
+            bytes.extend(&facet);
+            read_stl(&mut std::io::Cursor::new(bytes))
+        };
+        for header in ["ISO-10303-21 converted part", "ply\n", "%PDF part", "Rar!", "solid part"] {
+            assert_eq!(file(header, 1).unwrap().mesh.triangles.len(), 1, "{header}");
+        }
+        assert_eq!(file("solid part", u32::MAX).unwrap().mesh.triangles.len(), 1);
+        assert!(file("%PDF part", 7).is_err());
     }
 }

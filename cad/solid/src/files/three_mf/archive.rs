@@ -15,10 +15,14 @@ use super::xml::MAX_NAME_BYTES;
 /// Longest message of a library that an error repeats, in characters.
 const MAX_CHARACTERS: usize = 200;
 /// Bytes that any archive may unpack to.
-const FREE_BYTES: u64 = 16 << 20;
+const FREE_BYTES: u64 = 4 << 20;
 /// Bytes that an archive may unpack to for each of its own: the models of programs unpack to 4 to 12
 /// times their size, and endless zeros to a thousand times.
-const BYTES_PER_BYTE: u64 = 32;
+const BYTES_PER_BYTE: u64 = 16;
+/// Tags of XML that any archive may have, and bytes of the archive for each further one: meshes of programs have one for 5 to 8
+/// bytes, a mesh that repeats one triangle a hundred for one.
+const FREE_TAGS: usize = 100_000;
+const BYTES_PER_TAG: usize = 2;
 /// Most bytes that an archive may unpack to.
 const MAX_BYTES: u64 = 1 << 30;
 /// Bytes by which the format of a picture is recognised.
@@ -39,6 +43,10 @@ pub(super) struct Archive<'a> {
     left: u64,
     /// Bytes that may be unpacked in all.
     most: u64,
+    /// Tags that the texts may still have.
+    tags_left: usize,
+    /// Tags that the texts may have in all.
+    most_tags: usize,
 }
 
 impl<'a> Archive<'a> {
@@ -68,7 +76,8 @@ impl<'a> Archive<'a> {
             names.push(name.into_owned());
         }
         let most = MAX_BYTES.min(FREE_BYTES + BYTES_PER_BYTE * bytes.len() as u64);
-        Ok(Self { zip, parts, names, repeated, left: most, most })
+        let most_tags = FREE_TAGS + bytes.len() / BYTES_PER_TAG;
+        Ok(Self { zip, parts, names, repeated, left: most, most, tags_left: most_tags, most_tags })
     }
 
     /// Names of parts that are equivalent to an earlier one.
@@ -144,6 +153,13 @@ impl<'a> Archive<'a> {
         file.take(self.left + 1).read_to_end(&mut bytes).map_err(|_| damaged())?;
         let Some(left) = self.left.checked_sub(bytes.len() as u64) else { return Err(too_long()) };
         self.left = left;
+        let tags = bytes.iter().filter(|byte| **byte == b'<').count();
+        self.tags_left = self.tags_left.checked_sub(tags).ok_or_else(|| {
+            ThreeMfReadError::Bound(format!(
+                "the models have more than {} XML tags, one for {BYTES_PER_TAG} bytes of the file",
+                self.most_tags
+            ))
+        })?;
         String::from_utf8(bytes).map(Some).map_err(|_| malformed(part, "not UTF-8"))
     }
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::document::{Element, Namespace};
 use super::findings::Findings;
+use super::value::resource_id;
 
 /// Namespace of the materials extension.
 pub(super) const NAMESPACE: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
@@ -50,11 +51,12 @@ pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
         namespace if namespace.is(NAMESPACE) => element.name.clone(),
         _ => String::new(),
     };
-    let kinds: HashMap<&str, String> =
-        resources.children.iter().filter_map(|e| Some((e.attribute("id")?.trim(), kind(e)))).collect();
+    let kinds: HashMap<String, String> =
+        resources.children.iter().filter_map(|e| Some((resource_id(e.attribute("id")?), kind(e)))).collect();
     let is_extension = |e: &&Element| e.namespace.is(NAMESPACE);
     for element in resources.children.iter().filter(is_extension) {
-        let kind_of = |name: &str| element.attribute(name).map(|id| kinds.get(id.trim()).map(String::as_str));
+        let kind_of =
+            |name: &str| element.attribute(name).map(|id| kinds.get(&resource_id(id)).map(String::as_str));
         match element.name.as_str() {
             "texture2dgroup" if kind_of("texid").is_some_and(|kind| kind != Some("texture2d")) => {
                 findings.error("materials", "3MF materials 3", "texid refers to no <texture2d>");
@@ -68,9 +70,9 @@ pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
     }
 }
 
-fn check_multiproperties(element: &Element, kinds: &HashMap<&str, String>, findings: &mut Findings) {
+fn check_multiproperties(element: &Element, kinds: &HashMap<String, String>, findings: &mut Findings) {
     let ids = element.attribute("pids").unwrap_or_default().split_whitespace();
-    let listed: Vec<&str> = ids.map(|id| kinds.get(id).map_or("", String::as_str)).collect();
+    let listed: Vec<&str> = ids.map(|id| kinds.get(&resource_id(id)).map_or("", String::as_str)).collect();
     let count = |names: &[&str]| listed.iter().filter(|kind| names.contains(kind)).count();
     for (is_wrong, problem) in [
         (

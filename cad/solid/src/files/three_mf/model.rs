@@ -12,7 +12,7 @@ use super::findings::Findings;
 use super::materials;
 use super::part_name::normalized;
 use super::transform::Transform;
-use super::value::index;
+use super::value::{index, resource_id};
 use crate::mesh::Mesh;
 use crate::validity::Level;
 
@@ -142,7 +142,7 @@ impl ModelReader {
             .children
             .iter()
             .filter(|child| !child.is_core("object"))
-            .filter_map(|child| Some((child.attribute("id")?.trim().to_owned(), child.core("base").count())))
+            .filter_map(|child| Some((resource_id(child.attribute("id")?), child.core("base").count())))
             .collect();
         self.check_materials(resources);
         for object in resources.children.iter_mut().filter(|child| child.is_core("object")) {
@@ -152,7 +152,7 @@ impl ModelReader {
     }
 
     fn object(&mut self, model: &mut Model, object: &mut Element, part: &str, unit_mm: f64) {
-        let id = object.attribute("id").unwrap_or_default().trim().to_owned();
+        let id = resource_id(object.attribute("id").unwrap_or_default());
         let kind = object.attribute("type").unwrap_or("model").to_owned();
         if !OBJECT_TYPES.contains(&kind.as_str()) {
             self.findings.error("object", "3MF core 4", &format!("object {id} has the unknown type {kind}"));
@@ -237,8 +237,8 @@ impl ModelReader {
     /// The object and the transform of an item or a component.
     fn placement(&mut self, element: &Element, part: &str, unit_mm: f64) -> (ObjectRef, Transform) {
         let path = element.attribute_in(PRODUCTION, "path").map(normalized);
-        let id = element.attribute("objectid").unwrap_or_default().trim();
-        let object = (path.unwrap_or_else(|| part.to_owned()), id.to_owned());
+        let id = resource_id(element.attribute("objectid").unwrap_or_default());
+        let object = (path.unwrap_or_else(|| part.to_owned()), id);
         let Some(text) = element.attribute("transform") else { return (object, Transform::IDENTITY) };
         let transform = Transform::parse(text, unit_mm).unwrap_or_else(|| {
             let detail = "a transform does not have twelve finite numbers";
@@ -436,8 +436,8 @@ impl ModelReader {
     fn check_ids(&mut self, resources: &Element) {
         let mut ids = HashSet::new();
         for resource in &resources.children {
-            let Some(id) = resource.attribute("id").map(str::trim) else { continue };
-            if !ids.insert(id) {
+            let Some(id) = resource.attribute("id").map(resource_id) else { continue };
+            if !ids.insert(id.clone()) {
                 let detail = format!("two resources have the id {id}");
                 self.findings.error("reference", "3MF core 3.4.2", &detail);
             }
@@ -477,12 +477,12 @@ impl ModelReader {
         let uses = || meshes().flat_map(|mesh| &mesh.properties);
         let of_triangles = uses().filter_map(|properties| properties.pid.as_deref());
         for group in pid.into_iter().chain(of_triangles) {
-            if !groups.contains_key(group.trim()) {
+            if !groups.contains_key(&resource_id(group)) {
                 let detail = format!("object {id} has a property of the group {group}, which does not exist");
                 self.findings.error("property", "3MF core 4", &detail);
             }
         }
-        let bases = pid.and_then(|pid| groups.get(pid.trim())).filter(|bases| **bases > 0);
+        let bases = pid.and_then(|pid| groups.get(&resource_id(pid))).filter(|bases| **bases > 0);
         let index = pindex.and_then(index).map(|index| index as usize);
         if let (Some(bases), Some(index)) = (bases, index)
             && index >= *bases
@@ -491,7 +491,7 @@ impl ModelReader {
             self.findings.error("property", "3MF core 4", &detail);
         }
         for TriangleProperties { pid: of_triangle, greatest, gradients } in uses() {
-            let group = of_triangle.as_deref().or(pid).and_then(|pid| groups.get(pid.trim()));
+            let group = of_triangle.as_deref().or(pid).and_then(|pid| groups.get(&resource_id(pid)));
             // The sizes of groups of extensions are unknown.
             let Some(bases) = group.filter(|bases| **bases > 0) else { continue };
             if *greatest as usize >= *bases {

@@ -193,14 +193,22 @@ impl<'a> XmlReader<'a> {
                 return self.text_event();
             }
             if self.skip("<!--") {
-                self.until("-->", "a comment")?;
+                let comment = self.until("-->", "a comment")?;
+                if comment.contains("--") || comment.ends_with('-') {
+                    return Err(self.malformed("a comment contains '--'"));
+                }
+                self.refuse_characters(comment)?;
             } else if self.rest().starts_with("<![CDATA[") && !self.open.is_empty() {
                 self.at += "<![CDATA[".len();
-                return self.until("]]>", "a CDATA section").map(|text| Event::Text(Cow::Borrowed(text)));
+                let text = self.until("]]>", "a CDATA section")?;
+                self.refuse_characters(text)?;
+                return Ok(Event::Text(Cow::Borrowed(text)));
             } else if self.rest().starts_with("<!") {
                 return Err(self.malformed("a document type declaration (DTD) is not allowed in a 3MF"));
-            } else if self.skip("<?") {
-                self.instruction()?;
+            } else if self.rest().starts_with("<?") {
+                let is_first = self.at == 0;
+                self.at += "<?".len();
+                self.instruction(is_first)?;
             } else if self.skip("</") {
                 return self.end_tag();
             } else {
@@ -210,15 +218,25 @@ impl<'a> XmlReader<'a> {
         }
     }
 
-    fn instruction(&mut self) -> Result<(), XmlError> {
+    /// Reads a processing instruction, or the declaration of XML at the begin of the document.
+    fn instruction(&mut self, is_first: bool) -> Result<(), XmlError> {
         let text = self.until("?>", "a processing instruction")?;
-        let encoding = text
-            .strip_prefix("xml")
-            .filter(|rest| rest.starts_with(char::is_whitespace))
-            .and_then(|rest| rest.split_once("encoding"))
-            .map(|(_, value)| value.trim_start_matches(|c: char| c.is_whitespace() || c == '='))
-            .and_then(|value| value.split(['"', '\'']).nth(1));
-        match encoding {
+        self.refuse_characters(text)?;
+        let target = text.split(char::is_whitespace).next().unwrap_or_default();
+        if !target.eq_ignore_ascii_case("xml") {
+            return Ok(());
+        }
+        if !is_first || target != "xml" {
+            return Err(self.malformed("a declaration of XML that is not at the beginning"));
+        }
+        let value = |key: &str| {
+            let (_, value) = text.split_once(key)?;
+            value.trim_start_matches(|c: char| c.is_whitespace() || c == '=').split(['"', '\'']).nth(1)
+        };
+        if value("version") != Some("1.0") {
+            return Err(self.malformed("the declared version of XML is not 1.0"));
+        }
+        match value("encoding") {
             Some(name) if !name.eq_ignore_ascii_case("utf-8") => {
                 Err(self.malformed("the declared encoding is not UTF-8"))
             }
@@ -226,16 +244,31 @@ impl<'a> XmlReader<'a> {
         }
     }
 
+    /// Refuses what is no character of XML, such as a byte 01.
+    fn refuse_characters(&self, text: &str) -> Result<(), XmlError> {
+        // Nearly all texts are of ASCII: bytes are faster than characters.
+        let is_plain =
+            text.bytes().all(|byte| (b' '..0xef).contains(&byte) || matches!(byte, b'\t' | b'\n' | b'\r'));
+        match is_plain || text.chars().all(is_character) {
+            true => Ok(()),
+            false => Err(self.malformed("a character that XML does not allow")),
+        }
+    }
+
     fn text_event(&mut self) -> Result<Event<'a>, XmlError> {
         let length = self.rest().find('<');
         let Some(length) = length else { return Err(self.malformed("an element has no end")) };
         let raw = &self.rest()[..length];
+        if raw.contains("]]>") {
+            return Err(self.malformed("text contains ']]>'"));
+        }
         self.at += length;
         self.decoded(raw).map(Event::Text)
     }
 
     /// Replaces character references and the five predefined entities.
     fn decoded(&self, raw: &'a str) -> Result<Cow<'a, str>, XmlError> {
+        self.refuse_characters(raw)?;
         if !raw.contains('&') {
             return Ok(Cow::Borrowed(raw));
         }
@@ -259,7 +292,7 @@ impl<'a> XmlReader<'a> {
                             Some(digits) => u32::from_str_radix(digits, 16),
                             None => number.parse(),
                         };
-                        char::from_u32(code.ok()?).filter(|c| !c.is_control() || c.is_whitespace())?
+                        char::from_u32(code.ok()?).filter(|c| is_character(*c))?
                     }
                 })
             });
@@ -399,9 +432,41 @@ impl<'a> XmlReader<'a> {
     }
 }
 
+/// Whether XML 1.0 allows a character (production 2, `Char`).
+const fn is_character(c: char) -> bool {
+    matches!(c, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_characters_and_forms_of_xml_are_read() {
+        for malformed in [
+            "<a>\u{1}</a>",
+            "<a b=\"\u{b}\"/>",
+            "<a>\u{ffff}</a>",
+            "<a>&#1;</a>",
+            "<a><!-- a -- b --></a>",
+            "<a><!-- a ---></a>",
+            "<a>]]></a>",
+            "<a><?xml version=\"1.0\"?></a>",
+            " <?xml version=\"1.0\"?><a/>",
+            "<?xml version=\"1.1\"?><a/>",
+            "<?XML version=\"1.0\"?><a/>",
+        ] {
+            assert!(read(malformed).is_err(), "{malformed:?}");
+        }
+        for good in [
+            "<a>&#127;&#x85;\u{85}</a>",
+            "<?xml version='1.0'?><a/>",
+            "<a><?x y?><!-- - --></a>",
+            "<a>]]</a>",
+        ] {
+            assert!(read(good).is_ok(), "{good:?}");
+        }
+    }
 
     /// Names of the elements and the texts of a document.
     fn read(text: &str) -> Result<Vec<String>, XmlError> {

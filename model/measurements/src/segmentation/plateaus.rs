@@ -106,7 +106,7 @@ fn add_plateaus(
     }
     let mut counts = [0u32; 2];
     let (mut uncertain, mut reason) = (0, String::new());
-    for (r, verdict) in readings.iter().zip(found.verdicts) {
+    for (r, verdict) in readings.iter().zip(&found.verdicts) {
         let is_certain = verdict.probability >= ACCEPTED;
         let from_s = log.time_s[r.span.from];
         out.moves.push(MoveMark {
@@ -121,7 +121,7 @@ fn add_plateaus(
             out.findings.push(Finding::UncertainDirection {
                 time_s: from_s,
                 probability,
-                reason: verdict.reason,
+                reason: verdict.reason.clone(),
             });
             continue;
         }
@@ -141,12 +141,32 @@ fn add_plateaus(
     let most = MOST_UNCERTAIN.1 * readings.len() as f64;
     if uncertain > 0 && (out.plateaus.is_empty() || uncertain as f64 > most.max(MOST_UNCERTAIN.0 as f64)) {
         let count = readings.len();
+        if let (Some((low_n, high_n)), Some(load_n)) = (found.contradicted_levels_n, load_n) {
+            return Err(one_sided_levels((low_n, high_n), load_n, (uncertain, count)));
+        }
         return Err(Diagnostic::new(format!(
             "the direction of {uncertain} of {count} moves is uncertain ({reason})"
         ))
         .with_help("declare rig.protocol, or add a column position_mm or direction to the log"));
     }
     Ok(())
+}
+
+/// Returns the error of a log whose two levels are on one side of its load.
+fn one_sided_levels(
+    (low_n, high_n): (f64, f64),
+    load_n: f64,
+    (uncertain, count): (usize, usize),
+) -> Diagnostic {
+    let side = if low_n > load_n { "above" } else { "below" };
+    Diagnostic::new(format!(
+        "the direction of {uncertain} of {count} moves is uncertain: the levels of the force, {low_n:.2} N and \
+         {high_n:.2} N, are both {side} the load of {load_n:.2} N"
+    ))
+    .with_help(
+        "if the weight changes, add a column load_N or load_mass_g; otherwise check the load, the gain and the \
+         zero of the cell, or add a column position_mm or direction",
+    )
 }
 
 /// Returns the usual rest of a log in seconds, if its rests are regular; the declared one if the log

@@ -60,8 +60,12 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
         out.source = Source::Position;
         cycle_readings(log, &halves, &mut spikes, &mut out.findings)
     } else {
-        let Moves { all, source, scheduled } = moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
+        let Moves { all, source, scheduled, unexplained_s } =
+            moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
         out.source = source;
+        refuse_unexplained(&unexplained_s, all.len())?;
+        out.findings
+            .extend(unexplained_s.iter().map(|(_, time_s)| Finding::UnreadableRest { time_s: *time_s }));
         if scheduled > 0 {
             out.findings.push(Finding::ScheduledMoves { moves: scheduled });
         }
@@ -217,6 +221,23 @@ fn refuse_hidden_moves(
     Err(Diagnostic::new(format!(
         "the force shows {} moves, rig.on_s and rig.dwell_s declare about {scheduled}: the others leave it unchanged",
         moves.len() - placed
+    ))
+    .with_help("add a column position_mm or power_W to the log"))
+}
+
+/// Refuses a log whose force is steady in more than a few intervals that are not rests: its actuator
+/// may run at a steady force, so that the rests are elsewhere.
+fn refuse_unexplained(unexplained_s: &[(f64, f64)], moves: usize) -> Result<(), Diagnostic> {
+    let count = unexplained_s.len();
+    let most = MOST_UNCERTAIN.1 * moves as f64;
+    let Some((from_s, to_s)) =
+        unexplained_s.first().filter(|_| count as f64 > most.max(MOST_UNCERTAIN.0 as f64))
+    else {
+        return Ok(());
+    };
+    Err(Diagnostic::new(format!(
+        "the force alone does not distinguish the rests from the moves: it is steady in {count} short intervals \
+         before a move (the first from {from_s:.1} s to {to_s:.1} s)"
     ))
     .with_help("add a column position_mm or power_W to the log"))
 }

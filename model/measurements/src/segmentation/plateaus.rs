@@ -6,7 +6,7 @@ use std::ops::Range;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 
-use super::cycles::{HalfCycle, half_cycles};
+use super::cycles::{HalfCycle, half_cycles, unsettled};
 use super::defects::{missing_repetitions, odd_speeds, sample_defects};
 use super::direction::{ACCEPTED, Evidence, directions};
 use super::finding::Finding;
@@ -58,6 +58,7 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
     let readings = if let Some(halves) = half_cycles(log) {
         out.motion = Motion::Cycles;
         out.source = Source::Position;
+        out.findings.extend(unsettled(log, &halves).map(|share| Finding::UnsettledCycles { share }));
         cycle_readings(log, &halves, &mut spikes, &mut out.findings)
     } else {
         let Moves { all, source, scheduled, unexplained_s } =

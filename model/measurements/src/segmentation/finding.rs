@@ -82,6 +82,9 @@ pub enum Finding {
         /// Bend of the difference of the branches within the reading, over the difference.
         share: f64,
     },
+    /// Rests that only the force shows, where the actuator may as well move at a steady force:
+    /// their dwell is that of the steady force.
+    DwellByForce,
     /// A position that decreases when the load is released.
     ReversedPosition,
     /// Plateaus without load, which are left out.
@@ -146,6 +149,9 @@ impl fmt::Display for Finding {
                 f,
                 "the force still settles in the middle of the strokes (bend {share:.2}), use slower cycles"
             ),
+            Self::DwellByForce => {
+                write!(f, "dwell_s is the time of steady force, which does not show if the actuator rests")
+            }
             Self::ReversedPosition => write!(f, "the position decreases when the load is released"),
             Self::Unloaded { plateaus } => write!(f, "{plateaus} plateaus without load left out"),
             Self::TimeUnit { declared_s, measured_s } => {

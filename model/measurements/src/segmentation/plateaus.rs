@@ -91,6 +91,9 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
     missing_repetitions(&readings, &mut out);
     odd_speeds(log, rig, &readings, &mut out);
     sample_defects(log, rig, spikes, &mut out.findings);
+    if out.source == Source::Force && rig.on_s.is_none() && !out.plateaus.is_empty() {
+        out.findings.push(Finding::DwellByForce);
+    }
     Ok(out)
 }
 

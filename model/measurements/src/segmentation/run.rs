@@ -517,6 +517,14 @@ mod tests {
         assert!(error.to_string().contains("add a column position_mm or power_W"), "{error}");
     }
 
+    /// The force alone does not show whether the actuator rests, unless `on_s` is declared.
+    #[test]
+    fn dwells_by_force_are_reported() {
+        let moves: Vec<_> = (0..6).map(|k| (LEVELS_N[k % 2], 0.5, 3.0)).collect();
+        let run = segment_force(&force_log(&moves)).unwrap();
+        assert_eq!(run.report.series[0].findings, [Finding::DwellByForce]);
+    }
+
     #[test]
     fn overlapping_logs_are_refused() {
         let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");

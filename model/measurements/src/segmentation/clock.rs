@@ -3,12 +3,15 @@
 use super::finding::Finding;
 use crate::median::median;
 
-/// Seconds of one count for each unit of time that loggers write.
-const UNITS_S: [f64; 4] = [1.0, 1e-3, 1e-6, 1e-9];
+/// Seconds of one count for each unit of time that loggers write; the last is the day of a
+/// spreadsheet.
+const UNITS_S: [f64; 5] = [1.0, 1e-3, 1e-6, 1e-9, 86_400.0];
 /// Sampling periods in seconds that a log may have: 2 Hz to 20 kHz.
 const PERIODS_S: std::ops::RangeInclusive<f64> = 5e-5..=0.5;
 /// Longest sampling period in seconds that a unit is chosen for when its own name is refuted: 7 Hz.
 const LIKELY_PERIOD_S: f64 = 0.15;
+/// Sampling period times the declared rate, if they agree.
+const AGREES: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// Counts at which hardware counters restart.
 const COUNTS: [f64; 4] = [65_536.0, 16_777_216.0, 2_147_483_648.0, 4_294_967_296.0];
 /// Seconds at which clock times restart: an hour, half a day, a day.
@@ -41,6 +44,8 @@ pub(super) struct LogTime {
     pub(super) unusable: usize,
     /// Properties of the clock that a person should know.
     pub(super) findings: Vec<Finding>,
+    /// Sampling period in seconds, if neither a log nor the declared rate can have it.
+    pub(super) impossible_period_s: Option<f64>,
 }
 
 /// Converts the stamps of a log to times.
@@ -59,6 +64,9 @@ pub(super) fn log_time(stamps: &[f64], unit_s: f64, rate_hz: Option<f64>) -> Log
     let share = positive.len() as f64 / (positive.len() + if is_coarse { repeated } else { 0 }).max(1) as f64;
     let period = median(&mut positive) * share;
     let actual_s = unit(period, unit_s, rate_hz);
+    let is_declared = |period_s: f64| rate_hz.is_some_and(|rate| AGREES.contains(&(period_s * rate)));
+    out.impossible_period_s =
+        Some(period * actual_s).filter(|p| *p > 0.0 && !PERIODS_S.contains(p) && !is_declared(*p));
     if actual_s != unit_s {
         out.findings.push(Finding::TimeUnit { declared_s: unit_s, measured_s: actual_s });
     }
@@ -119,7 +127,7 @@ fn is_restart(times: &[f64]) -> bool {
 
 /// Returns the length of a count in seconds: `unit_s`, unless the sampling period refutes it.
 fn unit(period: f64, unit_s: f64, rate_hz: Option<f64>) -> f64 {
-    let agrees = |unit_s: f64| rate_hz.is_some_and(|rate| (0.5..=2.0).contains(&(period * unit_s * rate)));
+    let agrees = |unit_s: f64| rate_hz.is_some_and(|rate| AGREES.contains(&(period * unit_s * rate)));
     if period <= 0.0 || agrees(unit_s) {
         return unit_s;
     }
@@ -287,6 +295,28 @@ mod tests {
             let alone = log_time(&stamps(0.0, unit / 200.0, 50), 1.0, None);
             assert!((alone.time_s[49] - 49.0 / 200.0).abs() < 1e-9, "{unit}: {:?}", alone.time_s);
         }
+    }
+
+    /// A spreadsheet counts days, with or without a declared rate.
+    #[test]
+    fn days_are_recognised() {
+        for rate in [10.0, 100.0, 1000.0] {
+            let days = stamps(45_356.4, 1.0 / rate / 86_400.0, 100);
+            for declared in [None, Some(rate)] {
+                let log = log_time(&days, 1.0, declared);
+                assert!((log.time_s[99] - 99.0 / rate).abs() < 1e-5, "{rate}: {:?}", log.time_s);
+                assert_eq!(log.findings, [Finding::TimeUnit { declared_s: 1.0, measured_s: 86_400.0 }]);
+                assert_eq!(log.impossible_period_s, None);
+            }
+        }
+    }
+
+    /// No unit explains a step of 1e-12 or 1e11; a declared rate may be above those of most logs.
+    #[test]
+    fn impossible_rates_are_known() {
+        let impossible = |step: f64, rate| log_time(&stamps(0.0, step, 50), 1.0, rate).impossible_period_s;
+        assert!(impossible(1e-12, None).is_some() && impossible(1e11, None).is_some());
+        assert_eq!((impossible(0.01, None), impossible(1e-5, Some(1e5))), (None, None));
     }
 
     #[test]

@@ -22,6 +22,12 @@ const REVERSAL_SHARE: f64 = 0.1;
 /// Part of the stroke over which the force is averaged: its middle half.
 const MIDDLE: (f64, f64) = (0.25, 0.75);
 
+/// Bend of the difference of the branches in the middle part, as a share of the difference, above
+/// which the force has not settled there, and its least size in standard errors. A decay whose time
+/// constant is a thirteenth of the half-cycle has a bend of 0.02, and shifts a reading by 0.01.
+const BEND_SHARE: f64 = 0.04;
+const BEND_ERRORS: f64 = 5.0;
+
 /// Middle part of a half-cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct HalfCycle {
@@ -84,6 +90,42 @@ pub(super) fn half_cycles(log: &Log) -> Option<Vec<HalfCycle>> {
     Some(halves.collect())
 }
 
+/// Returns the bend of the difference of the branches over the difference, if the force still
+/// settles after a reversal in the middle of the strokes.
+///
+/// The mean forces of the thirds of the middle part, in the order of time, are `f1`, `f2` and `f3`. A
+/// force that depends on the position has the same bend `f1 - 2 f2 + f3` on both branches, since its
+/// slope cancels. A decay after the reversal has one of opposite sign on each branch.
+pub(super) fn unsettled(log: &Log, halves: &[HalfCycle]) -> Option<f64> {
+    // Bends and means of the branches; the sign of the travel separates them.
+    let mut branches: [(Vec<f64>, Vec<f64>); 2] = Default::default();
+    for half in halves {
+        let third = half.middle.len() / 3;
+        if third == 0 {
+            return None;
+        }
+        let forces = &log.force_n[half.middle.clone()];
+        let mean_of = |at: usize| median(&mut forces[at * third..(at + 1) * third].to_vec());
+        let (first, middle, last) = (mean_of(0), mean_of(1), mean_of(2));
+        let branch = &mut branches[usize::from(half.travel_mm > 0.0)];
+        branch.0.push(first - 2.0 * middle + last);
+        branch.1.push((first + middle + last) / 3.0);
+    }
+    let count = branches.iter().map(|b| b.0.len()).min().unwrap_or(0);
+    if count == 0 {
+        return None;
+    }
+    let [(mut bends_a, mut means_a), (mut bends_b, mut means_b)] = branches;
+    let bend = median(&mut bends_a) - median(&mut bends_b);
+    let difference = median(&mut means_a) - median(&mut means_b);
+    let third = halves.iter().map(|half| half.middle.len() / 3).min().unwrap_or(1);
+    // Each bend is a sum of three means with the squared weights 1, 4 and 1.
+    let error = noise_about_slope(&log.force_n) * (2.0 * 6.0 / (third * count) as f64).sqrt();
+    // The branches approach their levels, which are further apart than the means.
+    let share = -bend / difference;
+    (share > BEND_SHARE && bend.abs() > BEND_ERRORS * error).then_some(share)
+}
+
 /// Returns the number of samples in the middle of a stroke with a speed far below its median: rests
 /// that are blurred by the window of the speed.
 fn slow_samples(mm_s: &[f64]) -> usize {
@@ -127,4 +169,37 @@ fn turning_points(position_mm: &[f64]) -> Vec<usize> {
     turns.push(position_mm.len() - 1);
     turns.dedup();
     turns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A log of triangles at 100 Hz: the friction reverses with a time constant, and the force has a
+    /// part that depends on the position.
+    fn triangles(period_s: f64, settling_s: f64, elastic: impl Fn(f64) -> f64) -> Log {
+        let mut friction = 0.0;
+        let (mut times, mut forces, mut positions) = (Vec::new(), Vec::new(), Vec::new());
+        for i in 0..3000u32 {
+            let phase = (f64::from(i) / 100.0 / period_s).fract();
+            let (at, sign) = if phase < 0.5 { (2.0 * phase, -1.0) } else { (2.0 - 2.0 * phase, 1.0) };
+            friction += (sign - friction) * (0.01 / settling_s).min(1.0);
+            let noise = 0.03 * libm::sin(37.0 * f64::from(i) * f64::from(i));
+            times.push(f64::from(i) / 100.0);
+            forces.push(20.0 + 4.0 * friction + elastic(at) + noise);
+            positions.push(40.0 * at);
+        }
+        Log::new(times, forces, Some(positions), None, "a").unwrap()
+    }
+
+    #[test]
+    fn unsettled_strokes_are_known() {
+        let bend = |log: &Log| unsettled(log, &half_cycles(log).unwrap());
+        assert!(bend(&triangles(2.0, 0.3, |_| 0.0)).unwrap() > 0.1);
+        assert!(bend(&triangles(2.0, 0.3, |at| 5.0 * at)).is_some());
+        // Settled, with a force that depends on the position.
+        assert_eq!(bend(&triangles(8.0, 0.1, |_| 0.0)), None);
+        assert_eq!(bend(&triangles(8.0, 0.1, |at| 5.0 * at * at)), None);
+        assert_eq!(bend(&triangles(2.0, 0.01, |at| 5.0 * at)), None);
+    }
 }

@@ -3,7 +3,8 @@
 //! Each witness favours a direction with a stated reliability. Its log odds are added, as in a naive
 //! Bayes classifier. Three unknowns are common to the whole log, and are averaged over: the order of
 //! the directions, the sign of the position, and whether the load cell agrees with the declared
-//! load.
+//! load. If the load contradicts the two levels of the force, a fourth one is whether they are those
+//! of the directions.
 
 use pinswitch_friction::Direction;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,8 @@ pub(super) struct Directions {
     pub(super) verdicts: Vec<Verdict>,
     /// Whether the position decreases when the load is released.
     pub(super) is_position_reversed: bool,
+    /// Levels of the force in newtons, if both are on one side of the load.
+    pub(super) contradicted_levels_n: Option<(f64, f64)>,
 }
 
 /// Probability above which a direction is accepted.
@@ -81,6 +84,9 @@ const ORDER: f64 = 0.98;
 const POSITION_SIGN: f64 = 0.99;
 /// The load cell agrees with the declared load.
 const CELL: f64 = 0.97;
+/// The two levels are those of the directions. The alternative is a change of the weight, or of the
+/// zero of the cell, within the log: as rare as a wrong cell.
+const LEVELS: f64 = CELL;
 /// Probability of an order that is declared, and of each order without a declaration: eccentric
 /// first is the protocol of the paper.
 const DECLARED_ORDER: f64 = 0.97;
@@ -121,24 +127,26 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
     let levels = force_levels(moves);
     let power = power_levels(moves);
     let fixed: Vec<Vec<Witness>> = moves.iter().map(|m| witnesses(m, levels, power)).collect();
-    let by_load: Vec<f64> =
-        moves.iter().map(|m| load_witness(m, load_n.filter(|_| levels.is_none()))).collect();
+    // Levels on both sides of the load agree with it: its distance adds nothing.
+    let contradicted = levels.filter(|levels| load_n.is_some_and(|load_n| is_one_sided(*levels, load_n)));
+    let weighed_load_n = load_n.filter(|_| levels.is_none() || contradicted.is_some());
+    let by_load: Vec<f64> = moves.iter().map(|m| load_witness(m, weighed_load_n)).collect();
+    let by_level: Vec<f64> = moves.iter().map(|m| levels.map_or(0.0, |l| level_witness(m, l))).collect();
+    let level_changes = contradicted.map(|_| changes(&by_level));
     let position: Vec<f64> =
         moves.iter().map(|m| m.travel_mm.map_or(0.0, |mm| log_odds(POSITION, mm < 0.0))).collect();
     let orders = orders(moves.len(), protocol);
     let mut combinations: Vec<Combination> = Vec::new();
     for (is_reversed, sign_share) in [(false, POSITION_SIGN), (true, 1.0 - POSITION_SIGN)] {
-        for (cell, cell_share) in [(1.0, CELL), (0.0, 1.0 - CELL)] {
+        for (cell, level, log_share) in common_causes(&by_load, &by_level, level_changes) {
             let odds: Vec<f64> = (0..moves.len())
                 .map(|i| {
                     let sum: f64 = fixed[i].iter().map(|w| w.log_odds).sum();
                     let sign = if is_reversed { -1.0 } else { 1.0 };
-                    sum + sign * position[i] + cell * by_load[i]
+                    sum + sign * position[i] + cell * by_load[i] + level * by_level[i]
                 })
                 .collect();
-            // A wrong cell shifts all plateaus to one side: this is one event, not one for each move.
-            let one_shift = by_load.iter().map(|o| 0.5 * o.abs()).sum::<f64>() - std::f64::consts::LN_2;
-            let base = libm::log(sign_share * cell_share) + (1.0 - cell) * one_shift;
+            let base = libm::log(sign_share) + log_share;
             for (share, pattern) in &orders {
                 let mut log_weight = base + libm::log(*share);
                 let mut concentric = Vec::with_capacity(moves.len());
@@ -165,6 +173,7 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
             let concentric = mean(&|c| c.concentric[i]);
             let is_concentric = concentric > 0.5;
             let mut all = fixed[i].clone();
+            all.push(Witness { name: "level", log_odds: by_level[i] });
             all.push(Witness { name: "position", log_odds: position[i] });
             all.push(Witness { name: "load", log_odds: by_load[i] });
             Verdict {
@@ -174,7 +183,40 @@ pub(super) fn directions(moves: &[Evidence], load_n: Option<f64>, protocol: Opti
             }
         })
         .collect();
-    Directions { verdicts, is_position_reversed }
+    let contradicted_levels_n = contradicted.map(|levels| (levels.low, levels.high));
+    Directions { verdicts, is_position_reversed, contradicted_levels_n }
+}
+
+/// Returns whether the load and the levels are witnesses (1) or not (0), with the logarithm of the
+/// probability, for each common cause.
+///
+/// A wrong cell shifts all plateaus to one side, and a changed weight all those after the change:
+/// each is one event, not one for each move. `level_changes` is the number of such events that the
+/// levels need; `None` if nothing contradicts the levels.
+fn common_causes(by_load: &[f64], by_level: &[f64], level_changes: Option<i32>) -> Vec<(f64, f64, f64)> {
+    // Log odds that a cause has in place of the witness; it has one of two signs.
+    let one_event = |odds: &[f64]| odds.iter().map(|o| 0.5 * o.abs()).sum::<f64>() - std::f64::consts::LN_2;
+    let cells = [(1.0, libm::log(CELL)), (0.0, libm::log(1.0 - CELL) + one_event(by_load))];
+    let levels = match level_changes {
+        None => vec![(1.0, 0.0)],
+        Some(changes) => vec![
+            (1.0, libm::log(LEVELS)),
+            (0.0, f64::from(changes) * libm::log(1.0 - LEVELS) + one_event(by_level)),
+        ],
+    };
+    let all =
+        cells.into_iter().flat_map(|(cell, a)| levels.iter().map(move |(level, b)| (cell, *level, a + b)));
+    all.collect()
+}
+
+/// Returns the number of times that a witness changes its direction from one move to the next.
+fn changes(log_odds: &[f64]) -> i32 {
+    log_odds.windows(2).map(|pair| i32::from((pair[0] > 0.0) != (pair[1] > 0.0))).sum()
+}
+
+/// Whether both levels are on one side of the load, where friction puts only one of them.
+fn is_one_sided(levels: TwoLevels, load_n: f64) -> bool {
+    load_n > 0.0 && (levels.low > (1.0 + NEAR_SHARE) * load_n || levels.high < (1.0 - NEAR_SHARE) * load_n)
 }
 
 /// One combination of the unknowns that are common to a log.
@@ -271,12 +313,6 @@ fn witnesses(m: &Evidence, levels: Option<TwoLevels>, power: Option<TwoLevels>) 
     if let Some(direction) = m.declared {
         add("column", COLUMN, direction == Direction::Concentric);
     }
-    if let Some(levels) = levels {
-        let within = levels.within.max(REPEATABILITY * levels.high.abs().max(levels.low.abs()));
-        let is_clear = levels.high - levels.low > CLEAR_DISTANCE * within;
-        let reliability = if is_clear { CLEAR_LEVELS } else { CLOSE_LEVELS };
-        add("level", reliability, m.force_n > levels.threshold);
-    }
     if let Some(before_n) = m.before_n {
         let step_n = m.force_n - before_n;
         let settling_n = levels.map_or(0.0, |levels| 0.5 * (levels.high - levels.low));
@@ -289,6 +325,13 @@ fn witnesses(m: &Evidence, levels: Option<TwoLevels>, power: Option<TwoLevels>) 
         add("power", if has_signs { POWER_SIGN } else { POWER_LEVEL }, power_w > levels.threshold);
     }
     all
+}
+
+/// Returns the log odds of the level of a plateau.
+fn level_witness(m: &Evidence, levels: TwoLevels) -> f64 {
+    let within = levels.within.max(REPEATABILITY * levels.high.abs().max(levels.low.abs()));
+    let is_clear = levels.high - levels.low > CLEAR_DISTANCE * within;
+    log_odds(if is_clear { CLEAR_LEVELS } else { CLOSE_LEVELS }, m.force_n > levels.threshold)
 }
 
 /// Returns the log odds of the distance of a plateau from the load.
@@ -378,6 +421,26 @@ mod tests {
         let found = directions(&moves, Some(10.0), Some(Protocol::Unordered));
         assert_eq!(words(&found), "ee?eeccccc");
         assert_eq!(found.verdicts[2].reason, "position: eccentric, level: concentric");
+    }
+
+    /// Levels on one side of the load are those of the directions in a wrong cell, or those of two
+    /// weights: the force alone does not decide, and the position does.
+    #[test]
+    fn levels_on_one_side_of_the_load_do_not_decide() {
+        for (low_n, high_n) in [(23.5, 29.4), (20.5, 23.5), (13.1, 16.3)] {
+            let mut moves: Vec<_> =
+                [low_n, high_n].into_iter().flat_map(|f| vec![evidence(f, None); 5]).collect();
+            let found = directions(&moves, Some(19.61), None);
+            assert!(!words(&found).contains(['e', 'c']), "{found:?}");
+            assert!(found.contradicted_levels_n.is_some());
+            moves.iter_mut().for_each(|m| m.travel_mm = Some(-8.0));
+            let is_above = low_n > 19.61;
+            let found = directions(&moves, Some(19.61), None);
+            assert_eq!(words(&found), if is_above { "cccccccccc" } else { "??????????" }, "{found:?}");
+            let turns: Vec<_> = (0..10).map(|i| evidence([low_n, high_n][i % 2], None)).collect();
+            // One weight does not change with each move.
+            assert_eq!(words(&directions(&turns, Some(19.61), None)), "ececececec");
+        }
     }
 
     /// Plateaus on one side of the load may come from a wrong gain or zero of the cell.

@@ -76,6 +76,15 @@ pub enum Finding {
         /// Number of moves.
         moves: usize,
     },
+    /// Cycles so fast that the force still settles after a reversal where it is read: the readings
+    /// are between the branches.
+    UnsettledCycles {
+        /// Bend of the difference of the branches within the reading, over the difference.
+        share: f64,
+    },
+    /// Rests that only the force shows, where the actuator may as well move at a steady force:
+    /// their dwell is that of the steady force.
+    DwellByForce,
     /// A position that decreases when the load is released.
     ReversedPosition,
     /// Plateaus without load, which are left out.
@@ -135,6 +144,13 @@ impl fmt::Display for Finding {
             }
             Self::ScheduledMoves { moves } => {
                 write!(f, "{moves} moves placed by rig.on_s and rig.dwell_s: the force does not show them")
+            }
+            Self::UnsettledCycles { share } => write!(
+                f,
+                "the force still settles in the middle of the strokes (bend {share:.2}), use slower cycles"
+            ),
+            Self::DwellByForce => {
+                write!(f, "dwell_s is the time of steady force, which does not show if the actuator rests")
             }
             Self::ReversedPosition => write!(f, "the position decreases when the load is released"),
             Self::Unloaded { plateaus } => write!(f, "{plateaus} plateaus without load left out"),

@@ -123,7 +123,7 @@ impl Log {
             }
             *slot = column;
         }
-        Self::from_cells(&cells, 1.0, None, file)
+        Self::from_cells(&cells, ("time_s", 1.0), None, file)
     }
 
     /// Parses a log. `file` is its name in errors. Unusable lines are counted and skipped, since
@@ -193,11 +193,16 @@ impl Log {
                 cells.marks.push(cell(column).and_then(load_from_mark));
             }
         }
-        Self::from_cells(&cells, unit_s, rate_hz, file)
+        Self::from_cells(&cells, (&names[time], unit_s), rate_hz, file)
     }
 
     /// Selects the usable samples and computes their times.
-    fn from_cells(cells: &Cells, unit_s: f64, rate_hz: Option<f64>, file: &str) -> Result<Self, Diagnostic> {
+    fn from_cells(
+        cells: &Cells,
+        (time_column, unit_s): (&str, f64),
+        rate_hz: Option<f64>,
+        file: &str,
+    ) -> Result<Self, Diagnostic> {
         let is_present = |column: usize| cells.numbers[column].iter().any(|v| v.is_finite());
         let (force, load) = if is_present(FORCE) { (FORCE, 3) } else { (FORCE_IN, FORCE_OUT) };
         let forces = &cells.numbers[force];
@@ -213,6 +218,17 @@ impl Log {
             ))
             .with_location(Location::file(file))
             .with_help("give a log with a number for time and force in every line"));
+        }
+        if let Some(period_s) = time.impossible_period_s {
+            return Err(Diagnostic::new(format!(
+                "column '{time_column}': the stamps are {period_s:.1e} s apart, at a rate of {:.3e} Hz",
+                1.0 / period_s
+            ))
+            .with_location(Location::file(file))
+            .with_help(
+                "give the time in seconds, or name the column by its unit (time_ms, time_us) and declare \
+                 rig.sample_rate_hz: logs have 10 Hz to 10 kHz",
+            ));
         }
         let column = |at: usize| {
             is_present(at)
@@ -408,6 +424,17 @@ mod tests {
         assert_eq!((log.time_s, log.force_n.len()), (time_s.clone(), 50));
         let error = Log::new(time_s, vec![2.0; 50], None, Some(vec![0.0; 3]), "a").unwrap_err();
         assert_eq!(error.problem(), "column 'power_W' has 3 values, 'time_s' has 50");
+    }
+
+    #[test]
+    fn impossible_rates_are_refused() {
+        let text = |step: f64| {
+            (0..60)
+                .fold("timestamp,force_N\n".to_owned(), |t, i| t + &format!("{},1.5\n", step * f64::from(i)))
+        };
+        let error = Log::parse(text(1e-12).as_bytes(), "a.csv").unwrap_err();
+        assert!(error.problem().starts_with("column 'timestamp': the stamps are 1.0e-12 s apart"), "{error}");
+        assert!(Log::parse(text(1.0 / 86_400.0 / 100.0).as_bytes(), "a.csv").is_ok());
     }
 
     #[test]

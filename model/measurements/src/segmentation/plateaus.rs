@@ -6,7 +6,7 @@ use std::ops::Range;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 
-use super::cycles::{HalfCycle, half_cycles};
+use super::cycles::{HalfCycle, half_cycles, unsettled};
 use super::defects::{missing_repetitions, odd_speeds, sample_defects};
 use super::direction::{ACCEPTED, Evidence, directions};
 use super::finding::Finding;
@@ -58,10 +58,15 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
     let readings = if let Some(halves) = half_cycles(log) {
         out.motion = Motion::Cycles;
         out.source = Source::Position;
+        out.findings.extend(unsettled(log, &halves).map(|share| Finding::UnsettledCycles { share }));
         cycle_readings(log, &halves, &mut spikes, &mut out.findings)
     } else {
-        let Moves { all, source, scheduled } = moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
+        let Moves { all, source, scheduled, unexplained_s } =
+            moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
         out.source = source;
+        refuse_unexplained(&unexplained_s, all.len())?;
+        out.findings
+            .extend(unexplained_s.iter().map(|(_, time_s)| Finding::UnreadableRest { time_s: *time_s }));
         if scheduled > 0 {
             out.findings.push(Finding::ScheduledMoves { moves: scheduled });
         }
@@ -86,6 +91,9 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
     missing_repetitions(&readings, &mut out);
     odd_speeds(log, rig, &readings, &mut out);
     sample_defects(log, rig, spikes, &mut out.findings);
+    if out.source == Source::Force && rig.on_s.is_none() && !out.plateaus.is_empty() {
+        out.findings.push(Finding::DwellByForce);
+    }
     Ok(out)
 }
 
@@ -106,7 +114,7 @@ fn add_plateaus(
     }
     let mut counts = [0u32; 2];
     let (mut uncertain, mut reason) = (0, String::new());
-    for (r, verdict) in readings.iter().zip(found.verdicts) {
+    for (r, verdict) in readings.iter().zip(&found.verdicts) {
         let is_certain = verdict.probability >= ACCEPTED;
         let from_s = log.time_s[r.span.from];
         out.moves.push(MoveMark {
@@ -121,7 +129,7 @@ fn add_plateaus(
             out.findings.push(Finding::UncertainDirection {
                 time_s: from_s,
                 probability,
-                reason: verdict.reason,
+                reason: verdict.reason.clone(),
             });
             continue;
         }
@@ -141,12 +149,32 @@ fn add_plateaus(
     let most = MOST_UNCERTAIN.1 * readings.len() as f64;
     if uncertain > 0 && (out.plateaus.is_empty() || uncertain as f64 > most.max(MOST_UNCERTAIN.0 as f64)) {
         let count = readings.len();
+        if let (Some((low_n, high_n)), Some(load_n)) = (found.contradicted_levels_n, load_n) {
+            return Err(one_sided_levels((low_n, high_n), load_n, (uncertain, count)));
+        }
         return Err(Diagnostic::new(format!(
             "the direction of {uncertain} of {count} moves is uncertain ({reason})"
         ))
         .with_help("declare rig.protocol, or add a column position_mm or direction to the log"));
     }
     Ok(())
+}
+
+/// Returns the error of a log whose two levels are on one side of its load.
+fn one_sided_levels(
+    (low_n, high_n): (f64, f64),
+    load_n: f64,
+    (uncertain, count): (usize, usize),
+) -> Diagnostic {
+    let side = if low_n > load_n { "above" } else { "below" };
+    Diagnostic::new(format!(
+        "the direction of {uncertain} of {count} moves is uncertain: the levels of the force, {low_n:.2} N and \
+         {high_n:.2} N, are both {side} the load of {load_n:.2} N"
+    ))
+    .with_help(
+        "if the weight changes, add a column load_N or load_mass_g; otherwise check the load, the gain and the \
+         zero of the cell, or add a column position_mm or direction",
+    )
 }
 
 /// Returns the usual rest of a log in seconds, if its rests are regular; the declared one if the log
@@ -197,6 +225,23 @@ fn refuse_hidden_moves(
     Err(Diagnostic::new(format!(
         "the force shows {} moves, rig.on_s and rig.dwell_s declare about {scheduled}: the others leave it unchanged",
         moves.len() - placed
+    ))
+    .with_help("add a column position_mm or power_W to the log"))
+}
+
+/// Refuses a log whose force is steady in more than a few intervals that are not rests: its actuator
+/// may run at a steady force, so that the rests are elsewhere.
+fn refuse_unexplained(unexplained_s: &[(f64, f64)], moves: usize) -> Result<(), Diagnostic> {
+    let count = unexplained_s.len();
+    let most = MOST_UNCERTAIN.1 * moves as f64;
+    let Some((from_s, to_s)) =
+        unexplained_s.first().filter(|_| count as f64 > most.max(MOST_UNCERTAIN.0 as f64))
+    else {
+        return Ok(());
+    };
+    Err(Diagnostic::new(format!(
+        "the force alone does not distinguish the rests from the moves: it is steady in {count} short intervals \
+         before a move (the first from {from_s:.1} s to {to_s:.1} s)"
     ))
     .with_help("add a column position_mm or power_W to the log"))
 }

@@ -438,6 +438,93 @@ mod tests {
         assert_eq!((measured.rows[0].load_n, measured.rows.len()), (10.5, 6));
     }
 
+    /// A log of time and force at 100 Hz after a rest of 2 s at the load. Each move has a level in
+    /// newtons, with an overshoot of 2 % of it, and a length; the rest after it has another one.
+    fn force_log(moves: &[(f64, f64, f64)]) -> Vec<u8> {
+        let (mut text, mut count, mut force_n) = ("time_s,force_N\n".to_owned(), 0u32, LOAD_N);
+        let mut put = |force_n: f64| {
+            let noise_n = 0.02 * libm::sin(0.7 * f64::from(count) * f64::from(count));
+            text += &format!("{:.2},{:.4}\n", f64::from(count) / 100.0, force_n + noise_n);
+            count += 1;
+        };
+        (0..200).for_each(|_| put(force_n));
+        for &(level_n, on_s, rest_s) in moves {
+            let overshoot = if level_n > LOAD_N { 0.02 } else { -0.02 };
+            for i in 0..(100.0 * on_s) as u32 {
+                let share = (f64::from(i + 1) / 10.0).min(1.0);
+                put(force_n + (level_n * (1.0 + overshoot) - force_n) * share);
+            }
+            for i in 0..(100.0 * rest_s) as u32 {
+                put(level_n * (1.0 + overshoot * libm::exp(-f64::from(i) / 30.0)));
+            }
+            force_n = level_n;
+        }
+        text.into_bytes()
+    }
+
+    const LOAD_N: f64 = 19.6133;
+    const LEVELS_N: [f64; 2] = [LOAD_N / 1.2, LOAD_N * 1.2];
+
+    fn segment_force(log: &[u8]) -> Result<SegmentedRun, Diagnostic> {
+        let text =
+            format!("{RIG}[[series]]\nfile=\"a.csv\"\nsubstrate=\"plain\"\npins=[]\nload_mass_g=2000\n");
+        segment_run(&text, "run.toml", |_| Ok::<_, std::io::Error>(log.to_vec()))
+    }
+
+    /// The weight is raised after five pulls: both levels are above the declared load.
+    #[test]
+    fn changed_weights_are_refused() {
+        let moves = [[(LEVELS_N[1], 0.5, 3.0); 5], [(1.25 * LEVELS_N[1], 0.5, 3.0); 5]].concat();
+        let error = segment_force(&force_log(&moves)).unwrap_err();
+        assert!(error.problem().contains("both above the load of 19.61 N"), "{error}");
+        assert!(error.to_string().contains("if the weight changes, add a column load_N"), "{error}");
+    }
+
+    /// The force alone shows each rest of a log with rests of different lengths.
+    #[test]
+    fn rests_of_different_lengths_are_read() {
+        for rests_s in [[1.5, 3.0, 8.0], [8.0, 1.5, 3.0]] {
+            let moves: Vec<_> = (0..6).map(|k| (LEVELS_N[k % 2], 0.5, rests_s[k % 3])).collect();
+            let run = segment_force(&force_log(&moves)).unwrap();
+            let dropped = (run.report.series[0].findings.iter())
+                .filter(|f| matches!(f, Finding::UnreadableRest { .. } | Finding::UncertainDirection { .. }))
+                .count();
+            assert_eq!(run.rows.len() + dropped, 6, "{rests_s:?}: {}", run.report.series[0]);
+            let mut end_s = 2.0;
+            let truth: Vec<(f64, f64)> = (moves.iter())
+                .map(|(level_n, on_s, rest_s)| {
+                    end_s += on_s + rest_s;
+                    (end_s, *level_n)
+                })
+                .collect();
+            for row in &run.rows {
+                let is_true = |(end_s, level_n): &(f64, f64)| {
+                    (row.time_s - end_s).abs() < 0.1 && (row.force_n / level_n - 1.0).abs() < 0.003
+                };
+                assert!(truth.iter().any(is_true), "{rests_s:?}: {row:?}");
+            }
+        }
+        let moves: Vec<_> = (0..6).map(|k| (LEVELS_N[k % 2], 0.5, [1.5, 3.0, 8.0][k % 3])).collect();
+        assert_eq!(segment_force(&force_log(&moves)).unwrap().rows.len(), 6);
+    }
+
+    /// Moves at a steady force that are longer than the rests after them look like rests.
+    #[test]
+    fn long_moves_by_force_are_refused() {
+        let moves: Vec<_> = (0..8).map(|k| (LEVELS_N[k % 2], 3.0, 1.0)).collect();
+        let error = segment_force(&force_log(&moves)).unwrap_err();
+        assert!(error.problem().starts_with("the force alone does not distinguish the rests"), "{error}");
+        assert!(error.to_string().contains("add a column position_mm or power_W"), "{error}");
+    }
+
+    /// The force alone does not show whether the actuator rests, unless `on_s` is declared.
+    #[test]
+    fn dwells_by_force_are_reported() {
+        let moves: Vec<_> = (0..6).map(|k| (LEVELS_N[k % 2], 0.5, 3.0)).collect();
+        let run = segment_force(&force_log(&moves)).unwrap();
+        assert_eq!(run.report.series[0].findings, [Finding::DwellByForce]);
+    }
+
     #[test]
     fn overlapping_logs_are_refused() {
         let entry = |file: &str| format!("[[series]]\nfile=\"{file}\"\n{PLAIN}");

@@ -168,6 +168,18 @@ fn a_slicer_ends_with_its_time_and_its_caller() {
     assert!(output.status.code() == Some(2) && text.contains("PINSWITCH_SLICER_SECONDS = never"), "{text}");
 }
 
+/// A slicer that leaves a pipe in place of its output is not waited for.
+#[test]
+fn a_pipe_is_no_output_of_a_slicer() {
+    let folder = tempfile::tempdir().unwrap();
+    let slicer = substitute_slicer(folder.path());
+    std::fs::write(&slicer, SUBSTITUTE_SLICER.replace("size=$(wc", "mkfifo \"$out\"; exit 0\nsize=$(wc"))
+        .unwrap();
+    let generate = ["generate", "three-single", "--slice", "--format", "stl", "--out", "set"];
+    let (code, output) = run(folder.path(), Some(&slicer), &generate);
+    assert!(code == Some(1) && output.contains("did not slice "), "{code:?} {output}");
+}
+
 #[test]
 fn failing_slicers_are_errors() {
     let folder = tempfile::tempdir().unwrap();

@@ -11,6 +11,9 @@ use crate::sheet::Sheet;
 
 /// Line that ends a header block.
 const END: &str = "***End_of_Header***";
+/// Absolute times are seconds since 1904 and need no start of the segment; programs also write times within the segment under
+/// the word Absolute. Those before 1936 are taken for the latter, s.
+const SINCE_1904_S: f64 = 1e9;
 /// Lines in which the separator is declared.
 const MAX_HEADER_LINES: usize = 100;
 
@@ -85,7 +88,7 @@ pub(crate) struct LvmSheet {
 pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
     let mut declared = Declared { separator: separator(text), sign: DecimalSign::Point, segment: Vec::new() };
     let mut times = Times::Computed;
-    let mut is_absolute = false;
+    let (mut is_absolute, mut first_absolute) = (false, None);
     let mut sheet = Sheet::default();
     let mut notes = Vec::new();
     let (mut names, mut segments): (Vec<String>, usize) = (Vec::new(), 0);
@@ -108,9 +111,8 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
                         .with_help("export the channels with one time column: X_Columns One"));
                 }
                 let time = segment_time(&declared, times, &cells, row_of_segment);
-                if is_absolute && row_of_segment == 0 {
-                    // Absolute times need no start of a segment.
-                    offset = session_start.get_or_insert(time).negated();
+                if is_absolute && row_of_segment == 0 && time.to_f64() > SINCE_1904_S {
+                    offset = first_absolute.get_or_insert(time).negated();
                 }
                 row_of_segment += 1;
                 let text = time.plus(offset).to_string();
@@ -157,7 +159,7 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
                 } else if found != names {
                     notes.push(format!("line {}: the segment has other columns than the first one", i + 1));
                 }
-                if let Some(start) = declared.start().filter(|_| !is_absolute) {
+                if let Some(start) = declared.start() {
                     let first = *session_start.get_or_insert(start);
                     offset = start.plus(first.negated());
                 }

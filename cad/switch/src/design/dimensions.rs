@@ -78,6 +78,12 @@ impl Dimensions {
         2.0 * (half_chord - self.configuration.segment.groove_radius_mm)
     }
 
+    /// Returns the diameter of the widest pin that fits the grooves of the shell, mm.
+    pub fn widest_pin_mm(&self) -> f64 {
+        let c = self.configuration();
+        2.0 * c.segment.groove_radius_mm - c.pins.tolerance_mm
+    }
+
     /// Returns the width of the shell beyond the outermost groove: half a land, the margin, and the
     /// stop with its gap.
     pub fn end_wall_mm(&self) -> f64 {

@@ -68,11 +68,11 @@ pub fn pin_is_sold(stock: PinStock, diameter_mm: f64) -> bool {
     all.is_empty() || all.iter().any(|d| (d - diameter_mm).abs() <= SAME_MM)
 }
 
-/// Returns the nearest diameter on sale, mm; the same one where any is.
-pub fn nearest_pin_mm(stock: PinStock, diameter_mm: f64) -> f64 {
+/// Returns the nearest diameter on sale of at most `most_mm`; `None` if none is.
+pub fn nearest_pin_mm(stock: PinStock, diameter_mm: f64, most_mm: f64) -> Option<f64> {
     let distance = |d: &f64| (d - diameter_mm).abs();
-    let nearest = stock.diameters_mm().iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.unwrap_or(diameter_mm)
+    let on_sale = stock.diameters_mm().iter().copied().filter(|d| *d <= most_mm);
+    on_sale.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 impl Coating {

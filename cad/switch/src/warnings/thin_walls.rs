@@ -81,6 +81,10 @@ impl Part {
             }
         }
         let line_mm = (50.0 * thinnest_mm).floor() / 100.0;
+        // A printer has no lines much narrower than its nozzle.
+        if line_mm < design.configuration().print.nozzle_mm {
+            return "accept the thin wall, or print with a finer nozzle".to_owned();
+        }
         format!("print lines of at most {line_mm:.2} mm (print.line_mm), or accept the thin wall")
     }
 

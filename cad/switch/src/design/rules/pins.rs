@@ -52,7 +52,7 @@ fn one_pin_per_groove(i: &Inspection<'_>) -> Assessment {
 
 fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let most = 2.0 * c.segment.groove_radius_mm - c.pins.tolerance_mm;
+    let most = i.widest_pin_mm();
     require(c.pins.diameter_mm <= most, || {
         (
             format!(

@@ -133,7 +133,10 @@ fn pins_are_sold(i: &Inspection<'_>) -> Assessment {
     advise(pin_is_sold(stock, diameter), || {
         (
             format!("process.pins = \"{}\": not sold with a diameter of {diameter} mm", stock.as_str()),
-            format!("set pins.diameter_mm to {}", nearest_pin_mm(stock, diameter)),
+            nearest_pin_mm(stock, diameter, i.widest_pin_mm()).map_or_else(
+                || "set process.pins to another kind: none of this one fits the grooves".to_owned(),
+                |on_sale| format!("set pins.diameter_mm to {on_sale}"),
+            ),
         )
     })
 }

@@ -102,7 +102,7 @@ fn thin_end_walls(i: &Inspection<'_>) -> Assessment {
     advise(end >= two_lines, || {
         (
             format!("end walls are {end:.2} mm thick, under two printed lines ({two_lines:.2} mm)"),
-            format!("raise segment.end_margin_mm by {:.2}", two_lines - end),
+            format!("raise segment.end_margin_mm by {:.2}", (100.0 * (two_lines - end)).ceil() / 100.0),
         )
     })
 }

@@ -41,8 +41,7 @@ pub(super) fn usage(design: &Design, prediction: &Prediction, manifest: &Manifes
             rows,
         ),
         Block::List(vec![
-            "Move the tendon ten times over its full stroke before you measure, to seat it."
-                .to_owned(),
+            "Move the tendon ten times over its full stroke before you measure, to seat it.".to_owned(),
             "If the friction is outside the band at every load, repeat the checks of the section before."
                 .to_owned(),
             "Replace the tendon when its coating is worn where it slides.".to_owned(),

@@ -36,8 +36,11 @@ impl Assembly<'_> {
             }
         };
         let has_f = |line: &String| line.contains("F>1") || line.contains("1<F");
-        let force =
-            if self.supports().flat_map(|s| &s.engraved).any(has_f) { " The letter `F` marks the side of the load." } else { "" };
+        let force = if self.supports().flat_map(|s| &s.engraved).any(has_f) {
+            " The letter `F` marks the side of the load."
+        } else {
+            ""
+        };
         let covered = if self.is_marked() && c.mount.kind != MountKind::None {
             " The mounting plate covers the marks; the same marks on the right support stay visible."
         } else {

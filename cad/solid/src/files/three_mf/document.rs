@@ -48,6 +48,8 @@ pub(super) struct Element {
     attributes: Vec<(Namespace, String, String)>,
     pub(super) children: Vec<Element>,
     pub(super) text: String,
+    /// Number of properties in a group of the materials extension.
+    pub(super) properties: usize,
     /// The content of a mesh of the core namespace.
     pub(super) mesh: Option<RawMesh>,
     /// Namespaces by the prefixes of the names in `name` and `requiredextensions`.
@@ -246,15 +248,14 @@ impl Builder<'_> {
             self.check_core(name);
         }
         self.check_place(&namespace, name);
-        let parent = self.open.last();
-        let in_core = |parent_name| parent.is_some_and(|parent| parent.is_core(parent_name));
+        let is_in_core = |open: &[Element], name| open.last().is_some_and(|parent| parent.is_core(name));
         if namespace == Namespace::Core {
-            if name == "vertex" && in_core("vertices") {
+            if name == "vertex" && is_in_core(&self.open, "vertices") {
                 self.vertex();
                 self.leaf = Some("vertex");
                 return Ok(false);
             }
-            if name == "triangle" && in_core("triangles") {
+            if name == "triangle" && is_in_core(&self.open, "triangles") {
                 self.triangle();
                 self.leaf = Some("triangle");
                 return Ok(false);
@@ -267,13 +268,19 @@ impl Builder<'_> {
             if let Some(problem) = problem {
                 count(&mut self.materials, problem);
             }
+            if let Some(group) = self.open.last_mut()
+                && group.namespace.is(materials::NAMESPACE)
+                && materials::property_of(&group.name) == Some(name)
+            {
+                group.properties += 1;
+            }
         }
         // Elements of extensions matter only as resources: their ids are unique there.
-        let is_kept = match parent {
+        let is_kept = match self.open.last() {
             None => true,
             Some(parent) if self.is_plain() => parent.namespace != Namespace::Core,
             Some(parent) if namespace == Namespace::Core => parent.namespace == Namespace::Core,
-            Some(_) => in_core("resources"),
+            Some(_) => is_in_core(&self.open, "resources"),
         };
         if !is_kept {
             return Ok(false);
@@ -312,7 +319,16 @@ impl Builder<'_> {
         }
         let mesh = (namespace == Namespace::Core && name == "mesh").then(RawMesh::default);
         let (name, text, children) = (name.to_owned(), String::new(), Vec::new());
-        self.open.push(Element { namespace, name, attributes, children, text, mesh, prefixes });
+        self.open.push(Element {
+            namespace,
+            name,
+            attributes,
+            children,
+            text,
+            properties: 0,
+            mesh,
+            prefixes,
+        });
         Ok(true)
     }
 

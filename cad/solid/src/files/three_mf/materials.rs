@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::document::{Element, Namespace};
 use super::findings::Findings;
-use super::value::resource_id;
+use super::value::{is_number, resource_id};
 
 /// Namespace of the materials extension.
 pub(super) const NAMESPACE: &str = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
@@ -22,6 +22,22 @@ const REQUIRED: [(&str, &[&str]); 9] = [
     ("texture2d", &["id", "path", "contenttype"]),
 ];
 
+/// How a texture continues beyond its edges (chapter 6.1).
+const TILE_STYLES: [&str; 4] = ["wrap", "mirror", "clamp", "none"];
+
+/// Groups of properties with the element of each property (chapters 2 to 5).
+const GROUPS: [(&str, &str); 4] = [
+    ("colorgroup", "color"),
+    ("texture2dgroup", "tex2coord"),
+    ("compositematerials", "composite"),
+    ("multiproperties", "multi"),
+];
+
+/// Returns the element of a property of a group; `None` if the element is no group.
+pub(super) fn property_of(group: &str) -> Option<&'static str> {
+    GROUPS.iter().find(|(name, _)| *name == group).map(|(_, property)| *property)
+}
+
 /// Returns what is wrong with the attributes of an element of the extension.
 pub(super) fn problem<'a>(element: &str, value: impl Fn(&str) -> Option<&'a str>) -> Option<String> {
     let (_, required) = REQUIRED.iter().find(|(name, _)| *name == element)?;
@@ -31,6 +47,13 @@ pub(super) fn problem<'a>(element: &str, value: impl Fn(&str) -> Option<&'a str>
     let color = value("color").filter(|_| element == "color");
     if color.is_some_and(|color| !is_color(color)) {
         return Some("a color is not #RRGGBB or #RRGGBBAA".to_owned());
+    }
+    if element == "tex2coord" && ["u", "v"].into_iter().filter_map(&value).any(|text| !is_number(text)) {
+        return Some("a texture coordinate is not a number".to_owned());
+    }
+    let tiles = || ["tilestyleu", "tilestylev"].into_iter().filter_map(&value);
+    if element == "texture2d" && tiles().any(|style| !TILE_STYLES.contains(&style)) {
+        return Some("a tile style is not wrap, mirror, clamp or none".to_owned());
     }
     let content_type = value("contenttype").filter(|_| element == "texture2d");
     content_type
@@ -57,6 +80,10 @@ pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
     for element in resources.children.iter().filter(is_extension) {
         let kind_of =
             |name: &str| element.attribute(name).map(|id| kinds.get(&resource_id(id)).map(String::as_str));
+        if let Some(property) = property_of(&element.name).filter(|_| element.properties == 0) {
+            let detail = format!("<{}> without a <{property}>", element.name);
+            findings.error("materials", "3MF materials 2 to 5", &detail);
+        }
         match element.name.as_str() {
             "texture2dgroup" if kind_of("texid").is_some_and(|kind| kind != Some("texture2d")) => {
                 findings.error("materials", "3MF materials 3", "texid refers to no <texture2d>");

@@ -138,11 +138,11 @@ impl ModelReader {
     fn resources(&mut self, model: &mut Model, resources: &mut Element, part: &str, unit_mm: f64) {
         self.check_ids(resources);
         materials::check_references(resources, &mut self.findings);
-        let groups: HashMap<String, usize> = resources
+        let groups: HashMap<String, Group> = resources
             .children
             .iter()
             .filter(|child| !child.is_core("object"))
-            .filter_map(|child| Some((resource_id(child.attribute("id")?), child.core("base").count())))
+            .filter_map(|child| Some((resource_id(child.attribute("id")?), Group::of(child))))
             .collect();
         self.check_materials(resources);
         for object in resources.children.iter_mut().filter(|child| child.is_core("object")) {
@@ -460,7 +460,7 @@ impl ModelReader {
     }
 
     /// Reports properties of an object that refer to no group.
-    fn check_properties(&mut self, object: &Element, groups: &HashMap<String, usize>) {
+    fn check_properties(&mut self, object: &Element, groups: &HashMap<String, Group>) {
         let id = object.attribute("id").unwrap_or_default();
         let (pid, pindex) = (object.attribute("pid"), object.attribute("pindex"));
         let meshes = || object.core("mesh").filter_map(|mesh| mesh.mesh.as_ref());
@@ -482,29 +482,49 @@ impl ModelReader {
                 self.findings.error("property", "3MF core 4", &detail);
             }
         }
-        let bases = pid.and_then(|pid| groups.get(&resource_id(pid))).filter(|bases| **bases > 0);
+        let size = pid.and_then(|pid| groups.get(&resource_id(pid))?.size);
         let index = pindex.and_then(index).map(|index| index as usize);
-        if let (Some(bases), Some(index)) = (bases, index)
-            && index >= *bases
+        if let (Some(size), Some(index)) = (size, index)
+            && index >= size
         {
-            let detail = format!("object {id} has the material {index} of a group of {bases}");
+            let detail = format!("object {id} has the property {index} of a group of {size}");
             self.findings.error("property", "3MF core 4", &detail);
         }
         for TriangleProperties { pid: of_triangle, greatest, gradients } in uses() {
             let group = of_triangle.as_deref().or(pid).and_then(|pid| groups.get(&resource_id(pid)));
-            // The sizes of groups of extensions are unknown.
-            let Some(bases) = group.filter(|bases| **bases > 0) else { continue };
-            if *greatest as usize >= *bases {
+            let Some(group) = group else { continue };
+            if let Some(size) = group.size.filter(|size| *greatest as usize >= *size) {
                 let detail =
-                    format!("a triangle of object {id} has the material {greatest} of a group of {bases}");
+                    format!("a triangle of object {id} has the property {greatest} of a group of {size}");
                 self.findings.error("property", "3MF core 4.1.4.1", &detail);
             }
-            if *gradients > 0 {
+            if *gradients > 0 && group.is_base {
                 let detail =
                     format!("{gradients} triangles of object {id} have a gradient of base materials");
                 self.findings.add("property", Level::Error, *gradients, "3MF core 4.1.4.1", &detail);
             }
         }
+    }
+}
+
+/// A group of properties to which objects and triangles refer.
+struct Group {
+    /// Number of properties; `None` in a group of an extension that is not read.
+    size: Option<usize>,
+    /// Whether it has base materials, which have no gradients.
+    is_base: bool,
+}
+
+impl Group {
+    fn of(resource: &Element) -> Self {
+        let is_base = resource.is_core("basematerials");
+        let size = if is_base {
+            Some(resource.core("base").count())
+        } else {
+            let is_read = resource.namespace.is(materials::NAMESPACE);
+            materials::property_of(&resource.name).filter(|_| is_read).map(|_| resource.properties)
+        };
+        Self { size, is_base }
     }
 }
 

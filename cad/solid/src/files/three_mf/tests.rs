@@ -451,15 +451,29 @@ fn resources_of_the_materials_extension_are_checked() {
     for resources in [
         colors.replace(r##" color="#FF0000""##, ""),
         colors.replace("#FF0000", "red"),
-        format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="7 7"/>"#),
-        format!(r#"{BASE}<m:multiproperties id="8" pids="5 5"/>"#),
+        format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="7 7"><m:multi pindices="0 0"/></m:multiproperties>"#),
+        format!(r#"{BASE}<m:multiproperties id="8" pids="5 5"><m:multi pindices="0 0"/></m:multiproperties>"#),
         r#"<m:texture2d id="9" path="/a.gif" contenttype="image/gif"/>"#.to_owned(),
-        format!(r#"{colors}<m:texture2dgroup id="8" texid="7"/>"#),
-        format!(r#"{colors}<m:compositematerials id="8" matid="7" matindices="0"/>"#),
+        format!(r#"{colors}<m:texture2dgroup id="8" texid="7"><m:tex2coord u="0" v="0"/></m:texture2dgroup>"#),
+        format!(r#"{colors}<m:compositematerials id="8" matid="7" matindices="0"><m:composite values="1"/></m:compositematerials>"#),
+        r#"<m:colorgroup id="7"/>"#.to_owned(),
+        r#"<m:texture2d id="9" path="/a.png" contenttype="image/png" tilestyleu="foo"/>"#.to_owned(),
+        r#"<m:texture2d id="9" path="/a.png" contenttype="image/png"/><m:texture2dgroup id="8" texid="9"><m:tex2coord u="x" v="0"/></m:texture2dgroup>"#.to_owned(),
     ] {
         assert_eq!(checks(&with(&resources)), ["materials"], "{resources}");
     }
     assert_eq!(checks(&with(&colors.replace("7", "1"))), ["reference"], "the id of the object");
+    // An index beyond the only color of the group, of a triangle or of the object.
+    let namespace = format!(r#"xmlns:m="{}""#, super::materials::NAMESPACE);
+    let colored = |id: &str, triangle: &str| {
+        let object =
+            object(1).replace(r#"id="1""#, id).replacen("<triangle ", &format!("<triangle {triangle} "), 1);
+        checks(&read(&model_of(&namespace, "", &(colors.to_owned() + &object), item))).join(" ")
+    };
+    let object_color = r#"id="1" pid="7" pindex="0""#;
+    assert_eq!(colored(object_color, r#"pid="7" p1="0""#), "");
+    assert_eq!(colored(object_color, r#"pid="7" p1="1""#), "property");
+    assert_eq!(colored(r#"id="1" pid="7" pindex="3""#, ""), "property");
 }
 
 /// Endless zeros and crowds of entries are refused before they are read.

@@ -30,8 +30,30 @@ pub(super) fn proposals(problem: &Problem<'_>) -> Vec<Configuration> {
     }
     if found.is_empty() {
         found.extend(verified(problem, combined));
+    } else if !found.iter().any(|c| keeps_choices(problem.start, c)) {
+        // What the user chose, such as a joint, is kept where two numbers are enough.
+        let pair = verified(problem, |problem| paired(problem, numbers(problem)));
+        found.splice(0..0, pair);
+        found.truncate(MAX_ALTERNATIVES);
     }
     found
+}
+
+/// Whether only numbers and lists differ: kinds and names say what the user wants.
+fn keeps_choices(start: &Configuration, c: &Configuration) -> bool {
+    differing(start, c).all(is_numeric)
+}
+
+fn is_numeric(parameter: &Parameter<Configuration>) -> bool {
+    let value = (parameter.get)(&Configuration::default());
+    number(&value).is_some() || value.is_array()
+}
+
+/// The lines of numbers and lists.
+fn numbers(problem: &Problem<'_>) -> Vec<Line> {
+    let is_numeric =
+        |line: &&Line| Configuration::PARAMETERS.iter().any(|p| p.path() == line.field() && is_numeric(p));
+    problem.lines.iter().filter(is_numeric).cloned().collect()
 }
 
 /// All lines of a parameter that departs from its default: back to it, and in every other direction.
@@ -104,7 +126,10 @@ fn verified(
 /// The nearest configuration that changes several parameters.
 fn combined(problem: &Problem<'_>) -> Option<Configuration> {
     let restored = restored(problem);
-    let pair = paired(problem, restored.as_ref());
+    let changed = restored.as_ref().map_or_else(Vec::new, |c| differing(problem.start, c).collect());
+    let mut lines: Vec<Line> = changed.into_iter().flat_map(|p| problem.back(p)).collect();
+    lines.extend(problem.lines.iter().cloned());
+    let pair = paired(problem, lines);
     let nearer = |c: &Configuration| Distance::new(problem.start, c);
     match (restored, pair) {
         (Some(restored), Some(pair)) => Some(if nearer(&pair) < nearer(&restored) { pair } else { restored }),
@@ -155,14 +180,10 @@ fn take_over(problem: &Problem<'_>, c: &mut Configuration, parameters: &[&'stati
     }
 }
 
-/// Returns the nearest configuration that changes two parameters along the lines of the broken
-/// rules, or of the parameters that `restored` changed. The search uses only the rules, since there
-/// are too many pairs to build parts for each.
-fn paired(problem: &Problem<'_>, restored: Option<&Configuration>) -> Option<Configuration> {
+/// Returns the nearest configuration that changes two parameters along the first of `lines`. The search uses only the rules,
+/// since there are too many pairs to build parts for each.
+fn paired(problem: &Problem<'_>, mut lines: Vec<Line>) -> Option<Configuration> {
     let start = problem.start;
-    let changed = restored.map_or_else(Vec::new, |c| differing(start, c).collect());
-    let mut lines: Vec<Line> = changed.into_iter().flat_map(|p| problem.back(p)).collect();
-    lines.extend(problem.lines.iter().cloned());
     lines.truncate(MAX_PAIRED_LINES);
     let satisfies_rules = |c: &Configuration| is_accepted(c.clone());
     let mut pairs: Vec<(Distance, Configuration, [&Line; 2])> = Vec::new();

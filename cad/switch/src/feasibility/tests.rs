@@ -268,3 +268,22 @@ fn recesses_are_kept_where_they_fit() {
     let repaired = with_changes(&c, &error);
     assert!(!Dimensions::new(repaired).lacks_recesses(), "{error}");
 }
+
+/// Two changed numbers are nearer to what the user wants than another kind of mount.
+#[test]
+fn a_choice_is_kept_where_two_numbers_are_enough() {
+    for assignments in [
+        &["layout.pins=[5, 8, 11]", "mount.kind=joint", "mount.proximal_mm=10", "mount.distal_mm=10"][..],
+        &[
+            "layout.pins=[5, 8, 11]",
+            "mount.kind=joint",
+            "mount.flexion_min_deg=150",
+            "mount.flexion_max_deg=10",
+        ],
+    ] {
+        let c = with_all(assignments);
+        let proposal = repair(&c).unwrap().unwrap();
+        assert_eq!(proposal.configuration.mount.kind, c.mount.kind, "{assignments:?} {:?}", proposal.changes);
+        assert!(build(Design::new(proposal.configuration).unwrap()).is_ok(), "{assignments:?}");
+    }
+}

@@ -168,6 +168,35 @@ fn a_slicer_ends_with_its_time_and_its_caller() {
     assert!(output.status.code() == Some(2) && text.contains("PINSWITCH_SLICER_SECONDS = never"), "{text}");
 }
 
+/// What a slicer starts in a session of its own ends with it, and with a caller that is killed.
+#[test]
+fn a_session_of_its_own_does_not_survive() {
+    let folder = tempfile::tempdir().unwrap();
+    let slicer = substitute_slicer(folder.path());
+    let script = SUBSTITUTE_SLICER.replace("size=$(wc", "setsid sleep 98761 & sleep 98762\nsize=$(wc");
+    std::fs::write(&slicer, script).unwrap();
+    let command = |out: &str| {
+        let mut command = binary();
+        command.args(["generate", "three-single", "--slice", "--format", "stl", "--out", out]);
+        command.current_dir(folder.path()).env("PINSWITCH_SLICER", &slicer);
+        command
+    };
+    let output = command("timed").env("PINSWITCH_SLICER_SECONDS", "1.5").output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!is_running("98761"), "it has survived the time limit");
+    let becomes = |wanted: bool| {
+        (0..600).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            is_running("98761") == wanted
+        })
+    };
+    let mut caller = command("killed").spawn().unwrap();
+    assert!(becomes(true));
+    caller.kill().unwrap();
+    caller.wait().unwrap();
+    assert!(becomes(false), "it has survived the caller");
+}
+
 /// A slicer that leaves a pipe in place of its output is not waited for.
 #[test]
 fn a_pipe_is_no_output_of_a_slicer() {

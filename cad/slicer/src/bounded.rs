@@ -65,7 +65,7 @@ pub(crate) fn run(
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Group(command.spawn().map_err(RunError::Io)?);
     // Open until the end: the supervisor ends the program when it is closed.
-    let _open = child.0.stdin.take();
+    let open = child.0.stdin.take();
     let pipes = (child.0.stdout.take(), child.0.stderr.take());
     let printed = Arc::new(AtomicU64::new(0));
     let keep = |pipe: Option<Box<dyn Read + Send>>| {
@@ -77,8 +77,12 @@ pub(crate) fn run(
     let output = keep(pipes.0.map(|pipe| Box::new(pipe) as _));
     let errors = keep(pipes.1.map(|pipe| Box::new(pipe) as _));
     let ended = wait(&mut child.0, &printed, written, limits);
-    // Also what the program has started: it would keep the pipes open. What has left the process group may keep them
-    // open all the same, and is not waited for.
+    // Also what the program has started: it would keep the pipes open. The supervisor ends what has left the process group;
+    // without one, that is not waited for.
+    drop(open);
+    if !supervisor.is_empty() {
+        child.end_within(MESSAGE_TIME);
+    }
     drop(child);
     let [output, errors] = [output, errors].map(|kept| kept.recv_timeout(MESSAGE_TIME).unwrap_or_default());
     let message = if errors.trim_ascii().is_empty() { output } else { errors };
@@ -101,6 +105,16 @@ fn supervised(command: &Command, supervisor: &[PathBuf]) -> Command {
 
 /// A running program; dropping it ends it and everything that it has started in its group.
 struct Group(Child);
+
+impl Group {
+    /// Waits until the program has ended, but not longer.
+    fn end_within(&mut self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time && matches!(self.0.try_wait(), Ok(None)) {
+            std::thread::sleep(FIRST_INTERVAL);
+        }
+    }
+}
 
 impl Drop for Group {
     fn drop(&mut self) {
@@ -161,15 +175,48 @@ fn last_bytes(pipe: Option<Box<dyn Read + Send>>, printed: &AtomicU64) -> Vec<u8
 /// # Errors
 /// If the program cannot be started.
 pub fn supervise(program: &Path, arguments: &[std::ffi::OsString]) -> Result<i32> {
+    // What the program starts and leaves becomes a child of this process, also in a session of its own.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::set_child_subreaper(Some(rustix::process::getpid()));
     let mut child = Command::new(program).args(arguments).stdin(Stdio::null()).spawn()?;
     std::thread::spawn(|| {
         let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+        #[cfg(target_os = "linux")]
+        end_children();
         #[cfg(unix)]
         let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);
         std::process::exit(1);
     });
     // A signal ends a program without a code.
-    Ok(child.wait()?.code().unwrap_or(1))
+    let code = child.wait()?.code().unwrap_or(1);
+    #[cfg(target_os = "linux")]
+    end_children();
+    Ok(code)
+}
+
+/// Most generations of processes that are ended: each end gives this process the children of the ended one.
+#[cfg(target_os = "linux")]
+const MAX_GENERATIONS: usize = 100;
+
+/// Ends all children of this process, and those that they leave to it.
+#[cfg(target_os = "linux")]
+fn end_children() {
+    use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
+    for _ in 0..MAX_GENERATIONS {
+        let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+        let children: Vec<Pid> = threads
+            .filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok())
+            .flat_map(|list| list.split_whitespace().filter_map(|id| id.parse().ok()).collect::<Vec<i32>>())
+            .filter_map(Pid::from_raw)
+            .collect();
+        if children.is_empty() {
+            return;
+        }
+        for child in children {
+            let _ = kill_process(child, Signal::KILL);
+            let _ = waitpid(Some(child), WaitOptions::empty());
+        }
+    }
 }
 
 #[cfg(unix)]

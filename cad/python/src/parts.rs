@@ -118,8 +118,10 @@ impl Parts {
         let built = Arc::clone(&self.built);
         let prediction = Prediction { curve: curve.curve().clone(), others: curve.others().to_vec() };
         let set = task::run(py, None, move |_| -> Result<Set, Diagnostic> {
-            let names =
-                formats.as_ref().map_or_else(default_names, |all| all.iter().map(String::as_str).collect());
+            let names: Vec<&str> = match &formats {
+                Some(all) => all.iter().map(String::as_str).collect(),
+                None => default_names(),
+            };
             let set = Set::new(&built, &prediction, &named(&names)?)?;
             Ok(set.made_from(SourceEntry::new(source))?)
         })?;

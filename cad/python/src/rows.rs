@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use numpy::PyArray1;
 use pinswitch::batch::{ConfigurationTable, CurveJob, RowOutcome, predict_table};
 use pinswitch::diagnostic::Diagnostic;
-use pinswitch::friction::{FrictionCurve, PredictionStatus, Transition};
+use pinswitch::friction::{FrictionCurve, Transition};
 use pinswitch::store::LockPolicy;
 use pinswitch::switch::design::Design;
 use pinswitch::switch::prediction::loads_n;

@@ -17,7 +17,7 @@ impl Assembly<'_> {
             (true, false) => {
                 let label = &c.label.text;
                 let label = if label.is_empty() {
-                    format!("the label of the layout ({})", layout_text(c))
+                    format!("the label `{}` of the layout ({})", self.design().label(), layout_text(c))
                 } else {
                     format!("the label `{label}`")
                 };

@@ -104,7 +104,7 @@ export async function searchByEnter(visit, site, { findings }) {
   await visit.page.keyboard.press('Enter');
   await visit.page.waitForSelector('#designs .design', { timeout: SLOW_MS });
   const cards = await visit.text('#designs');
-  findings.check('the designs say what is uncertain', /Uncertain from: /.test(cards), cards);
+  findings.check('the designs say what is uncertain', /Sources of uncertainty: /.test(cards), cards);
   await visit.check('the result is in view', () => { const r = document.querySelector('#results').getBoundingClientRect(); return r.top < innerHeight && r.bottom > 0; });
   await visit.type('#target-threshold', '49');
   await visit.click('#add-friction');

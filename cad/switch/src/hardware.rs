@@ -111,7 +111,7 @@ impl HardwareKind {
         }
     }
 
-    /// Returns whether the body belongs to the stand of the rig: feet, cell, drive and load.
+    /// Returns whether the body is a part of the rig outside of the switch: feet, cell, drive or load.
     pub(crate) const fn is_of_stand(self) -> bool {
         matches!(
             self,

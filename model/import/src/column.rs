@@ -4,6 +4,7 @@ use pinswitch_friction::Direction;
 
 use crate::clock::{self, DateOrder};
 use crate::decimal::Decimal;
+use crate::direction_words;
 use crate::header::Header;
 use crate::map::Map;
 use crate::name;
@@ -101,7 +102,7 @@ fn cells(sheet: &Sheet, header: &Header, column: usize) -> Cells {
     let mut kinds = Cells::default();
     for row in (header.first_data..sheet.len()).take(SAMPLE_ROWS) {
         let cell = sheet.cell(row, column);
-        if vocabulary::direction(cell).is_some() {
+        if direction_words::direction(cell).is_some() {
             kinds.directions += 1;
         }
         if is_missing(cell) {

@@ -26,6 +26,7 @@ mod clock;
 mod column;
 mod decimal;
 mod dialect;
+mod direction_words;
 mod encoding;
 mod file;
 mod header;

@@ -4,12 +4,12 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
 
 use crate::decimal::Decimal;
+use crate::direction_words;
 use crate::file::FileReading;
 use crate::map::Map;
 use crate::quantity::Quantity;
 use crate::question::Question;
 use crate::times::times;
-use crate::vocabulary;
 
 /// The columns of a log, one value for each sample.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,7 +136,7 @@ pub(crate) fn build(
     });
     if let Some(column) = file.column(Quantity::Direction) {
         let cell = |row: &usize| file.recording.sheet.cell(*row, column.index);
-        let of = |word: &str| map.directions.get(word).copied().or_else(|| vocabulary::direction(word));
+        let of = |word: &str| map.directions.get(word).copied().or_else(|| direction_words::direction(word));
         if let Some(unknown) = used.iter().map(cell).find(|word| !word.is_empty() && of(word).is_none()) {
             questions.push(crate::table::unknown_direction(unknown));
         }

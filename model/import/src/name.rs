@@ -3,10 +3,11 @@
 use pinswitch_friction::Direction;
 
 use crate::decimal::Decimal;
+use crate::direction_words::direction_in_name;
 use crate::number::{self, DecimalSign, SignEvidence, sign_evidence};
 use crate::quantity::Quantity;
 use crate::unit::{Dimension, Unit};
-use crate::vocabulary::{direction_in_name, quantities, words};
+use crate::vocabulary::{quantities, words};
 
 /// What the name of a column shows.
 #[derive(Clone, Debug, Default, PartialEq)]

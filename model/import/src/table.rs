@@ -7,6 +7,7 @@ use pinswitch_measurements::table::push_line;
 
 use crate::column::{Column, reference};
 use crate::decimal::Decimal;
+use crate::direction_words;
 use crate::file::FileReading;
 use crate::map::Map;
 use crate::number;
@@ -14,7 +15,6 @@ use crate::quantity::Quantity;
 use crate::question::Question;
 use crate::times::times;
 use crate::unit::{Dimension, NEWTON_PER_GRAM};
-use crate::vocabulary;
 
 /// Columns of a plateau table in the order in which they are written.
 const COLUMNS: [Quantity; 18] = [
@@ -254,7 +254,7 @@ fn direction_words(
     };
     for (word, direction) in &mut words {
         *direction =
-            decided(word).map(|d| (d, true)).or_else(|| vocabulary::direction(word).map(|d| (d, false)));
+            decided(word).map(|d| (d, true)).or_else(|| direction_words::direction(word).map(|d| (d, false)));
     }
     // Of two words, the other one has the other direction; the forces must agree with it.
     if words.len() == 2 {

@@ -39,7 +39,7 @@ pub(super) fn proposals(problem: &Problem<'_>) -> Vec<Configuration> {
     found
 }
 
-/// Whether only numbers and lists differ: kinds and names say what the user wants.
+/// Whether only numbers and lists differ, so that the kinds and names that the user chose are unchanged.
 fn keeps_choices(start: &Configuration, c: &Configuration) -> bool {
     differing(start, c).all(is_numeric)
 }

@@ -42,7 +42,7 @@ impl Measured {
         ));
         let hardness = self.hardness_to_cast(design, planned);
         // The hardness makes up for the thickness: who changes both is off by as much again.
-        let or = if hardness.is_some() { "or, with the hardness as it is, " } else { "" };
+        let or = if hardness.is_some() { "or, with an unchanged hardness, " } else { "" };
         advice.extend(hardness);
         if let Some(thickness) = self.mean(THICKNESS) {
             let wanted = design.configuration().silicone.thickness_mm;

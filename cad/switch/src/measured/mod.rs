@@ -132,7 +132,7 @@ pub fn json_schema() -> serde_json::Value {
     schema
 }
 
-/// Mean of readings, of which there is one at least.
+/// Mean of at least one reading.
 fn mean(readings: &[f64]) -> f64 {
     readings.iter().sum::<f64>() / readings.len() as f64
 }

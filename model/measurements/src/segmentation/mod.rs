@@ -1,7 +1,7 @@
 //! Segmentation of raw logs into one row per repetition (`model/doc/logs.md`).
 //!
 //! Imports run downwards: `run` uses `plateaus`, which uses `defects`, `moves`, `cycles` and `direction`,
-//! which use `log`, `change_points` and `two_levels`.
+//! which use `log`, `change_points`, `steady_force` and `two_levels`.
 
 mod change_points;
 mod clock;
@@ -15,6 +15,7 @@ mod plateaus;
 mod run;
 mod run_plan;
 mod segmented;
+mod steady_force;
 mod two_levels;
 
 pub use direction::Protocol;

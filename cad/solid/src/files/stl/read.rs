@@ -88,7 +88,7 @@ impl Head {
     }
 
     /// Whether the file is an ASCII STL. A binary header may begin with `solid`, too; then the file is exactly as long as the
-    /// header announces, or its count is the greatest number, which is no text.
+    /// header announces, or its count is the greatest number, whose bytes are not text.
     fn is_ascii(&self) -> bool {
         let is_streamed =
             self.announced().is_some_and(|(facets, _)| facets == u32::MAX) && self.uncounted().is_some();

@@ -33,7 +33,7 @@ const GROUPS: [(&str, &str); 4] = [
     ("multiproperties", "multi"),
 ];
 
-/// Returns the element of a property of a group; `None` if the element is no group.
+/// Returns the element of a property of a group; `None` for another element.
 pub(super) fn property_of(group: &str) -> Option<&'static str> {
     GROUPS.iter().find(|(name, _)| *name == group).map(|(_, property)| *property)
 }

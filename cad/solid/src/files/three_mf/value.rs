@@ -105,7 +105,7 @@ pub(super) fn problem(element: &str, attribute: &str, value: &str) -> Option<&'s
     }
 }
 
-/// An id of a resource as it is compared: `01` and `+1` are 1 (`xs:positiveInteger`).
+/// Returns the id of a resource in the form that is compared: `01` and `+1` are 1 (`xs:positiveInteger`).
 pub(super) fn resource_id(text: &str) -> String {
     let text = text.trim();
     text.parse::<u32>().map_or_else(|_| text.to_owned(), |number| number.to_string())

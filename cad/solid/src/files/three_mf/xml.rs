@@ -244,7 +244,7 @@ impl<'a> XmlReader<'a> {
         }
     }
 
-    /// Refuses what is no character of XML, such as a byte 01.
+    /// Refuses characters that XML does not allow, such as a byte 01.
     fn refuse_characters(&self, text: &str) -> Result<(), XmlError> {
         // Nearly all texts are of ASCII: bytes are faster than characters.
         let is_plain =

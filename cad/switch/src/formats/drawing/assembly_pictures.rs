@@ -38,7 +38,7 @@ pub(super) struct Picture {
 /// Returns the exploded and the isometric view of these bodies with the bought hardware.
 pub(super) fn pictures(built: &Built, bodies: &[(&Part, Pose)]) -> Vec<Picture> {
     let design = built.design();
-    // The stand is not on the sheet: the switch would be too small.
+    // The sheet omits the stand: with it, the switch would be too small.
     let bought: Vec<Hardware> =
         hardware(design).into_iter().filter(|body| !body.kind.is_of_stand()).collect();
     let has_mount = bodies.iter().any(|(part, _)| part.role == Role::Mount);

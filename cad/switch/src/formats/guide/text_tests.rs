@@ -57,7 +57,7 @@ fn the_tendon_is_over_pins_within_the_wrap() {
     assert!(!guide("[layout]\npins = [5, 8, 11]\n").contains("outside the wrap"));
 }
 
-/// The guide has the label as it is engraved, with the grooves that it means.
+/// The guide quotes the engraved label, with the grooves that it means.
 #[test]
 fn steps_list_grooves_with_pins() {
     let uneven = guide("[layout]\npins = [4, 5, 14]\n");

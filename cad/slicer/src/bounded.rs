@@ -188,10 +188,10 @@ pub fn supervise(program: &Path, arguments: &[std::ffi::OsString]) -> Result<i32
         std::process::exit(1);
     });
     // A signal ends a program without a code.
-    let code = child.wait()?.code().unwrap_or(1);
+    let ended = child.wait();
     #[cfg(target_os = "linux")]
     end_children();
-    Ok(code)
+    Ok(ended?.code().unwrap_or(1))
 }
 
 /// Most generations of processes that are ended: each end gives this process the children of the ended one.

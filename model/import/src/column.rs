@@ -17,7 +17,7 @@ use crate::vocabulary;
 
 /// Rows in which the kind of a column's cells is examined.
 const SAMPLE_ROWS: usize = 500;
-/// Shortest time between two samples that is assumed to be in seconds: that of 10 kHz, less rounding. Days, as spreadsheets
+/// Shortest usual time between two samples that is assumed to be in seconds: that of 10 kHz, less rounding. Days, as spreadsheets
 /// count them, have shorter ones.
 const SHORTEST_STEP_S: f64 = 0.99e-4;
 /// Largest wrap angle in radians: two revolutions.
@@ -148,6 +148,7 @@ pub(crate) fn assign(
     remove_averages(&mut columns);
     remove_duplicates(&mut columns, questions);
     ask_for_loads(&columns, map, questions);
+    count_from_one(&mut columns);
     ask_for_numbers(&columns, map, questions);
     let forces = columns.iter().filter(|column| column.quantity == Quantity::Force).count();
     for column in &mut columns {
@@ -196,9 +197,7 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         is_decided: choice.quantity.is_some(),
         has_factor: choice.factor.is_some(),
     };
-    if column.quantity == Quantity::Force
-        && !column.is_decided
-        && vocabulary::is_spread(&vocabulary::words(name))
+    if column.quantity == Quantity::Force && !column.is_decided && vocabulary::is_spread(name, &header.names)
     {
         column.ignore("the spread of readings");
     }
@@ -303,7 +302,7 @@ fn remove_averages(columns: &mut [Column]) {
             c.angle.map(|a| a.to_string()),
         )
     };
-    let is_average = |c: &Column| vocabulary::is_average(&vocabulary::words(&c.name));
+    let is_average = |c: &Column| vocabulary::is_average(&c.name);
     let singles: Vec<_> = columns
         .iter()
         .filter(|c| c.quantity == Quantity::Force && c.repetition.is_some() && !is_average(c))
@@ -336,7 +335,17 @@ fn ask_for_loads(columns: &[Column], map: &Map, questions: &mut Vec<Question>) {
     ));
 }
 
-/// The numbers in the names of the columns of a wide table count trials from 0 or 1 on; others may be wrap angles.
+/// Trials that are numbered from 0 on without a gap are the first, the second, and so on.
+fn count_from_one(columns: &mut [Column]) {
+    let is_numbered = |c: &&mut Column| c.quantity == Quantity::Force && c.repetition.is_some();
+    let numbers: std::collections::BTreeSet<u32> =
+        columns.iter_mut().filter(is_numbered).filter_map(|c| c.repetition).collect();
+    if numbers.iter().zip(0..).all(|(number, expected)| *number == expected) {
+        columns.iter_mut().filter(is_numbered).for_each(|c| c.repetition = c.repetition.map(|n| n + 1));
+    }
+}
+
+/// The numbers in the names of the columns of a wide table count trials from 1 on; others may be wrap angles.
 fn ask_for_numbers(columns: &[Column], map: &Map, questions: &mut Vec<Question>) {
     let numbered: Vec<(&Column, u32)> = columns
         .iter()
@@ -348,20 +357,26 @@ fn ask_for_numbers(columns: &[Column], map: &Map, questions: &mut Vec<Question>)
         .filter_map(|c| Some((c, c.repetition?)))
         .collect();
     let numbers: std::collections::BTreeSet<u32> = numbered.iter().map(|(_, number)| *number).collect();
-    let counts_from = |first: u32| numbers.iter().zip(first..).all(|(number, expected)| *number == expected);
-    if numbers.len() < 2 || counts_from(0) || counts_from(1) {
+    let is_counted = numbers.iter().zip(1..).all(|(number, expected)| *number == expected);
+    if numbers.len() < 2 || is_counted {
         return;
     }
     let shown: Vec<String> = numbers.iter().map(u32::to_string).collect();
-    let options = |key: &str| {
-        let each = numbered.iter().map(|(column, number)| format!("{key}.{}={number}", reference(column)));
+    let options = |key: &str, value: &dyn Fn(u32) -> usize| {
+        let each =
+            numbered.iter().map(|(column, number)| format!("{key}.{}={}", reference(column), value(*number)));
         each.collect::<Vec<_>>().join("\n")
     };
+    // Trials count from 1.
+    let rank = |number: u32| 1 + numbers.iter().filter(|other| **other < number).count();
     questions.push(Question::new(
         format!("the numbers {} in the names of columns", shown.join(", ")),
         [
-            ("they are wrap angles in degrees".to_owned(), options("wrap_angle_deg")),
-            ("they are trials".to_owned(), options("repetition")),
+            (
+                "they are wrap angles in degrees".to_owned(),
+                options("wrap_angle_deg", &|number| number as usize),
+            ),
+            ("they are trials".to_owned(), options("repetition", &rank)),
         ],
     ));
 }
@@ -532,8 +547,11 @@ fn assumed_unit(column: &Column, sheet: &Sheet, header: &Header) -> Option<&'sta
         // No load cell has a sample every 0.1 ms and writes fractions of milliseconds.
         Quantity::Time => {
             let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
+            let mut sorted = steps.clone();
+            sorted.sort_by(f64::total_cmp);
+            let usual = sorted.get(sorted.len() / 2);
             let is_seconds =
-                !steps.is_empty() && steps.iter().all(|step| (SHORTEST_STEP_S..1.0).contains(step));
+                usual.is_some_and(|step| *step >= SHORTEST_STEP_S) && steps.iter().all(|step| *step < 1.0);
             if is_seconds { Unit::parse("s") } else { None }
         }
         _ => None,

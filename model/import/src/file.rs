@@ -7,16 +7,22 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use crate::clock::{self, DateOrder};
 use crate::column::{self, Column};
 use crate::decimal::Decimal;
+use crate::direction_words;
 use crate::header::{self, Header};
 use crate::map::{Kind, Map};
 use crate::number::{self, DecimalSign, SignEvidence, is_missing};
 use crate::quantity::Quantity;
 use crate::question::Question;
 use crate::recording::Recording;
+use crate::unit::NEWTON_PER_GRAM;
 use crate::vocabulary;
 
 /// Cells with the same evidence, after which only cells that may contradict it are examined.
 const ENOUGH_EVIDENCE: usize = 1_000;
+/// Rows in which the names of a column are looked for.
+const NAME_ROWS: usize = 500;
+/// Share by which a cell and a constant may differ from rounding in another unit.
+const SAME_SHARE: f64 = 1e-6;
 /// Share of the rows of a log that may be unusable.
 const MAX_BAD_SHARE: f64 = 0.01;
 /// Rows of a table with times above which it may be a log.
@@ -341,11 +347,11 @@ impl FileReading {
                 _ => Quantity::of_table_column(key).into_iter().collect(),
             };
             let full = self.columns.iter().find(|column| {
-                let cell = |row: &usize| self.recording.sheet.cell(*row, column.index);
+                let is_cell_missing = |row: &usize| is_missing(self.recording.sheet.cell(*row, column.index));
                 quantities.contains(&column.quantity)
                     && !self.rows.is_empty()
-                    && !self.rows.iter().any(|row| is_missing(cell(row)))
-                    && self.rows.iter().any(|row| cell(row) != value)
+                    && !self.rows.iter().any(is_cell_missing)
+                    && !self.rows.iter().all(|row| self.is_constant(*row, column, key, value))
             });
             if let Some(column) = full {
                 let help = format!(
@@ -360,17 +366,36 @@ impl FileReading {
         Ok(())
     }
 
+    /// Whether a cell is a constant that the user gave, in whatever unit or word it is written.
+    fn is_constant(&self, row: usize, column: &Column, key: &str, value: &str) -> bool {
+        let cell = self.recording.sheet.cell(row, column.index);
+        if column.quantity == Quantity::Direction {
+            let direction =
+                |word: &str| direction_words::direction(word).map(pinswitch_friction::Direction::as_str);
+            return direction(cell).is_some() && direction(cell) == direction(value);
+        }
+        let newtons =
+            |value: Decimal, is_mass: bool| if is_mass { value.times(NEWTON_PER_GRAM) } else { value };
+        let numbers = self.value(row, column).zip(Decimal::parse(value)).map(|(found, given)| match key {
+            "load_kg" => (found, given.times(Decimal::new(1, 3)), true),
+            "load_g" | "load_mass_g" => (found, given, true),
+            _ => (found, given, false),
+        });
+        match numbers {
+            None => cell.eq_ignore_ascii_case(value),
+            Some((found, given, is_mass)) => {
+                let found = newtons(found, column.quantity == Quantity::LoadMass).to_f64();
+                let given = newtons(given, is_mass).to_f64();
+                (found - given).abs() <= SAME_SHARE * given.abs()
+            }
+        }
+    }
+
     /// Decides whether a row has a reading.
     fn judge(&self, row: usize) -> RowVerdict {
         let sheet = &self.recording.sheet;
         let (mut has_force, mut has_number) = (false, false);
         let mut bad = None;
-        let is_blanks = self.recording.delimiter == Some(crate::dialect::Delimiter::Blanks);
-        if is_blanks && sheet.width(row) < self.header.names.len() && header::is_data(sheet, row) {
-            let cell = sheet.row(row).collect::<Vec<_>>().join(" ");
-            let problem = "fewer cells than names, and blanks do not show which one is empty";
-            return RowVerdict::Bad { column: "row".to_owned(), cell, problem };
-        }
         for column in self.columns.iter().filter(|column| column.quantity.is_number()) {
             let cell = sheet.cell(row, column.index);
             if is_missing(cell) {
@@ -382,6 +407,18 @@ impl FileReading {
             } else if bad.is_none() {
                 bad = Some(column);
             }
+        }
+        // With blanks as delimiter, an empty cell shifts those after it.
+        let is_blanks = self.recording.delimiter == Some(crate::dialect::Delimiter::Blanks);
+        let is_used = |column: &Column| column.quantity != Quantity::Ignore;
+        let lacks = |column: &Column| column.index >= sheet.width(row) && is_used(column);
+        if is_blanks && header::is_data(sheet, row) && self.columns.iter().any(lacks) {
+            if let Some(reason) = self.reason_to_skip(row) {
+                return RowVerdict::Skip(reason);
+            }
+            let cell = sheet.row(row).collect::<Vec<_>>().join(" ");
+            let problem = "fewer cells than names, and blanks do not show which one is empty";
+            return RowVerdict::Bad { column: "row".to_owned(), cell, problem };
         }
         // Most rows of a log begin with a number.
         let begins_with_number = sheet.cell(row, 0).starts_with(|c: char| c.is_ascii_digit() || c == '-');
@@ -418,8 +455,29 @@ impl FileReading {
         if header::is_units_row(sheet, row) && !header::is_data(sheet, row) {
             return Some("repeated units");
         }
-        let first = sheet.row(row).find(|cell| !cell.is_empty()).map(vocabulary::words).unwrap_or_default();
-        first.first().is_some_and(|word| vocabulary::is_summary(word)).then_some("summary")
+        let (at, label) = sheet.row(row).enumerate().find(|(_, cell)| !cell.is_empty())?;
+        let quantity = self.columns.iter().find(|column| column.index == at).map(|column| column.quantity);
+        let is_group = matches!(
+            quantity,
+            Some(
+                Quantity::Operator
+                    | Quantity::Specimen
+                    | Quantity::Session
+                    | Quantity::Mount
+                    | Quantity::Substrate
+                    | Quantity::Direction
+            )
+        );
+        // Initials among other names are a name; next to numbers they are not.
+        let is_other_name = |cell: &str| {
+            !vocabulary::is_summary(cell, false) && cell.chars().next().is_some_and(char::is_alphabetic)
+        };
+        let is_name = || {
+            let rows = (self.header.first_data..sheet.len()).take(NAME_ROWS);
+            quantity == Some(Quantity::Series) && rows.map(|row| sheet.cell(row, at)).any(is_other_name)
+        };
+        let is_summary = !is_group && vocabulary::is_summary(label, false);
+        (is_summary && (vocabulary::is_summary(label, true) || !is_name())).then_some("summary")
     }
 
     fn problem(&self, cell: &str, column: &Column) -> &'static str {

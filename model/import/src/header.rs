@@ -1,8 +1,9 @@
 //! Where the names, the units and the data of a sheet begin.
 
 use crate::clock::{self, DateOrder};
-use crate::name;
+use crate::name::{self, NameReading};
 use crate::number::{is_missing, sign_evidence};
+use crate::quantity::Quantity;
 use crate::sheet::Sheet;
 use crate::unit::Unit;
 
@@ -136,23 +137,40 @@ pub(crate) fn find(sheet: &Sheet, line: Option<usize>) -> Option<Header> {
     best.map(|(header, _)| header)
 }
 
-/// Finds a later row of names directly above data, whose names or units are not those of this header: the data below are other
-/// columns. Such a row names two quantities at least, as a line of text does not.
+/// Finds another row of names directly above data, in which the columns are not those of this header. Such a row names the
+/// force and another quantity, and as many columns as not to be a line of text.
 pub(crate) fn find_other(sheet: &Sheet, header: &Header) -> Option<(usize, Header)> {
     let next = next_rows(sheet);
-    let is_equal = |a: &str, b: &str| a.trim().eq_ignore_ascii_case(b.trim());
-    (header.first_data..sheet.len()).find_map(|row| {
-        if is_data(sheet, row) || is_units_row(sheet, row) || is_comment(sheet, row) {
+    let named = |header: &Header| header.names.iter().filter(|name| !name.is_empty()).count();
+    // What a column is: names and units may be written in several ways.
+    let readings = |header: &Header| -> Vec<NameReading> {
+        let units = |i: usize| header.units.get(i).copied().flatten();
+        header.names.iter().enumerate().map(|(i, name)| name::read(name, units(i))).collect()
+    };
+    let first = readings(header);
+    (0..sheet.len()).find_map(|row| {
+        if Some(row) == header.names_row
+            || is_data(sheet, row)
+            || is_units_row(sheet, row)
+            || is_comment(sheet, row)
+        {
             return None;
         }
         let (other, _) = candidate(sheet, row, &next)?;
-        let known =
-            other.names.iter().zip(&other.units).filter(|(n, u)| name::read(n, **u).quantity.is_some());
-        let are_names_equal = other.names.len() == header.names.len()
-            && other.names.iter().zip(&header.names).all(|(a, b)| is_equal(a, b));
+        // The upper line of a header of two lines.
+        if other.first_data == header.first_data {
+            return None;
+        }
+        let mut found = readings(&other);
         // A repeated header without its row of units has those of the first one.
-        let are_units_equal = other.units_row.is_none() || other.units == header.units;
-        (known.count() > 1 && !(are_names_equal && are_units_equal)).then_some((row, other))
+        if other.units_row.is_none() && header.units_row.is_some() {
+            let of_first = first.iter().map(|reading| reading.unit);
+            found.iter_mut().zip(of_first).for_each(|(reading, unit)| reading.unit = reading.unit.or(unit));
+        }
+        let known = found.iter().filter(|reading| reading.quantity.is_some()).count();
+        let has_force = found.iter().any(|reading| reading.quantity == Some(Quantity::Force));
+        let is_header = known > 1 && has_force && 2 * named(&other) > named(header);
+        (is_header && found != first).then_some((row, other))
     })
 }
 
@@ -264,7 +282,7 @@ fn full_line_above(sheet: &Sheet, row: usize, width: usize) -> Option<Vec<String
 }
 
 fn has_loads(sheet: &Sheet, row: usize) -> bool {
-    sheet.row(row).filter(|cell| name::load_in(cell).is_some()).count() >= 2
+    sheet.row(row).filter(|cell| has_load(cell)).count() >= 2
 }
 
 /// Puts the load of a group, whose cell covers several columns, before their names.
@@ -278,10 +296,14 @@ fn add_groups(sheet: &Sheet, row: usize, names: &mut [String]) {
         if !cell.is_empty() {
             group = cell.to_owned();
         }
-        if !group.is_empty() && name::load_in(&group).is_some() {
+        if !group.is_empty() && has_load(&group) {
             *name = format!("{group} {name}");
         }
     }
+}
+
+fn has_load(cell: &str) -> bool {
+    name::load_in(cell).is_some() || name::either_load(cell).is_some()
 }
 
 #[cfg(test)]

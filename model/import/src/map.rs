@@ -366,7 +366,7 @@ impl Map {
                 repetition: Some(value.parse().map_err(|_| {
                     Diagnostic::new("not a whole number")
                         .with_location(Location::field(key, value))
-                        .with_help("give the number of the trial, from 0 on")
+                        .with_help("give the number of the trial, from 1 on")
                 })?),
                 ..ColumnChoice::default()
             },

@@ -29,7 +29,7 @@ pub(crate) struct NameReading {
 /// Reads a column name; `row_unit` is its unit in a row of units.
 pub(crate) fn read(name: &str, row_unit: Option<&'static Unit>) -> NameReading {
     // The unit of "Force x 10 [N]" is 10 N, which is none: without a unit, the column is a question.
-    if has_factor(name) {
+    if row_unit.is_none() && has_factor(name) {
         let known = read_words(name, row_unit);
         return NameReading { unit: None, repetition: None, ..known };
     }
@@ -97,14 +97,22 @@ fn has_open_bracket(text: &str) -> bool {
         .any(|(open, close)| text.rfind(open).is_some_and(|at| !text[at..].contains(close)))
 }
 
-/// Whether a name has a factor before its unit, such as `Force x 10`.
+/// Whether a name has a factor before its unit, such as `Force x 10` or `F * 2`. The letter is a factor only before a power of
+/// ten: `x 1` is an axis.
 fn has_factor(stem: &str) -> bool {
+    let is_power = |digits: &str| digits.starts_with("10") && digits[1..].bytes().all(|byte| byte == b'0');
     let mut before = ' ';
     let mut characters = stem.char_indices();
     characters.any(|(at, c)| {
-        let is_times = matches!(c, '*' | '\u{d7}') || (matches!(c, 'x' | 'X') && !before.is_alphanumeric());
+        let rest = stem[at + c.len_utf8()..].trim_start();
+        let digits = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];
+        let is_factor = match c {
+            '*' | '\u{d7}' => !digits.is_empty(),
+            'x' | 'X' => !before.is_alphanumeric() && is_power(digits),
+            _ => false,
+        };
         before = c;
-        is_times && stem[at + c.len_utf8()..].trim_start().starts_with(|next: char| next.is_ascii_digit())
+        is_factor
     })
 }
 
@@ -143,7 +151,7 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
     };
     // A column that is named by its direction, load or trial alone: "pull", "2 kg up", "Trial 3
     // [N]".
-    let number = words.iter().find_map(|word| word.parse::<u32>().ok()).filter(|n| (1..=1000).contains(n));
+    let number = words.iter().find_map(|word| word.parse::<u32>().ok()).filter(|n| *n <= 1000);
     let is_reading = unit.is_none_or(|unit| Quantity::Force.dimensions().contains(&unit.dimension));
     let quantity = match quantity {
         None if direction.is_some() && is_reading => Some(Quantity::Force),
@@ -253,7 +261,9 @@ mod tests {
             assert_eq!(read(name, None).unit, None, "{name}");
         }
         assert_eq!(read("Fx [N]", None).unit.map(|unit| unit.name), Some("N"));
-        assert_eq!(read("x 1 [mm]", None).unit, None);
+        for name in ["X1 [mm]", "F_x1 [N]", "accel x 2 [mm]", "x 1 [mm]"] {
+            assert!(read(name, None).unit.is_some(), "{name}");
+        }
     }
 
     #[test]

@@ -129,6 +129,54 @@ fn factors_and_numbers_in_names_are_questions() {
     assert_eq!(forces(thousands, &options), [12.85, 25.69]);
 }
 
+/// What a first, stricter version of these rules refused or left out.
+#[test]
+fn ordinary_files_are_read() {
+    for (text, options, count) in [
+        (
+            "operator,load_N,direction,force_N\nJD,10,up,12\nJD,10,down,8\nMW,10,up,12.1\nSE,10,down,8.1\n",
+            &[][..],
+            4,
+        ),
+        ("Run,Direction,Load [N],Force [N]\n1,up,10,12\nrun A,down,,\n2,down,10,8\n", &[], 2),
+        ("time [s],force [N]\n0,1\n0.01,2\nTime (s),Force (N)\n0.02,3\n", &[], 3),
+        ("Load [N],Direction,Force [N]\n10.0,up,12.5\n10.0,down,8\n", &["load_N=10"], 2),
+        (
+            "Load [kg],Direction,Force [N]\n1,up,12.5\n1,up,8\n",
+            &["load_N=9.80665", "direction=concentric"],
+            2,
+        ),
+        ("time_s  force_N  event\n0.00  10.1  start\n0.01  10.2\n0.02  10.3\n", &[], 3),
+        ("time_s  force_N  position_mm\n0.00  10.1  1\n0.01  10.2  2\nMean  10.15\n", &[], 2),
+        ("time_s,Load cell (sd card) [N]\n0,1\n0.01,2\n", &[], 2),
+        ("Time,Force [N]\n0.01,1\n0.01005,2\n0.02,3\n0.03,4\n", &[], 4),
+        ("Load [N],Up 0 [N],Up 1 [N],Down 0 [N],Down 1 [N]\n10,12,12.1,8,8.1\n", &[], 4),
+    ] {
+        assert_eq!(forces(text, options).len(), count, "{text}");
+    }
+    assert_eq!(
+        problems("Load [N],Up 0 [N],Up 45 [N],Up 90 [N]\n10,10,11,12\n", &[]),
+        "the numbers 0, 45, 90 in the names of columns"
+    );
+    assert!(problems("Load [N],Up 0 [N],Up 90 [N]\n10,10,12\n", &[]).contains("the numbers 0, 90"));
+    assert!(
+        problems("time_s,Force NW [N],Force SE [N]\n0,1,2\n0.01,2,3\n", &[])
+            .contains("2 columns may be the force")
+    );
+    assert!(
+        problems(
+            "Neigungswinkel [\u{b0}],Load [N],Direction,Force [N]\n5,10,up,12\n",
+            &["wrap_angle_deg=180"]
+        )
+        .is_empty()
+    );
+    let groups = "trial,1.500 kg,,2.500 kg,\n,up,down,up,down\n1,12,8,24,16\n";
+    assert!(problems(groups, &[]).contains("the load in the name"), "{}", problems(groups, &[]));
+    let earlier =
+        "Load [kg],Up [N]\n1,12.85\n2,25.69\nLoad [kg],Up [N],Down [N]\n3,37,21\n4,50,29\n5,60,35\n";
+    assert!(problems(earlier, &[]).contains("another header ("), "{}", problems(earlier, &[]));
+}
+
 #[test]
 fn the_oldest_capstan_experiment_needs_two_options() {
     let text = "Wrap angle (deg),Force (N)\n30,11.1\n60,12.3\n90,13.7\n";

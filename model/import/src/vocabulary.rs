@@ -262,8 +262,9 @@ const COMPOUNDS: [(&str, Quantity); 10] = [
 /// Returns the quantities that the words of a name may mean, most specific first.
 pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
     // A torque, or how fast or how well something is measured.
-    const OTHER: [&str; 6] = ["torque", "moment", "drehmoment", "couple", "coppia", "rate"];
-    if is_spread(words) || words.iter().any(|word| OTHER.contains(&word.as_str())) {
+    const OTHER: [&str; 9] =
+        ["torque", "moment", "drehmoment", "couple", "coppia", "rate", "error", "uncertainty", "std"];
+    if words.iter().any(|word| OTHER.contains(&word.as_str()) || SPREAD.contains(&word.as_str())) {
         return Vec::new();
     }
     let joined = words.join(" ");
@@ -283,12 +284,11 @@ pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
         let compound = |word: &String| COMPOUNDS.iter().find(|(end, _)| word.ends_with(end)).map(|c| c.1);
         possible.extend(words.iter().filter_map(compound));
     }
-    // The angle of something else than the tendon's wrap.
-    const TURNING: [&str; 12] = [
-        "tilt", "joint", "motor", "crank", "shaft", "encoder", "phase", "rotor", "servo", "neigung",
-        "neigungs", "gelenk",
+    // The angle of something else than the tendon's wrap, also in compounds such as Neigungswinkel.
+    const TURNING: [&str; 11] = [
+        "tilt", "joint", "motor", "crank", "shaft", "encoder", "phase", "rotor", "servo", "neigung", "gelenk",
     ];
-    if words.iter().any(|word| TURNING.contains(&word.as_str())) {
+    if words.iter().any(|word| TURNING.iter().any(|turning| word.starts_with(turning))) {
         possible.retain(|q| *q != Quantity::WrapAngle);
     }
     let has = |possible: &[Quantity], quantity| possible.contains(&quantity);
@@ -304,31 +304,34 @@ pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
     possible
 }
 
-/// Words for the spread of readings, which is not a reading.
-const SPREAD: [&str; 24] = [
-    "sd",
-    "std",
+/// Words for the spread of readings, wherever they are in a name.
+const SPREAD: [&str; 12] = [
     "stdev",
     "stddev",
     "stdabw",
     "stabw",
     "standardabweichung",
     "standardfehler",
-    "deviation",
-    "abweichung",
     "variance",
     "varianz",
-    "uncertainty",
-    "unsicherheit",
-    "error",
-    "sem",
-    "se",
     "rsd",
-    "cv",
-    "ecart",
     "desviacion",
     "deviazione",
     "scarto",
+];
+/// Words that also have other meanings: they are for the spread at the end of a name that has a column of readings.
+const MAYBE_SPREAD: [&str; 12] = [
+    "sd",
+    "std",
+    "se",
+    "sem",
+    "cv",
+    "error",
+    "uncertainty",
+    "unsicherheit",
+    "deviation",
+    "abweichung",
+    "ecart",
     "spread",
 ];
 /// Words for what is computed from several readings.
@@ -346,22 +349,45 @@ const AVERAGE: [&str; 12] = [
     "medio",
     "moy",
 ];
-/// Further words with which a row of a summary begins.
-const SUMMARY: [&str; 9] = ["maximum", "max", "minimum", "min", "standard", "sum", "summe", "total", "range"];
+/// Further words of a row of a summary.
+const SUMMARY: [&str; 10] =
+    ["maximum", "max", "minimum", "min", "standard", "sum", "summe", "total", "range", "of"];
 
-/// Whether the words of a name are those of a measure of spread.
-pub(crate) fn is_spread(words: &[String]) -> bool {
-    words.iter().any(|word| SPREAD.contains(&word.as_str()))
+/// Words of a name without its unit.
+fn stem_words(name: &str) -> Vec<String> {
+    words(name.split(['[', '(', '{']).next().unwrap_or_default())
 }
 
-/// Whether the words of a name are those of a mean of readings.
-pub(crate) fn is_average(words: &[String]) -> bool {
-    words.iter().any(|word| AVERAGE.contains(&word.as_str()))
+/// Whether a name is that of a measure of spread; `others` are the names of all columns.
+pub(crate) fn is_spread(name: &str, others: &[String]) -> bool {
+    let stem = stem_words(name);
+    if stem.iter().any(|word| SPREAD.contains(&word.as_str())) {
+        return true;
+    }
+    let Some((last, rest)) = stem.split_last() else { return false };
+    let is_reading = |other: &String| {
+        let is_counted = |word: &String| AVERAGE.contains(&word.as_str()) || word.parse::<u32>().is_ok();
+        let mut left = stem_words(other);
+        left.retain(|word| !is_counted(word));
+        other != name && left == rest
+    };
+    MAYBE_SPREAD.contains(&last.as_str()) && !rest.is_empty() && others.iter().any(is_reading)
 }
 
-/// Whether a row that begins with this word has figures computed from the rows above.
-pub(crate) fn is_summary(word: &str) -> bool {
-    [&SPREAD[..], &AVERAGE[..], &SUMMARY[..]].iter().any(|words| words.contains(&word))
+/// Whether a name is that of a mean of readings.
+pub(crate) fn is_average(name: &str) -> bool {
+    stem_words(name).iter().any(|word| AVERAGE.contains(&word.as_str()))
+}
+
+/// Whether a label is that of a row with figures computed from the rows above: it has nothing but words for that, and
+/// counts. Two letters may be initials, unless the label can be no name (`is_name`).
+pub(crate) fn is_summary(label: &str, is_name: bool) -> bool {
+    let words = words(label);
+    let lists = [&SPREAD[..], &MAYBE_SPREAD, &AVERAGE, &SUMMARY];
+    let is_known =
+        |word: &str| lists.iter().any(|list| list.contains(&word)) && !(is_name && word.len() == 2);
+    let is_count = |word: &str| word == "n" || word.parse::<u32>().is_ok();
+    words.iter().any(|word| is_known(word)) && words.iter().all(|word| is_known(word) || is_count(word))
 }
 
 #[cfg(test)]

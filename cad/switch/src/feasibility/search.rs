@@ -21,7 +21,8 @@ const SMALL_RATIO: f64 = 2.0;
 const LEAST_SCREWS: usize = 2;
 
 /// Returns feasible configurations near the start of `problem`, each verified by building it: all alternatives that change
-/// one parameter, the most natural first; where there is none, the nearest one that changes several.
+/// one parameter, the most natural first; where there is none, the nearest one that changes several. Where all of them change
+/// what the user chose, a pair of numbers that keeps it comes first.
 pub(super) fn proposals(problem: &Problem<'_>) -> Vec<Configuration> {
     let mut found = singles(problem, &problem.lines);
     if found.is_empty() {

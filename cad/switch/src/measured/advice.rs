@@ -31,8 +31,10 @@ impl Measured {
         };
         let scatter = comparison.scatter_n.unwrap_or(0.0);
         if (made - planned).abs() <= scatter {
+            // Pins that stick or tilt are a change.
+            let change = if advice.is_empty() { "nothing to change: " } else { "" };
             advice.push(format!(
-                "nothing to change: the threshold differs by {:+.2} N, and castings scatter by ±{scatter:.2} N (95 %)",
+                "{change}the threshold differs by {:+.2} N, and castings scatter by ±{scatter:.2} N (95 %)",
                 made - planned
             ));
             return advice;

@@ -15,14 +15,14 @@ use super::xml::MAX_NAME_BYTES;
 /// Longest message of a library that an error repeats, in characters.
 const MAX_CHARACTERS: usize = 200;
 /// Bytes that any archive may unpack to.
-const FREE_BYTES: u64 = 4 << 20;
+const FREE_BYTES: u64 = 8 << 20;
 /// Bytes that an archive may unpack to for each of its own: the models of programs unpack to 4 to 12
 /// times their size, and endless zeros to a thousand times.
 const BYTES_PER_BYTE: u64 = 16;
 /// Tags of XML that any archive may have, and bytes of the archive for each further one: meshes of programs have one for 5 to 8
 /// bytes, a mesh that repeats one triangle a hundred for one.
-const FREE_TAGS: usize = 100_000;
-const BYTES_PER_TAG: usize = 2;
+const FREE_TAGS: usize = 200_000;
+const BYTES_PER_TAG: usize = 4;
 /// Most bytes that an archive may unpack to.
 const MAX_BYTES: u64 = 1 << 30;
 /// Bytes by which the format of a picture is recognised.

@@ -76,7 +76,7 @@ pub(super) struct XmlReader<'a> {
 impl<'a> XmlReader<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         let mut reader = Self {
-            text: text.trim_start_matches('\u{feff}'),
+            text: text.strip_prefix('\u{feff}').unwrap_or(text),
             at: 0,
             attributes: Vec::new(),
             scope: Vec::new(),

@@ -1,7 +1,8 @@
 //! Continuous cycles: strokes without rests, such as triangles and sines.
 
+use super::interval::Move;
 use super::log::Log;
-use super::moves::{Move, Speeds, speeds};
+use super::moves::{Speeds, speeds};
 use super::two_levels::{noise_about_slope, without_spikes};
 use crate::median::median;
 
@@ -119,8 +120,10 @@ pub(super) fn unsettled(log: &Log, halves: &[HalfCycle]) -> Option<f64> {
     let bend = median(&mut bends_a) - median(&mut bends_b);
     let difference = median(&mut means_a) - median(&mut means_b);
     let third = halves.iter().map(|half| half.middle.len() / 3).min().unwrap_or(1);
-    // Each bend is a sum of three means with the squared weights 1, 4 and 1.
-    let error = noise_about_slope(&log.force_n) * (2.0 * 6.0 / (third * count) as f64).sqrt();
+    // Each bend is a sum of three medians with the squared weights 1, 4 and 1. The variance of a median
+    // is pi/2 times that of a mean, and the median of the bends adds the same factor.
+    let of_median = std::f64::consts::FRAC_PI_2 * std::f64::consts::FRAC_PI_2;
+    let error = noise_about_slope(&log.force_n) * (2.0 * 6.0 * of_median / (third * count) as f64).sqrt();
     // The branches approach their levels, which are further apart than the means.
     let share = -bend / difference;
     (share > BEND_SHARE && bend.abs() > BEND_ERRORS * error).then_some(share)

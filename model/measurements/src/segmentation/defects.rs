@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use pinswitch_friction::Direction;
 
 use super::finding::Finding;
+use super::interval::stop_s;
 use super::log::Log;
-use super::moves::stop_s;
 use super::run_plan::Rig;
 use super::segmented::{Motion, Reading, Segmented};
 use crate::median::median;

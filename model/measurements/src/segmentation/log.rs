@@ -3,7 +3,7 @@
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{Direction, published};
 
-use super::clock::{log_time, parse_stamp};
+use super::clock::{LogTime, log_time, parse_stamp};
 use super::finding::Finding;
 use crate::median::median;
 
@@ -56,10 +56,12 @@ pub enum DeclaredLoad {
 }
 
 /// Names of the columns of time with the length of a count in seconds.
-const TIME_COLUMNS: [(&str, f64); 6] = [
+const TIME_COLUMNS: [(&str, f64); 8] = [
     ("time_s", 1.0),
     ("time_ms", 1e-3),
     ("time_us", 1e-6),
+    ("time_min", 60.0),
+    ("time_h", 3_600.0),
     ("unix_s", 1.0),
     ("timestamp", 1.0),
     ("time", 1.0),
@@ -212,6 +214,14 @@ impl Log {
             cells.stamps.iter().enumerate().map(|(i, t)| if usable(i) { *t } else { f64::NAN }).collect();
         let time = log_time(&stamps, unit_s, rate_hz);
         let count = time.time_s.len();
+        let descending = stamps.windows(2).filter(|w| w[1] < w[0]).count();
+        if 2 * descending > stamps.len() {
+            return Err(Diagnostic::new(format!(
+                "column '{time_column}': the time decreases from line to line"
+            ))
+            .with_location(Location::file(file))
+            .with_help("sort the lines by time"));
+        }
         if count < MIN_SAMPLES {
             return Err(Diagnostic::new(format!(
                 "{count} usable samples, at least {MIN_SAMPLES} are needed"
@@ -228,6 +238,15 @@ impl Log {
             .with_help(
                 "give the time in seconds, or name the column by its unit (time_ms, time_us) and declare \
                  rig.sample_rate_hz: logs have 10 Hz to 10 kHz",
+            ));
+        }
+        if let Some(period_s) = either_unit(&time, rate_hz) {
+            return Err(Diagnostic::new(format!(
+                "column '{time_column}': the stamps are {period_s} s apart, or in another unit than its name"
+            ))
+            .with_location(Location::file(file))
+            .with_help(
+                "declare rig.sample_rate_hz, or name the column by its unit (time_s, time_ms, time_us)",
             ));
         }
         let column = |at: usize| {
@@ -308,6 +327,22 @@ impl Log {
     pub fn period_s(&self) -> f64 {
         self.period_s
     }
+}
+
+/// Sampling periods in seconds that some loggers have, but no log whose moves are visible: a unit by
+/// which the rate is higher may be as right.
+const SLOW_PERIODS_S: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
+/// Returns the sampling period in seconds by the name of the column, if another unit was chosen
+/// although a slow logger has it.
+fn either_unit(time: &LogTime, rate_hz: Option<f64>) -> Option<f64> {
+    let period_s = time.findings.iter().find_map(|finding| match finding {
+        Finding::TimeUnit { declared_s, measured_s } => {
+            Some(median_step(&time.time_s) * declared_s / measured_s)
+        }
+        _ => None,
+    })?;
+    (rate_hz.is_none() && SLOW_PERIODS_S.contains(&period_s)).then_some((1e6 * period_s).round() / 1e6)
 }
 
 /// Returns the median step of times.
@@ -435,6 +470,36 @@ mod tests {
         let error = Log::parse(text(1e-12).as_bytes(), "a.csv").unwrap_err();
         assert!(error.problem().starts_with("column 'timestamp': the stamps are 1.0e-12 s apart"), "{error}");
         assert!(Log::parse(text(1.0 / 86_400.0 / 100.0).as_bytes(), "a.csv").is_ok());
+    }
+
+    fn stamped(name: &str, stamp: impl Fn(u32) -> f64) -> Vec<u8> {
+        let lines: String = (0..60).map(|i| format!("{},1.5\n", stamp(i))).collect();
+        format!("{name},force_N\n{lines}").into_bytes()
+    }
+
+    /// A logger at 1 Hz, or one at 1 kHz whose milliseconds are called seconds.
+    #[test]
+    fn slow_stamps_have_two_readings() {
+        let seconds = stamped("time_s", f64::from);
+        let error = Log::parse(&seconds, "a.csv").unwrap_err().to_string();
+        assert!(error.contains("the stamps are 1 s apart"), "{error}");
+        let length_s = |rate| Log::parse_at(&seconds, "a.csv", Some(rate)).unwrap().time_s[59];
+        assert!((length_s(1.0) - 59.0).abs() < 1e-9 && (length_s(1000.0) - 0.059).abs() < 1e-9);
+    }
+
+    #[test]
+    fn minutes_and_hours_are_read() {
+        for (name, unit_s) in [("time_min", 60.0), ("time_h", 3600.0)] {
+            let log = Log::parse(&stamped(name, |i| f64::from(i) * 0.01 / unit_s), "a.csv").unwrap();
+            assert!((log.time_s[59] - 0.59).abs() < 1e-9 && log.clock.is_empty(), "{:?}", log.clock);
+        }
+    }
+
+    #[test]
+    fn descending_times_are_refused() {
+        let text = stamped("time_s", |i| 9.0 - 0.01 * f64::from(i));
+        let error = Log::parse(&text, "a.csv").unwrap_err().to_string();
+        assert!(error.contains("the time decreases"), "{error}");
     }
 
     #[test]

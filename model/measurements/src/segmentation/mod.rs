@@ -1,7 +1,7 @@
 //! Segmentation of raw logs into one row per repetition (`model/doc/logs.md`).
 //!
 //! Imports run downwards: `run` uses `plateaus`, which uses `defects`, `moves`, `cycles` and `direction`,
-//! which use `log`, `change_points`, `steady_force` and `two_levels`.
+//! which use `force_moves`, `interval`, `log`, `change_points`, `steady_force` and `two_levels`.
 
 mod change_points;
 mod clock;
@@ -9,6 +9,8 @@ mod cycles;
 mod defects;
 mod direction;
 mod finding;
+mod force_moves;
+mod interval;
 mod log;
 mod moves;
 mod plateaus;
@@ -16,6 +18,7 @@ mod run;
 mod run_plan;
 mod segmented;
 mod steady_force;
+mod steady_moves;
 mod two_levels;
 
 pub use direction::Protocol;

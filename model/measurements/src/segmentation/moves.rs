@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use super::change_points::{change_points, is_relaxation};
+use super::force_moves::{ForceMoves, force_moves};
+use super::interval::{Move, Schedule, samples_in, stop_s, usual};
 use super::log::Log;
-use super::steady_force::{Joint, Steady, SteadyForce, steady_kinds};
-use super::two_levels::{noise, noise_about_slope, two_levels, without_spikes};
+use super::steady_moves::UnknownMoves;
+use super::two_levels::{LEVELS_NOISE, noise_about_slope, two_levels, without_spikes};
 use crate::median::median;
 
 /// Column from which the moves of a log were found.
@@ -32,36 +33,11 @@ impl Source {
     }
 }
 
-/// An interval in which the actuator runs: sample indices, with the end excluded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Move {
-    pub(super) from: usize,
-    pub(super) to: usize,
-}
-
 /// Least share of the variance between two levels: 0.75 is that of a uniform distribution.
 const TWO_LEVELS_SHARE: f64 = 0.8;
-/// Least distance of two levels, or of a move, in standard deviations of the noise.
-const LEVELS_NOISE: f64 = 6.0;
 /// Gaps in a move, as a share of the usual length, that are closed; shorter moves are dropped.
 const GAP_SHARE: f64 = 0.2;
 const SHORTEST_SHARE: f64 = 0.4;
-/// Length in seconds over which the force is averaged before its change points are located.
-const BLOCK_S: f64 = 0.05;
-/// Most blocks of a log.
-const MAX_BLOCKS: usize = 40_000;
-/// Shortest rest in seconds, and fewest blocks of one, that the force can show.
-const SHORTEST_REST_S: f64 = 0.3;
-const SHORTEST_REST_BLOCKS: usize = 4;
-/// Share of the usual rest below which a steady interval belongs to the settling after a move.
-const SETTLING_SHARE: f64 = 0.4;
-
-/// Declared lengths of a move and of the rest after it, in seconds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Schedule {
-    pub(super) on_s: Option<f64>,
-    pub(super) dwell_s: Option<f64>,
-}
 
 /// Moves of a log.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +51,8 @@ pub(super) struct Moves {
     /// Start and end, in seconds, of steady intervals of the force that are neither rests nor the
     /// settling after a move.
     pub(super) unexplained_s: Vec<(f64, f64)>,
+    /// Two levels of the force in one direction, if the actuator may move at either.
+    pub(super) unknown: Option<UnknownMoves>,
 }
 
 /// Finds the moves of a log.
@@ -95,13 +73,13 @@ pub(super) fn moves(log: &Log, schedule: Schedule) -> Moves {
         (Some(power), None) => (power, Source::Power),
         (None, Some(position)) => (position, Source::Position),
         (None, None) => {
-            let (visible, unexplained_s) = force_moves(log, schedule);
+            let ForceMoves { visible, unexplained_s, unknown } = force_moves(log, schedule);
             let all = scheduled_moves(log, &visible, schedule);
             let scheduled = all.len() - visible.len();
-            return Moves { all, source: Source::Force, scheduled, unexplained_s };
+            return Moves { all, source: Source::Force, scheduled, unexplained_s, unknown };
         }
     };
-    Moves { all, source, scheduled: 0, unexplained_s: Vec::new() }
+    Moves { all, source, scheduled: 0, unexplained_s: Vec::new(), unknown: None }
 }
 
 /// Returns the length of the way between the neighbours of a move in millimetres.
@@ -219,12 +197,6 @@ fn closed(mut is_moving: Vec<bool>, length: usize) -> Vec<bool> {
     is_moving
 }
 
-/// Returns the number of samples in a time, at least one.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive and limited")]
-fn samples_in(log: &Log, seconds: f64) -> usize {
-    (seconds / log.period_s().max(1e-9)).round().clamp(1.0, 1e6) as usize
-}
-
 /// Returns the intervals in which the actuator runs; short interruptions are closed and short
 /// bursts are dropped, in terms of the usual length.
 fn intervals(log: &Log, runs: impl Fn(usize) -> bool) -> Vec<Move> {
@@ -257,103 +229,6 @@ fn intervals(log: &Log, runs: impl Fn(usize) -> bool) -> Vec<Move> {
     // A log may start within a move.
     moves.retain(|m| length_s(m) > SHORTEST_SHARE * usual_s || (m.from == 0 && m.to > 1));
     moves
-}
-
-/// Returns the time in seconds at which a move has ended: that of the first sample after it, unless
-/// samples are lost there.
-pub(super) fn stop_s(log: &Log, m: Move) -> f64 {
-    let last_s = log.time_s[m.to - 1];
-    let next_s = log.time_s.get(m.to).copied().filter(|_| !log.breaks.contains(&m.to)).unwrap_or(last_s);
-    if next_s - last_s < 5.0 * log.period_s() { next_s } else { last_s }
-}
-
-/// Returns the median of lengths, weighted by the lengths: half of the total is in longer ones.
-fn usual(mut lengths: Vec<f64>) -> f64 {
-    lengths.sort_by(f64::total_cmp);
-    let half = 0.5 * lengths.iter().sum::<f64>();
-    let mut sum = 0.0;
-    lengths
-        .iter()
-        .copied()
-        .find(|length| {
-            sum += length;
-            sum >= half
-        })
-        .unwrap_or(0.0)
-}
-
-/// Returns the moves by the change points of the force, and the steady intervals that it does not
-/// explain. The end of a move is not visible in the force: it ends `on_s` after its start, if that is
-/// declared, and otherwise where the force is steady.
-fn force_moves(log: &Log, schedule: Schedule) -> (Vec<Move>, Vec<(f64, f64)>) {
-    let force = without_spikes(&log.force_n);
-    let size = samples_in(log, BLOCK_S).max(force.len().div_ceil(MAX_BLOCKS));
-    let blocks: Vec<f64> = force.chunks(size).map(|b| b.iter().sum::<f64>() / b.len() as f64).collect();
-    let noise_n = noise(&blocks).max(1e-6);
-    let mut ends = change_points(&blocks, noise_n);
-    ends.push(blocks.len());
-    let time = |block: usize| log.time_s[(block * size).min(log.time_s.len() - 1)];
-    let is_steady = |from: usize, to: usize| {
-        to - from >= SHORTEST_REST_BLOCKS && time(to) - time(from) >= SHORTEST_REST_S
-    };
-    let mut rests: Vec<(usize, usize)> = Vec::new();
-    let mut from = 0;
-    for to in ends {
-        if is_steady(from, to) {
-            match rests.last_mut() {
-                Some(last)
-                    if last.1 == from && is_relaxation(&blocks[last.0..to], from - last.0, noise_n) =>
-                {
-                    last.1 = to;
-                }
-                _ => rests.push((from, to)),
-            }
-        }
-        from = to;
-    }
-    let length_s = |rest: &(usize, usize)| time(rest.1) - time(rest.0);
-    let usual_s = usual(rests.iter().map(length_s).collect()).min(schedule.dwell_s.unwrap_or(f64::INFINITY));
-    let joint = |i: usize| {
-        let earlier = if i == 0 { 0 } else { rests[i - 1].1.saturating_sub(1) };
-        match i {
-            0 => Joint::LogStart,
-            _ if log.breaks.iter().any(|b| (earlier..=rests[i].0 + 1).contains(&(b / size))) => {
-                Joint::FileStart
-            }
-            _ if rests[i - 1].1 == rests[i].0 => Joint::Contiguous,
-            _ => Joint::Apart,
-        }
-    };
-    let steady: Vec<SteadyForce> = (rests.iter().enumerate())
-        .map(|(i, rest)| SteadyForce {
-            level_n: blocks[rest.0..rest.1].iter().sum::<f64>() / (rest.1 - rest.0) as f64,
-            is_short: length_s(rest) < SETTLING_SHARE * usual_s,
-            joint: joint(i),
-        })
-        .collect();
-    let kinds = steady_kinds(&steady);
-    let of_kind =
-        |kind: Steady| rests.iter().zip(&kinds).filter(move |(_, k)| **k == kind).map(|(rest, _)| *rest);
-    let unexplained_s = of_kind(Steady::Unexplained).map(|(from, to)| (time(from), time(to))).collect();
-    let rests: Vec<(usize, usize)> = of_kind(Steady::Rest).collect();
-    let mut moves = Vec::new();
-    // A log that starts with the motor has a step before its first rest.
-    if let Some((start, end)) = rests.first().filter(|rest| rest.0 > 0) {
-        let level = blocks[*start..*end].iter().sum::<f64>() / (end - start) as f64;
-        if (blocks[0] - level).abs() > LEVELS_NOISE * noise_n {
-            moves.push(Move { from: 0, to: (start * size).clamp(1, log.time_s.len()) });
-        }
-    }
-    for pair in rests.windows(2) {
-        let from = (pair[0].1 * size).min(log.time_s.len() - 1);
-        let steady = (pair[1].0 * size).clamp(from + 1, log.time_s.len());
-        let to = schedule.on_s.map_or(steady, |on_s| {
-            let end_s = log.time_s[from] + on_s;
-            log.time_s.partition_point(|t| *t < end_s).clamp(from + 1, (pair[1].1 * size).max(from + 1))
-        });
-        moves.push(Move { from, to: to.min(log.time_s.len()) });
-    }
-    (moves, unexplained_s)
 }
 
 /// Departure of an interval between visible moves from a multiple of the declared period, as a share

@@ -10,10 +10,12 @@ use super::cycles::{HalfCycle, half_cycles, unsettled};
 use super::defects::{missing_repetitions, odd_speeds, sample_defects};
 use super::direction::{ACCEPTED, Evidence, directions};
 use super::finding::Finding;
+use super::interval::{Move, Schedule, stop_s};
 use super::log::Log;
-use super::moves::{Move, Moves, Schedule, Source, moves, stop_s};
+use super::moves::{Moves, Source, moves};
 use super::run_plan::Rig;
 use super::segmented::{Motion, MoveMark, Plateau, Reading, Segmented};
+use super::steady_moves::UnknownMoves;
 use super::two_levels::noise_about_slope;
 use crate::median::median;
 
@@ -61,9 +63,10 @@ pub fn segment(log: &Log, rig: &Rig, load_n: Option<f64>) -> Result<Segmented, D
         out.findings.extend(unsettled(log, &halves).map(|share| Finding::UnsettledCycles { share }));
         cycle_readings(log, &halves, &mut spikes, &mut out.findings)
     } else {
-        let Moves { all, source, scheduled, unexplained_s } =
+        let Moves { all, source, scheduled, unexplained_s, unknown } =
             moves(log, Schedule { on_s: rig.on_s, dwell_s: rig.dwell_s });
         out.source = source;
+        refuse_unknown_moves(unknown)?;
         refuse_unexplained(&unexplained_s, all.len())?;
         out.findings
             .extend(unexplained_s.iter().map(|(_, time_s)| Finding::UnreadableRest { time_s: *time_s }));
@@ -243,7 +246,18 @@ fn refuse_unexplained(unexplained_s: &[(f64, f64)], moves: usize) -> Result<(), 
         "the force alone does not distinguish the rests from the moves: it is steady in {count} short intervals \
          before a move (the first from {from_s:.1} s to {to_s:.1} s)"
     ))
-    .with_help("add a column position_mm or power_W to the log"))
+    .with_help("declare rig.on_s and rig.dwell_s, or add a column position_mm or power_W to the log"))
+}
+
+/// Refuses a log whose force alternates between two levels in one direction, since the actuator may
+/// move at either of them.
+fn refuse_unknown_moves(unknown: Option<UnknownMoves>) -> Result<(), Diagnostic> {
+    let Some(UnknownMoves { low_n, high_n }) = unknown else { return Ok(()) };
+    Err(Diagnostic::new(format!(
+        "the force alone does not distinguish the rests from the moves: in one direction it alternates between \
+         {low_n:.2} N and {high_n:.2} N"
+    ))
+    .with_help("declare rig.on_s and rig.dwell_s, the seconds of motion and of rest, or add a column position_mm or power_W to the log"))
 }
 
 /// Compares the declared times with the measured ones.

@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::direction::Evidence;
 use super::finding::Finding;
-use super::moves::{Move, Source};
+use super::interval::Move;
+use super::moves::Source;
 
 /// Kind of the motion in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

@@ -1,6 +1,6 @@
 //! Steady intervals of the force: which are rests, where neither power nor position shows the moves.
 
-use super::two_levels::two_levels;
+use super::two_levels::{TwoLevels, two_levels};
 
 /// A steady interval of the force.
 #[derive(Clone, Copy, Debug)]
@@ -9,6 +9,8 @@ pub(super) struct SteadyForce {
     pub(super) level_n: f64,
     /// Whether it is shorter than the usual rest by so much that it may belong to the settling.
     pub(super) is_short: bool,
+    /// Length in seconds.
+    pub(super) length_s: f64,
     /// Relation to the previous interval.
     pub(super) joint: Joint,
 }
@@ -46,6 +48,29 @@ const OTHER_LEVEL: f64 = 0.25;
 /// The same for a move from level to level.
 const REVERSAL: f64 = 0.5;
 
+/// Steady intervals by the level of the direction.
+pub(super) struct Visits<'a> {
+    /// Consecutive intervals at one level, within a file.
+    pub(super) groups: Vec<&'a [SteadyForce]>,
+    /// The two levels, if they are separate.
+    pub(super) levels: Option<TwoLevels>,
+    /// Distance of the levels in newtons; infinite for one level.
+    distance_n: f64,
+}
+
+/// Returns the visits to the levels of the directions.
+pub(super) fn visits(all: &[SteadyForce]) -> Visits<'_> {
+    let levels_n: Vec<f64> = all.iter().map(|interval| interval.level_n).collect();
+    let levels =
+        two_levels(&levels_n).filter(|l| l.high - l.low > LEAST_DISTANCE * l.high.abs().max(l.low.abs()));
+    let distance_n = levels.map_or(f64::INFINITY, |levels| levels.high - levels.low);
+    let is_one_level = |a: &SteadyForce, b: &SteadyForce| {
+        !matches!(b.joint, Joint::LogStart | Joint::FileStart)
+            && (a.level_n - b.level_n).abs() <= OTHER_LEVEL * distance_n
+    };
+    Visits { groups: all.chunk_by(is_one_level).collect(), levels, distance_n }
+}
+
 /// Returns the kinds of steady intervals.
 ///
 /// Consecutive intervals at one level form a group. Its long intervals are rests. A group of short
@@ -54,20 +79,12 @@ const REVERSAL: f64 = 0.5;
 /// level, the short ones at the other one may be moves instead: it is not known which. A short interval after a long
 /// one, apart from it, may be the rest after a long move at a steady force.
 pub(super) fn steady_kinds(all: &[SteadyForce]) -> Vec<Steady> {
-    let levels_n: Vec<f64> = all.iter().map(|interval| interval.level_n).collect();
-    let levels =
-        two_levels(&levels_n).filter(|l| l.high - l.low > LEAST_DISTANCE * l.high.abs().max(l.low.abs()));
-    let distance_n = levels.map_or(f64::INFINITY, |levels| levels.high - levels.low);
+    let Visits { groups, levels, distance_n } = visits(all);
     let is_long_at = |is_high: bool| {
         let threshold_n = levels.map_or(0.0, |levels| levels.threshold);
         all.iter().any(|interval| !interval.is_short && (interval.level_n > threshold_n) == is_high)
     };
     let has_long_at_both = is_long_at(false) && is_long_at(true);
-    let is_one_level = |a: &SteadyForce, b: &SteadyForce| {
-        !matches!(b.joint, Joint::LogStart | Joint::FileStart)
-            && (a.level_n - b.level_n).abs() <= OTHER_LEVEL * distance_n
-    };
-    let groups: Vec<&[SteadyForce]> = all.chunk_by(is_one_level).collect();
     let mut kinds = Vec::new();
     for (i, group) in groups.iter().enumerate() {
         let (Some(first), Some(last)) = (group.first(), group.last()) else { continue };
@@ -112,6 +129,7 @@ mod tests {
             .map(|(i, &(level_n, is_short))| SteadyForce {
                 level_n,
                 is_short,
+                length_s: if is_short { 0.5 } else { 3.0 },
                 joint: if i == 0 { Joint::LogStart } else { Joint::Apart },
             })
             .collect();

@@ -3,6 +3,9 @@
 
 use crate::median::median;
 
+/// Least distance of two levels, or of a move, in standard deviations of the noise.
+pub(super) const LEVELS_NOISE: f64 = 6.0;
+
 /// Two groups of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TwoLevels {

@@ -38,6 +38,7 @@ mod process;
 mod provenance;
 mod readme;
 mod reference_shell;
+mod release;
 mod rig_set;
 mod schemas;
 mod segment_raw;

@@ -26,6 +26,9 @@ fn image_names_and_versions_agree() {
     let names: Vec<_> = dockerfile.split_whitespace().filter(|w| w.contains("/pinswitch:")).collect();
     assert!(names.len() > 1 && names.iter().all(|name| name.trim_end_matches(',') == image), "{names:?}");
     assert!(text("action.yml").contains(&format!("pinswitch@v{version}\n")));
+    assert_eq!(yaml("CITATION.cff")["version"], version);
+    let python: toml_edit::DocumentMut = text("cad/python/Cargo.toml").parse().unwrap();
+    assert_eq!(python["package"]["version"].as_str(), Some(version));
 }
 
 /// The Job's command is one of a shell, and its pods are not run by the administrator.
@@ -55,7 +58,7 @@ fn run_action(folder: &Path, configurations: &str, options: &str) -> (Output, St
     assert_eq!(step["shell"], "bash");
     let script = folder.join("step.sh");
     std::fs::write(&script, step["run"].as_str().unwrap()).unwrap();
-    let summary = folder.join("summary.md");
+    let summary = folder.join("summary");
     let mut command = Command::new("bash");
     command.args(["--noprofile", "--norc", "-eo", "pipefail"]).arg(&script).current_dir(folder);
     command.env("GITHUB_STEP_SUMMARY", &summary);

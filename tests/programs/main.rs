@@ -1,5 +1,5 @@
-//! Tests with external programs: slicers, mesh checkers, a browser, Slurm, Snakemake. Where its program is
-//! absent, a test prints `SKIPPED` and the reason.
+//! Tests with external programs: slicers, mesh checkers, a browser, Slurm, Snakemake, linters. Where its
+//! program is absent, a test prints `SKIPPED` and the reason.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,3 +13,4 @@ mod hardware;
 mod judges;
 mod page;
 mod recipes;
+mod release;

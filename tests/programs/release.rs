@@ -102,13 +102,18 @@ fn sbom_names_every_crate() {
     }
 }
 
+/// Writes a shell script that can be run.
+fn script(path: PathBuf, text: &str) -> PathBuf {
+    std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
 /// Makes the archive and the package of a script that runs the binary under test: the binary itself
 /// takes a minute to pack.
 fn packed(folder: &Path, dist: &str) -> PathBuf {
-    let program = folder.join("pinswitch");
-    let script = format!("#!/bin/sh\nexec '{}' \"$@\"\n", env!("CARGO_BIN_EXE_pinswitch"));
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let text = format!("exec '{}' \"$@\"", env!("CARGO_BIN_EXE_pinswitch"));
+    let program = script(folder.join("pinswitch"), &text);
     let dist = folder.join(dist);
     let mut command = Command::new(repository("cad/dist"));
     command.arg(&dist).args(["binary", "deb"]).env("PINSWITCH", &program);
@@ -163,6 +168,25 @@ fn packages_contain_program_and_documents() {
     made.remove("SHA256SUMS");
     let expected: String = made.iter().map(|(name, sum)| format!("{sum}  {name}\n")).collect();
     assert_eq!(sums, expected);
+}
+
+/// A substitute for docker prints its arguments, and the files of the folder that it is given.
+#[test]
+fn image_has_name_of_recipe() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    script(
+        path.join("docker"),
+        "echo \"docker $*\"; for folder; do :; done; [ ! -d \"$folder\" ] || ls \"$folder\"",
+    );
+    let search = format!("{}:{}", path.display(), std::env::var("PATH").unwrap());
+    let mut command = Command::new(repository("cad/dist"));
+    command.arg(path.join("dist")).arg("image").env("PATH", search);
+    let message = output(command.env("PINSWITCH", path.join("docker")));
+    let recipe = std::fs::read_to_string(repository("templates/batch/kubernetes-job.yaml")).unwrap();
+    let name = recipe.lines().find_map(|line| line.trim().strip_prefix("image: ")).unwrap();
+    assert!(message.contains(&format!("docker build --tag {name} --file ")), "{message}");
+    assert!(message.contains("\nDockerfile\npinswitch\n"), "{message}");
 }
 
 /// What `.ci/install` installs: linters of Dockerfiles and shell scripts, and the schema of Actions.

@@ -267,20 +267,23 @@ fn examine_space(
         return;
     }
     let bvh = Bvh::new(mesh);
+    let before = allowance.0.of_mesh(mesh.triangles.len());
+    let mut left = before;
     if expected.intersections {
-        let search = self_intersection::search(mesh, &bvh, expected.min_height_mm, allowance.intersections);
-        allowance.intersections = search.left;
+        let search = self_intersection::search(mesh, &bvh, expected.min_height_mm, left);
+        left = search.left;
         let bound = search.bound.filter(|_| search.fault.is_none());
         examination.faults.extend(search.fault);
         examination.add_bound("self-intersection", Level::Error, bound);
     }
     if walls {
-        let search = wall_thickness::search(mesh, &bvh, expected.min_wall_mm, allowance.walls);
-        allowance.walls = search.left;
+        let search = wall_thickness::search(mesh, &bvh, expected.min_wall_mm, left);
+        left = search.left;
         let bound = search.bound.filter(|_| search.fault.is_none());
         examination.faults.extend(search.fault);
         examination.add_bound("thin wall", Level::Warning, bound);
     }
+    allowance.0.spend(before, left);
 }
 
 fn volume_faults(axes: [f64; 3], expected: &Expectation) -> Vec<Fault> {

@@ -243,6 +243,43 @@ fn meshes_of_a_file_share_their_allowance() {
     assert!(0 < short && short < unshared && unshared < 200, "{short} {unshared}");
 }
 
+/// A flat plate of a fine grid, whose facets touch twelve others in their plane, is judged within the
+/// allowance of its 3MF, whose texts compress to 6.4 bytes a facet.
+#[test]
+fn a_fine_grid_is_judged_within_the_allowance_of_its_file() {
+    let (cells, facets) = (200, 161_600);
+    let mut plate = Mesh::default();
+    let side = cells as u32 + 1;
+    for z in [0.0, 2.0] {
+        let points = (0..side * side).map(|i| Point3::new(f64::from(i % side), f64::from(i / side), z));
+        plate.positions.extend(points);
+    }
+    let quad = |a: u32, b: u32, c: u32, d: u32| [[a, b, c], [a, c, d]];
+    let top = side * side;
+    for i in (0..side - 1).flat_map(|y| (0..side - 1).map(move |x| y * side + x)) {
+        let (b, c, d) = (i + 1, i + 1 + side, i + side);
+        plate.triangles.extend(quad(i, d, c, b));
+        plate.triangles.extend(quad(top + i, top + b, top + c, top + d));
+    }
+    let last = side - 1;
+    for k in 0..last {
+        for (a, b) in [
+            (k, k + 1),
+            (last + k * side, last + (k + 1) * side),
+            (last * side + k + 1, last * side + k),
+            ((k + 1) * side, k * side),
+        ] {
+            plate.triangles.extend(quad(a, b, top + b, top + a));
+        }
+    }
+    assert_eq!(plate.triangles.len(), facets);
+    let expected = Expectation { min_wall_mm: 0.4, ..Expectation::default() };
+    let mut allowance = Allowance::of_bytes(facets * 64 / 10);
+    let examination = examine_within(&plate, &expected, &mut allowance);
+    assert!(examination.is_flawless(), "{examination:?}");
+    assert!(!examine_within(&plate, &expected, &mut Allowance::of_bytes(0)).is_valid());
+}
+
 #[test]
 fn collapsed_facets_are_left_out() {
     let mut cube = cube();

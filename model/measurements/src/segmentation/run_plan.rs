@@ -35,6 +35,7 @@ pub struct Rig {
 
 /// One series of a run: a log, or several logs in the order of recording.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SeriesPlan {
     /// File name of the log, relative to the run description; empty with `files`.
     #[serde(default)]
@@ -211,5 +212,9 @@ mod tests {
             assert!(error.contains(expected), "{error}");
         }
         assert!(RunPlan::parse(RIG, "run.toml").is_err());
+        // A load in newtons would be left out.
+        let other = format!("{RIG}{SERIES}load_N=9.8\n");
+        let error = RunPlan::parse(&other, "run.toml").unwrap_err().to_string();
+        assert!(error.contains("unknown field `load_N`"), "{error}");
     }
 }

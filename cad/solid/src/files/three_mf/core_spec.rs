@@ -26,8 +26,16 @@ pub(super) const PRINT_TICKET_TYPE: &str = "http://schemas.microsoft.com/3dmanuf
 pub(super) const SECURE_CONTENT: &str = "http://schemas.microsoft.com/3dmanufacturing/securecontent/";
 /// Types of objects.
 pub(super) const OBJECT_TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
-/// Attributes of `<item>` that slicers write without a namespace.
-pub(super) const SLICER_ATTRIBUTES: [&str; 1] = ["printable of <item>"];
+/// Attributes that slicers write without a namespace: Bambu Studio and its descendants mark triangles
+/// that a person painted.
+pub(super) const SLICER_ATTRIBUTES: [&str; 6] = [
+    "printable of <item>",
+    "paint_color of <triangle>",
+    "paint_supports of <triangle>",
+    "paint_seam of <triangle>",
+    "paint_fuzzy_skin of <triangle>",
+    "face_property of <triangle>",
+];
 
 /// Elements of the core namespace with their attributes.
 const ELEMENTS: [(&str, &[&str]); 16] = [

@@ -387,6 +387,13 @@ fn usual_deviations_are_no_errors() {
     assert_eq!(checks(&found), ["vocabulary", "metadata", "outside"]);
     assert!(found.faults.iter().all(|fault| fault.level < Level::Error), "{:?}", found.faults);
     assert_eq!(found.faults[1].paragraph, Some("3MF core 3.4.1"));
+    // Triangles that a person painted in a slicer.
+    let painted = object(1).replacen("<triangle ", r#"<triangle paint_color="4" face_property="{}" "#, 1);
+    let found = read(&model_of("", "", &painted, r#"<item objectid="1"/>"#));
+    assert_eq!(checks(&found), ["vocabulary"; 2]);
+    assert!(found.faults.iter().all(|fault| fault.level == Level::Note), "{:?}", found.faults);
+    let other = painted.replace("paint_color", "colour");
+    assert!(read(&model_of("", "", &other, item)).faults.iter().any(|fault| fault.level == Level::Error));
 }
 
 /// Each kind is reported a few times, and the rest is counted.

@@ -12,6 +12,7 @@ use crate::number::{self, is_missing, sign_evidence};
 use crate::quantity::Quantity;
 use crate::question::Question;
 use crate::sheet::Sheet;
+use crate::trials::find_trials;
 use crate::unit::{Dimension, NEWTON_PER_GRAM, Unit};
 use crate::vocabulary;
 
@@ -137,6 +138,7 @@ pub(crate) fn assign(
         header.names.iter().enumerate().map(|(i, name)| column(i, name, header, map, &kinds[i])).collect();
     find_directions(&mut columns, &kinds);
     find_clocks(&mut columns, &kinds);
+    find_trials(&mut columns);
     split_load_and_force(&mut columns);
     for column in &mut columns {
         if column.quantity == Quantity::Load

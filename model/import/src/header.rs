@@ -5,6 +5,7 @@ use crate::name::{self, NameReading};
 use crate::number::{is_missing, sign_evidence};
 use crate::quantity::Quantity;
 use crate::sheet::Sheet;
+use crate::trials::counts_trials;
 use crate::unit::Unit;
 
 /// Rows in which a header may begin: headers of testing machines have up to some hundred lines.
@@ -125,7 +126,7 @@ pub(crate) fn find(sheet: &Sheet, line: Option<usize>) -> Option<Header> {
     let next = next_rows(sheet);
     let mut best: Option<(Header, usize)> = None;
     for row in 0..last {
-        if is_data(sheet, row) {
+        if is_data(sheet, row) && !counts_trials(sheet, row) {
             continue;
         }
         if let Some((header, score)) = candidate(sheet, row, &next)

@@ -46,6 +46,7 @@ mod round_trip;
 mod sheet;
 mod table;
 mod times;
+mod trials;
 #[cfg(test)]
 mod two_readings;
 mod understanding;

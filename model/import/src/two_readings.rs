@@ -177,6 +177,27 @@ fn ordinary_files_are_read() {
     assert!(problems(earlier, &[]).contains("another header ("), "{}", problems(earlier, &[]));
 }
 
+/// Trials without a unit are forces of one: it is the only question.
+#[test]
+fn trials_are_columns_of_forces() {
+    let rows = "5,pull,6.1,6.2,6.0\n5,release,4.1,4.2,4.0\n10,pull,12.1,12.2,12.0\n";
+    for names in ["Trial 1,Trial 2,Trial 3", "1,2,3"] {
+        let text = format!("load_N,direction,{names}\n{rows}");
+        assert!(
+            problems(&text, &[]).contains("the columns of forces have no unit"),
+            "{}",
+            problems(&text, &[])
+        );
+        assert_eq!(
+            forces(&text, &["force_unit=N"]),
+            [6.1, 6.2, 6.0, 4.1, 4.2, 4.0, 12.1, 12.2, 12.0],
+            "{names}"
+        );
+    }
+    // Numbers that do not count from one are data.
+    assert!(problems(&format!("load_N,direction,2,3,5\n{rows}"), &[]).contains("have no names"));
+}
+
 #[test]
 fn the_oldest_capstan_experiment_needs_two_options() {
     let text = "Wrap angle (deg),Force (N)\n30,11.1\n60,12.3\n90,13.7\n";

@@ -74,8 +74,9 @@ fn unsupported_step() -> Diagnostic {
 
 /// The diagnostic of a file that cannot be read.
 pub(super) fn unreadable(error: std::io::Error) -> Diagnostic {
-    Diagnostic::new(format!("cannot read the file: {error}"))
+    Diagnostic::new("cannot read the file")
         .with_help("give a file that exists and can be read")
+        .with_source(error)
 }
 
 /// Examines an STL.

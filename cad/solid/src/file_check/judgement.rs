@@ -39,12 +39,20 @@ const MESH: [&str; 9] = [
     "axis volumes",
 ];
 
+/// Checks of a package whose warnings are of what a producer must not write and every reader ignores: errors only if the
+/// file is judged by its specification.
+const MUST: [&str; 3] = ["metadata", "property", "thumbnail"];
+
 impl Judgement {
     /// Sets the levels of the faults of a file as a whole, or of a part of a 3MF.
     pub fn apply(self, faults: &mut [Fault], is_three_mf: bool) {
         for fault in faults {
             if is_three_mf && fault.paragraph.is_none() && MESH.contains(&fault.check) {
                 fault.paragraph = Some("3MF core 4.1");
+            }
+            let is_strict = self.purpose == Some(Purpose::Spec) && MUST.contains(&fault.check);
+            if is_strict && fault.paragraph.is_some() && fault.level == Level::Warning {
+                fault.level = Level::Error;
             }
             fault.level = fault.level.min(self.most(fault, is_three_mf));
         }
@@ -134,6 +142,20 @@ mod tests {
             assert_eq!(level(None, check, paragraph), Level::Error, "{check}");
             assert_eq!(level(print, check, paragraph), of_print, "{check}");
             assert_eq!(level(spec, check, paragraph), of_spec, "{check}");
+        }
+    }
+
+    #[test]
+    fn requirements_that_readers_ignore_count_only_for_the_specification() {
+        for (purpose, expected) in [
+            (None, Level::Warning),
+            (Some(Purpose::Print), Level::Warning),
+            (Some(Purpose::Spec), Level::Error),
+        ] {
+            let mut fault = Fault::new("metadata", Level::Warning, 1, String::new());
+            fault.paragraph = Some("3MF core 3.4.1");
+            Judgement { purpose, level: Level::Error }.apply(std::slice::from_mut(&mut fault), true);
+            assert_eq!(fault.level, expected);
         }
     }
 }

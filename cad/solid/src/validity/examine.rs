@@ -209,6 +209,7 @@ fn examine_connected(
     // The unit is questioned before any search for walls: if it is larger, all of them are thin.
     let size = facets::implausible_size(facts.low_mm, facts.high_mm, expected.longest_side_mm);
     let longest_mm = (0..3).map(|i| facts.high_mm[i] - facts.low_mm[i]).fold(0.0, f64::max);
+    let expected = &scaled(expected, longest_mm);
     let is_searched = expected.min_wall_mm > 0.0 && longest_mm >= expected.longest_side_mm.0;
     let fine = is_searched.then(|| facets::implausible_resolution(mesh, longest_mm)).flatten();
     let walls = is_searched && fine.is_none();
@@ -221,6 +222,14 @@ fn examine_connected(
     );
     examination.faults.append(&mut in_space.faults);
     examination.incomplete.append(&mut in_space.incomplete);
+}
+
+/// The expectation of a mesh whose longest side is smaller than expected, as that of a file in metres: its facets are as
+/// much smaller.
+fn scaled(expected: &Expectation, longest_mm: f64) -> Expectation {
+    let share = longest_mm / expected.longest_side_mm.0;
+    let share = if share > 0.0 { share.min(1.0) } else { 1.0 };
+    Expectation { min_height_mm: expected.min_height_mm * share, ..*expected }
 }
 
 /// Checks of single facets, and of facets that share vertices.

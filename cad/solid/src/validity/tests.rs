@@ -324,3 +324,14 @@ fn the_unit_is_questioned_first() {
         assert!(!examination.faults.iter().any(|fault| fault.check == "thin wall"));
     }
 }
+
+/// The facets of a part in metres are small, as the part is.
+#[test]
+fn a_part_in_metres_is_judged_as_in_millimetres() {
+    let overlapping = joined(cube(), cube().translated(Vector3::new(3.0, 4.0, 5.0)));
+    for (mut mesh, expected) in [(cone(300), &["size"][..]), (overlapping, &["size", "self-intersection"])] {
+        assert!(!faults(&mesh).contains(&"size"));
+        mesh.positions.iter_mut().for_each(|p| *p *= 1e-6);
+        assert_eq!(faults(&mesh), expected);
+    }
+}

@@ -22,6 +22,9 @@ pub(super) const THUMBNAIL_TYPE: &str =
     "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
 /// Type of the relationship to a print ticket.
 pub(super) const PRINT_TICKET_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
+/// Type of the relationship to the core properties of a package.
+pub(super) const CORE_PROPERTIES_TYPE: &str =
+    "http://schemas.openxmlformats.org/package/2006/relationships/metadata/core-properties";
 /// Beginning of the namespaces and relationship types of encrypted content.
 pub(super) const SECURE_CONTENT: &str = "http://schemas.microsoft.com/3dmanufacturing/securecontent/";
 /// Types of objects.
@@ -96,11 +99,7 @@ const UNITS: [(&str, f64); 6] = [
 ];
 /// Namespaces of extensions that leave meshes unchanged or that the reader supports: materials,
 /// production, triangle sets.
-const EXTENSIONS: [&str; 3] = [
-    super::materials::NAMESPACE,
-    PRODUCTION,
-    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
-];
+const EXTENSIONS: [&str; 3] = [super::materials::NAMESPACE, PRODUCTION, super::triangle_sets::NAMESPACE];
 
 /// Returns the attributes of an element; `None` for an unknown element.
 pub(super) fn attributes(element: &str) -> Option<&'static [&'static str]> {

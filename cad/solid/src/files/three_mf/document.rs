@@ -9,6 +9,7 @@ use super::archive::malformed;
 use super::core_spec::{CORE, PRODUCTION, XSI, accepts_foreign, attributes, children, required_attributes};
 use super::error::ThreeMfReadError;
 use super::materials;
+use super::triangle_sets::{self, TriangleSets};
 use super::value::{index, is_number, number, problem};
 use super::xml::{Attribute, Event, NamespaceId, XmlError, XmlReader};
 use crate::mesh::Point3;
@@ -98,6 +99,7 @@ pub(super) struct RawMesh {
     pub(super) properties: Vec<TriangleProperties>,
     /// Number of `p1`, `p2` and `p3` that are not indices.
     pub(super) invalid_properties: usize,
+    pub(super) sets: TriangleSets,
 }
 
 /// Properties of the triangles that refer to one group.
@@ -191,8 +193,11 @@ impl Builder<'_> {
                     if let Some(leaf) = self.leaf.filter(|_| skipped == 1) {
                         count(&mut self.unknown, format!("<{name}> in <{leaf}>"));
                     }
-                    if skipped > 0 || !self.start(namespace, name)? {
+                    if skipped > 0 {
+                        self.in_extension(namespace, name);
                         skipped += 1;
+                    } else if !self.start(namespace, name)? {
+                        skipped = 1;
                     }
                 }
                 Event::End if skipped > 0 => {
@@ -203,6 +208,16 @@ impl Builder<'_> {
                 Event::Text(text) => self.text(&text, skipped)?,
                 Event::Eof => return Ok(()),
             }
+        }
+    }
+
+    /// Handles an element in one that is not kept.
+    fn in_extension(&mut self, namespace: Option<NamespaceId>, name: &str) {
+        let is_of_sets = namespace.is_some_and(|id| self.reader.id_of(triangle_sets::NAMESPACE) == Some(id));
+        let mesh = self.open.last_mut().and_then(|element| element.mesh.as_mut());
+        if let Some(mesh) = mesh.filter(|_| is_of_sets) {
+            let attributes = &self.reader.attributes;
+            mesh.sets.element(name, |wanted| value(attributes, wanted));
         }
     }
 

@@ -12,6 +12,7 @@ mod part_name;
 mod read;
 mod relationships;
 mod transform;
+mod triangle_sets;
 mod value;
 mod write;
 mod xml;

@@ -1,6 +1,6 @@
 //! Model parts: objects with their meshes and components, and the items of the build.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::archive::malformed;
 use super::core_spec::{
@@ -94,6 +94,8 @@ pub(super) struct ModelReader {
     pub(super) law: Option<String>,
     /// Objects of the last model with their thumbnails.
     pub(super) thumbnails: Vec<(String, String)>,
+    /// Parts of the textures of the last model.
+    pub(super) textures: BTreeSet<String>,
 }
 
 impl ModelReader {
@@ -145,6 +147,11 @@ impl ModelReader {
             .filter_map(|child| Some((resource_id(child.attribute("id")?), Group::of(child))))
             .collect();
         self.check_materials(resources);
+        let textures = resources
+            .children
+            .iter()
+            .filter(|child| child.namespace.is(materials::NAMESPACE) && child.name == "texture2d");
+        self.textures.extend(textures.filter_map(|texture| texture.attribute("path")).map(normalized));
         for object in resources.children.iter_mut().filter(|child| child.is_core("object")) {
             self.check_properties(object, &groups);
             self.object(model, object, part, unit_mm);
@@ -230,6 +237,7 @@ impl ModelReader {
             let detail = format!("{count} {what} of object {id} are not indices");
             findings.add("value", Level::Error, count, "3MF core B.1.1", &detail);
         }
+        raw.sets.check(id, number, findings);
         let positions = raw.positions.into_iter().map(|p| p * unit_mm).collect();
         Mesh::new(positions, triangles)
     }

@@ -64,11 +64,28 @@ pub(super) fn problem(name: &str) -> Option<(&'static str, &'static str)> {
         Some(("has an empty segment", "OPC M1.3"))
     } else if name.split('/').any(|segment| segment.ends_with('.')) {
         Some(("has a segment that ends with a dot", "OPC M1.9"))
+    } else if let Some(problem) = escape_problem(name) {
+        Some(problem)
     } else if file.starts_with('.') && !is_relationships {
         Some(("begins with a dot", "3MF core 2.2.3"))
     } else {
         None
     }
+}
+
+/// Returns what is wrong with the percent-encoded characters of a name.
+fn escape_problem(name: &str) -> Option<(&'static str, &'static str)> {
+    name.split('%').skip(1).find_map(|rest| {
+        let digits = rest.get(..2).filter(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()));
+        match digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            None => Some(("has a percent sign without two hexadecimal digits", "OPC M1.6")),
+            Some(b'/' | b'\\') => Some(("has a percent-encoded slash", "OPC M1.7")),
+            Some(byte) if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) => {
+                Some(("has a percent-encoded character that needs none", "OPC M1.8"))
+            }
+            Some(_) => None,
+        }
+    })
 }
 
 /// Returns parts whose names are those of another part with more segments.
@@ -107,10 +124,19 @@ mod tests {
             ("3D/a./b.png", "OPC M1.9"),
             ("3D/.png", "3MF core 2.2.3"),
             ("3D/.rels", "3MF core 2.2.3"),
+            ("3D/a%2Fb.png", "OPC M1.7"),
+            ("3D/%41.png", "OPC M1.8"),
+            ("3D/100%.png", "OPC M1.6"),
         ] {
             assert_eq!(problem(name).map(|(_, paragraph)| paragraph), Some(paragraph), "{name}");
         }
-        for name in ["/3D/3dmodel.model", "_rels/.rels", "3D/_rels/a.model.rels", "[Content_Types].xml"] {
+        for name in [
+            "/3D/3dmodel.model",
+            "_rels/.rels",
+            "3D/_rels/a.model.rels",
+            "[Content_Types].xml",
+            "3D/%E6%A8%A1.model",
+        ] {
             assert_eq!(problem(name), None, "{name}");
         }
         assert_eq!(

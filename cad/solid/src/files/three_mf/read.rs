@@ -127,9 +127,20 @@ fn check_relationships(
             reader.findings.warning("thumbnail", "3MF core 4", &detail);
         }
     }
+    let textures: HashSet<&str> =
+        all.iter().filter(|one| one.kind == TEXTURE_TYPE).map(|one| one.key.as_str()).collect();
+    for target in std::mem::take(&mut reader.textures) {
+        if !archive.contains(&target) {
+            reader.findings.error("texture", "3MF materials 6", &format!("the texture {target} is missing"));
+        } else if !textures.contains(target.as_str()) {
+            let detail = format!("the texture {target} has no relationship of that type");
+            reader.findings.error("texture", "3MF materials 6", &detail);
+        }
+    }
     Ok(())
 }
 
+/// Type of relationships to a texture.
+const TEXTURE_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture";
 /// Types of relationships to the thumbnail of an object: the second is that of older files.
-const THUMBNAIL_TYPES: [&str; 2] =
-    [THUMBNAIL_TYPE, "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"];
+const THUMBNAIL_TYPES: [&str; 2] = [THUMBNAIL_TYPE, TEXTURE_TYPE];

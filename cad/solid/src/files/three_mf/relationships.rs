@@ -3,8 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use super::archive::Archive;
-use super::core_spec::{CONTENT_TYPES, MODEL_TYPE, PRINT_TICKET_TYPE, SECURE_CONTENT, THUMBNAIL_TYPE};
-use super::document::read_document;
+use super::core_spec::{
+    CONTENT_TYPES, CORE_PROPERTIES_TYPE, MODEL_TYPE, PRINT_TICKET_TYPE, SECURE_CONTENT, THUMBNAIL_TYPE,
+};
+use super::document::{Element, read_document};
 use super::error::ThreeMfReadError;
 use super::findings::Findings;
 use super::part_name::{extension, normalized, relationships_of, resolved};
@@ -97,6 +99,11 @@ impl ContentTypes {
             let elements = root.children.iter().filter(move |element| element.name == name);
             elements.filter_map(move |e| Some((e.attribute(key)?, e.attribute("ContentType")?.to_owned())))
         };
+        for element in &root.children {
+            if let Some((problem, paragraph)) = problem_of_type(element) {
+                findings.error("content types", paragraph, &format!("{CONTENT_TYPES}: {problem}"));
+            }
+        }
         let mut types = Self { defaults: HashMap::new(), overrides: HashMap::new() };
         let mut repeated = Vec::new();
         for (extension, kind) in entries("Default", "Extension") {
@@ -149,6 +156,40 @@ impl ContentTypes {
     }
 }
 
+/// Returns what is wrong with an entry of the content types, with the paragraph that it breaks.
+fn problem_of_type(entry: &Element) -> Option<(String, &'static str)> {
+    let (key, paragraph) = match entry.name.as_str() {
+        "Default" => ("Extension", "OPC M2.6"),
+        "Override" => ("PartName", "OPC M2.7"),
+        other => return Some((format!("it has an element <{other}>"), "OPC M2.5")),
+    };
+    let Some(name) = entry.attribute(key) else {
+        return Some((format!("<{}> without {key}", entry.name), paragraph));
+    };
+    let kind = entry.attribute("ContentType").unwrap_or_default();
+    if !is_media_type(kind) {
+        return Some((format!("the content type {kind:?} of {name} is not a media type"), "OPC M1.14"));
+    }
+    let is_extension = !name.is_empty() && !name.contains(['/', '.']);
+    match entry.name.as_str() {
+        "Default" if !is_extension => Some((format!("{name:?} is not an extension"), paragraph)),
+        "Override" if !name.starts_with('/') => {
+            Some((format!("the part name {name:?} does not begin with a slash"), "OPC M1.4"))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a text is a media type, such as `image/png` (RFC 2616, 3.7), without a comment.
+fn is_media_type(text: &str) -> bool {
+    let is_token = |token: &str| {
+        let is_part = |c: char| c.is_ascii_alphanumeric() || "!#$%&'*+-.^_`|~".contains(c);
+        !token.is_empty() && token.chars().all(is_part)
+    };
+    let kind = text.split(';').next().unwrap_or_default().trim();
+    kind.split_once('/').is_some_and(|(kind, of_kind)| is_token(kind) && is_token(of_kind))
+}
+
 /// Checks the relationships of `source`, empty for the package.
 ///
 /// # Errors
@@ -171,6 +212,10 @@ pub(super) fn check(
     }
     if of_kind(PRINT_TICKET_TYPE).count() > 1 {
         findings.error("relationships", "3MF core 2.1.4", "the model has more than one print ticket");
+    }
+    if is_model && of_kind(CORE_PROPERTIES_TYPE).count() > 1 {
+        let detail = "the package has more than one relationship to core properties";
+        findings.error("relationships", "OPC M4.1", detail);
     }
     let (mut ids, mut pairs) = (HashSet::new(), HashSet::new());
     for one in all {

@@ -6,7 +6,8 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::core_spec::{
-    CONTENT_TYPES, CORE, MODEL_TYPE, PRODUCTION, RELATIONSHIPS, THUMBNAIL_TYPE, USUAL_MODEL,
+    CONTENT_TYPES, CORE, CORE_PROPERTIES_TYPE, MODEL_TYPE, PRODUCTION, RELATIONSHIPS, THUMBNAIL_TYPE,
+    USUAL_MODEL,
 };
 use super::error::ThreeMfReadError;
 use super::read::{ThreeMf, read_three_mf};
@@ -227,6 +228,7 @@ fn violations_of_the_package_are_named() {
     let relation = |id: &str, kind: &str, target: &str| {
         related(&format!(r#"<Relationship {id} Type="{kind}" Target="{target}"/>"#))
     };
+    let with_type = |entry: &str| TYPES.replace("</Types>", &format!("{entry}</Types>"));
     let repeated =
         TYPES.replace("</Types>", r#"<Default Extension="model" ContentType="a/b"/></Types>"#).replace(
             r#"Extension="model" ContentType="a/b""#,
@@ -244,6 +246,37 @@ fn violations_of_the_package_are_named() {
         (&picture, rels.clone(), "a.config", "OPC M2.4"),
         (&picture, relation(r#"Id="a""#, "urn:a", "/a.config"), "a.config", "OPC M2.4"),
         (&repeated, rels.clone(), "a.rels", "OPC M2.5"),
+        (
+            &with_type(r#"<Default Extension="png" ContentType="picture"/>"#),
+            rels.clone(),
+            "a.png",
+            "OPC M1.14",
+        ),
+        (&with_type(r#"<Default Extension="a/b" ContentType="a/b"/>"#), rels.clone(), "a.rels", "OPC M2.6"),
+        (&with_type(r#"<Default ContentType="image/png"/>"#), rels.clone(), "a.rels", "OPC M2.6"),
+        (
+            &with_type(r#"<Override PartName="a.png" ContentType="image/png"/>"#),
+            rels.clone(),
+            "a.png",
+            "OPC M1.4",
+        ),
+        (&with_type("<Other/>"), rels.clone(), "a.rels", "OPC M2.5"),
+        (&picture, rels.clone(), "3D/%41.png", "OPC M1.8"),
+        (&picture, rels.clone(), "3D/a%2fb.png", "OPC M1.7"),
+        (
+            &picture,
+            related(
+                &["a", "b"]
+                    .map(|id| {
+                        format!(
+                            r#"<Relationship Id="{id}" Type="{CORE_PROPERTIES_TYPE}" Target="/{id}.png"/>"#
+                        )
+                    })
+                    .concat(),
+            ),
+            "a.png",
+            "OPC M4.1",
+        ),
     ] {
         let content = if part == "b.png" { "no picture" } else { "\u{89}PNG\r\n\x1a\n" };
         // A PNG begins with a byte that no text has.
@@ -264,6 +297,59 @@ fn violations_of_the_package_are_named() {
             found.faults
         );
     }
+}
+
+#[test]
+fn triangle_sets_refer_to_triangles() {
+    let sets = |content: &str| {
+        let sets = format!(
+            "<t:trianglesets xmlns:t=\"{}\">{content}</t:trianglesets></mesh>",
+            super::triangle_sets::NAMESPACE
+        );
+        let model = model_of("", "", &object(1).replace("</mesh>", &sets), r#"<item objectid="1"/>"#);
+        read(&model).faults.into_iter().map(|fault| fault.detail).collect::<Vec<_>>()
+    };
+    let one =
+        |content: &str| sets(&format!(r#"<t:triangleset name="a" identifier="a">{content}</t:triangleset>"#));
+    assert_eq!(one(r#"<t:ref index="3"/><t:refrange startindex="0" endindex="3"/>"#), [""; 0]);
+    assert_eq!(one(r#"<t:ref index="4"/>"#), ["object 1: a set refers to triangle 4 of 4"]);
+    assert_eq!(
+        one(r#"<t:refrange startindex="1" endindex="9"/>"#),
+        ["object 1: a set refers to triangle 9 of 4"]
+    );
+    assert_eq!(
+        one(r#"<t:refrange startindex="3" endindex="0"/>"#),
+        ["object 1: a range of a triangle set is reversed"]
+    );
+    assert_eq!(one("<t:ref/>"), ["object 1: a reference of a triangle set is not an index"]);
+    let twice = r#"<t:triangleset name="a" identifier="a"/>"#.repeat(2);
+    assert_eq!(sets(&twice), ["object 1: two triangle sets have the same identifier"]);
+    assert_eq!(sets(r#"<t:triangleset name="" identifier="a"/>"#), ["object 1: a triangle set has no name"]);
+}
+
+#[test]
+fn textures_are_parts_with_a_relationship() {
+    let kind = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture";
+    let texture = format!(
+        r#"<m:texture2d xmlns:m="{}" id="7" path="/3D/a.png" contenttype="image/png"/>"#,
+        super::materials::NAMESPACE
+    );
+    let model = model_of("", "", &(texture + &object(1)), r#"<item objectid="1"/>"#);
+    let types = TYPES.replace("</Types>", r#"<Default Extension="png" ContentType="image/png"/></Types>"#);
+    let related =
+        format!(r#"<Relationships><Relationship Id="a" Type="{kind}" Target="/3D/a.png"/></Relationships>"#);
+    let rels = relationships();
+    let all = [
+        (CONTENT_TYPES, types.as_str()),
+        (RELATIONSHIPS, &rels),
+        (USUAL_MODEL, &model),
+        ("3D/a.png", "x"),
+        ("3D/_rels/3dmodel.model.rels", &related),
+    ];
+    let found = |parts: &[(&str, &str)]| checks(&read_three_mf(&packed(parts)).unwrap()).join(" ");
+    assert_eq!(found(&all), "");
+    assert_eq!(found(&all[..4]), "texture");
+    assert_eq!(found(&all[..3]), "texture");
 }
 
 /// A mesh that repeats one triangle packs to nothing: its tags are bounded by the size of the file.
@@ -467,7 +553,10 @@ fn resources_of_the_materials_extension_are_checked() {
         r#"<m:texture2d id="9" path="/a.png" contenttype="image/png" tilestyleu="foo"/>"#.to_owned(),
         r#"<m:texture2d id="9" path="/a.png" contenttype="image/png"/><m:texture2dgroup id="8" texid="9"><m:tex2coord u="x" v="0"/></m:texture2dgroup>"#.to_owned(),
     ] {
-        assert_eq!(checks(&with(&resources)), ["materials"], "{resources}");
+        let found = with(&resources);
+        // The textures are no parts of the package.
+        let found: Vec<_> = checks(&found).into_iter().filter(|check| *check != "texture").collect();
+        assert_eq!(found, ["materials"], "{resources}");
     }
     assert_eq!(checks(&with(&colors.replace("7", "1"))), ["reference"], "the id of the object");
     // An index beyond the only color of the group, of a triangle or of the object.

@@ -524,13 +524,28 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
                 column.ignore("a speed in length per time: the option full_speed_mm_s makes it a percentage")
             }
         },
+        // A workbook stores 50 % as 0.5, and shows 50 %.
+        (Quantity::Speed, Dimension::Share)
+            if choice.is_none_or(|c| c.unit.is_none()) && {
+                let values = sampled(column, sheet, header);
+                values.iter().any(|v| *v > 0.0) && values.iter().all(|v| (0.0..=1.0).contains(v))
+            } =>
+        {
+            let name = reference(column);
+            let problem = format!("column '{}' in {} has no value above 1", column.name, unit.name);
+            let readings = vec![
+                ("they are shares: 1 is the full speed".to_owned(), format!("factor.{name}=100")),
+                ("they are percent: 1 is a hundredth of the full speed".to_owned(), format!("unit.{name}=%")),
+            ];
+            questions.push(Question::new(problem, readings));
+        }
         (Quantity::Force, Dimension::Mass) => column.factor = unit.factor.times(NEWTON_PER_GRAM),
         _ => column.factor = unit.factor,
     }
 }
 
-/// Returns the unit that the values of a column without a unit show.
-fn assumed_unit(column: &Column, sheet: &Sheet, header: &Header) -> Option<&'static Unit> {
+/// Returns the numbers in the first rows of a column.
+fn sampled(column: &Column, sheet: &Sheet, header: &Header) -> Vec<f64> {
     let sign = if (header.first_data..sheet.len())
         .take(SAMPLE_ROWS)
         .any(|row| sheet.cell(row, column.index).contains('.'))
@@ -540,10 +555,14 @@ fn assumed_unit(column: &Column, sheet: &Sheet, header: &Header) -> Option<&'sta
         number::DecimalSign::Comma
     };
     let rows = (header.first_data..sheet.len()).take(SAMPLE_ROWS);
-    let values: Vec<f64> = rows
-        .filter_map(|row| number::parse(sheet.cell(row, column.index), sign))
+    rows.filter_map(|row| number::parse(sheet.cell(row, column.index), sign))
         .map(|(v, _)| v.to_f64())
-        .collect();
+        .collect()
+}
+
+/// Returns the unit that the values of a column without a unit show.
+fn assumed_unit(column: &Column, sheet: &Sheet, header: &Header) -> Option<&'static Unit> {
+    let values = sampled(column, sheet, header);
     match column.quantity {
         Quantity::WrapAngle if values.iter().any(|angle| *angle > MAX_RADIANS) => Unit::parse("deg"),
         // No load cell has a sample every 0.1 ms and writes fractions of milliseconds.

@@ -29,6 +29,8 @@ const DELIMITERS: [(Delimiter, &str); 6] = [
 
 /// Lines at the start and at the end of a text that are compared.
 const SAMPLE_LINES: usize = 300;
+/// Most lines of a quoted cell in these.
+const MAX_CELL_LINES: usize = 50;
 /// Bytes of a text in which these lines are.
 const SAMPLE_BYTES: usize = 1 << 16;
 /// Most bytes of a line: rows of the most cells that are read, of a kilobyte each.
@@ -96,8 +98,8 @@ pub(crate) fn detect(text: &str) -> Delimiter {
 fn sample(text: &str) -> Vec<&str> {
     let cut = |at: usize| (0..=at.min(text.len())).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0);
     let begin = &text[..cut(SAMPLE_BYTES)];
-    let mut lines: Vec<&str> =
-        begin.lines().filter(|line| !line.trim().is_empty()).take(SAMPLE_LINES).collect();
+    let mut lines = records(begin);
+    lines.truncate(SAMPLE_LINES);
     if begin.len() < text.len() {
         // Both lines at the cuts are incomplete.
         lines.pop();
@@ -105,6 +107,38 @@ fn sample(text: &str) -> Vec<&str> {
         lines.extend(end.lines().skip(1).filter(|line| !line.trim().is_empty()).take(SAMPLE_LINES));
     }
     lines
+}
+
+/// Splits a text into its rows: lines, without empty ones. A line whose quotes are open continues in the next line, unless
+/// they stay open for too long: then the quote is a sign, such as that of inches.
+fn records(text: &str) -> Vec<&str> {
+    let mut records = Vec::new();
+    let mut lines = text.split_inclusive('\n');
+    let mut rest = text;
+    while let Some(line) = lines.next() {
+        let is_open = |record: &str| record.bytes().filter(|b| *b == b'"').count() % 2 == 1;
+        let mut length = line.len();
+        if is_open(line) {
+            let mut ahead = lines.clone();
+            for _ in 0..MAX_CELL_LINES {
+                let Some(next) = ahead.next() else { break };
+                length += next.len();
+                if !is_open(&rest[..length]) {
+                    lines = ahead;
+                    break;
+                }
+            }
+            if is_open(&rest[..length]) {
+                length = line.len();
+            }
+        }
+        let (record, after) = rest.split_at(length);
+        rest = after;
+        if !record.trim().is_empty() {
+            records.push(record.trim_end_matches(['\r', '\n']));
+        }
+    }
+    records
 }
 
 /// Returns how consistent the cells are: the share of lines with the usual number of cells, times
@@ -244,6 +278,8 @@ mod tests {
             ("a\n1.5\n2.5\n", "none"),
             ("\"a\",\"b\"\n\"1,5\",\"2,5\"\n", "comma"),
             ("title; with a sign\nt,F\n1.5,2\n2.5,3\n3.5,4\n", "comma"),
+            ("t,F,n\n1,2,\"a\nb\nc; d\ne; f\"\n2,3,\"g\nh; i\nj; k\nl\"\n", "comma"),
+            ("t,F,d\n1,2,3\"\n2,3,3\"\n3,4,3\n", "comma"),
         ] {
             assert_eq!(detect(text).as_str(), expected, "{text}");
         }

@@ -96,6 +96,20 @@ fn an_empty_cell_between_blanks_is_refused() {
 }
 
 #[test]
+fn speeds_of_at_most_one_percent_are_a_question() {
+    let text = "Load [N],Direction,Speed [%],Force [N]\n10,up,0.5,12.8\n10,down,1,7.4\n";
+    assert_eq!(problems(text, &[]), "column 'Speed [%]' in % has no value above 1");
+    let speeds = |options: &[&str]| {
+        let csv = read(text, options).unwrap().output.unwrap().to_csv();
+        let at = csv.lines().next().unwrap().split(',').position(|name| name == "speed_pct").unwrap();
+        csv.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(speeds(&["factor.Speed [%]=100"]), ["50", "100"]);
+    assert_eq!(speeds(&["unit.Speed [%]=%"]), ["0.5", "1"]);
+    assert_eq!(problems(&text.replace("0.5", "50"), &[]), "");
+}
+
+#[test]
 fn factors_and_numbers_in_names_are_questions() {
     for (text, options, problem) in [
         (

@@ -195,8 +195,8 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
 fn read_rows(name: String, folder: &Path, reach: Reach) -> Result<(String, String), Diagnostic> {
     reach.check("rows.file", &name, folder)?;
     let bytes = read_at_most(&folder.join(&name), MAX_ROWS_BYTES).map_err(|e| {
-        let problem = format!("cannot read the file: {e}");
-        field_error("rows.file", Some(&format!("{name:?}")), problem, RELATIVE_PATH).with_source(e)
+        field_error("rows.file", Some(&format!("{name:?}")), "cannot read the file", RELATIVE_PATH)
+            .with_source(e)
     })?;
     let text = text(bytes, &name)?;
     Ok((name, text))
@@ -215,6 +215,8 @@ fn unreadable_file(file: &str, error: Error) -> Diagnostic {
         }
         _ => "give the path of a sweep; see `pinswitch batch --help`",
     };
-    let problem = format!("cannot read the file: {error}");
-    Diagnostic::new(problem).with_location(Location::file(file)).with_help(help).with_source(error)
+    Diagnostic::new("cannot read the file")
+        .with_location(Location::file(file))
+        .with_help(help)
+        .with_source(error)
 }

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::{Location, excerpt, neutral, neutral_line};
+use crate::{Location, excerpt, neutral_line};
 
-/// Most characters of a problem, of a help and of each cause: more would not be read.
+/// Most characters of a problem, of a line of help and of each cause: more would not be read.
 const LONGEST: usize = 520;
+/// Most lines of a help, such as the options that answer a question.
+const MAX_HELP_LINES: usize = 24;
 /// Most characters of the one-line form.
 const LONGEST_LINE: usize = 590;
 /// Most causes that are shown.
@@ -170,9 +172,14 @@ fn shown_line(text: &str) -> String {
     neutral_line(&excerpt(text, LONGEST)).into_owned()
 }
 
-/// A text of bounded length without control characters; a help may have several lines.
+/// A text of bounded length without control characters, which may have several lines.
 fn shown(text: &str) -> String {
-    neutral(&excerpt(text, LONGEST)).into_owned()
+    let mut lines: Vec<String> = text.lines().take(MAX_HELP_LINES).map(shown_line).collect();
+    let more = text.lines().count() - lines.len();
+    if more > 0 {
+        lines.push(format!("({more} lines more)"));
+    }
+    lines.join("\n")
 }
 
 impl fmt::Display for Diagnostic {

@@ -8,6 +8,7 @@ use super::refine::{Aim, Place, refined};
 use super::relaxed::extended_range;
 use super::space::{Space, is_predictable};
 use crate::config::Configuration;
+use crate::feasibility::is_feasible;
 use crate::request::{Limits, Materials, Parameter, Request, Target, Vary};
 use pinswitch_friction::{pluralise, sort_by_number};
 
@@ -250,14 +251,14 @@ fn best_move(
             return None;
         }
         let miss = trial.shortfall(&moved)?;
-        // A configuration that cannot be printed is useless as advice.
-        let printable = crate::design::is_accepted(moved.clone());
-        printable.then_some((to, miss, moved))
+        crate::design::is_accepted(moved.clone()).then_some((to, miss, moved))
     });
     // Among equal misses, such as zero, the smallest change is the best.
     let change = |to: f64| libm::log(to / from).abs();
-    let (to, miss, moved) =
-        candidates.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
+    let mut candidates: Vec<_> = candidates.collect();
+    candidates.sort_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))));
+    // A configuration that does not build is useless as advice.
+    let (to, miss, moved) = candidates.into_iter().find(|(.., moved)| is_feasible(moved))?;
     let forbidden_by = forbidden(trial.request, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
         .unwrap_or_else(|| "the search stopped early: increase --starts".to_owned());

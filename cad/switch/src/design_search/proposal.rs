@@ -13,7 +13,7 @@ use super::probability::{Probability, probability};
 use super::sensitivity::{Sensitivity, sensitivities};
 use crate::config::Configuration;
 use crate::design::Design;
-use crate::parts::can_be_printed;
+use crate::feasibility::is_feasible;
 use crate::request::{Parameter, Quantity, Target};
 
 /// A target with the result of a proposal.
@@ -73,7 +73,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     let mut configuration = configuration.clone();
     configuration.layout.substrate = pinswitch_friction::Substrate::Silicone;
     configuration.layout.pins.sort_unstable();
-    let design = Design::new(configuration.clone()).ok().filter(can_be_printed)?;
+    let design = Design::new(configuration.clone()).ok().filter(|_| is_feasible(&configuration))?;
     let part = trial.part(&configuration)?;
     let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
     let settled = trial.settled(&part, &curve);

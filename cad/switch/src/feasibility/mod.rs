@@ -85,6 +85,11 @@ pub fn repair(configuration: &Configuration) -> Result<Option<Proposal>, BuildEr
     Ok(Some(with_reasons(configuration, found, &problem.subject)))
 }
 
+/// Returns whether `configuration` satisfies all rules and builds.
+pub(crate) fn is_feasible(configuration: &Configuration) -> bool {
+    fault(configuration).is_none()
+}
+
 /// The error of a configuration; `None` if it is feasible.
 fn fault(configuration: &Configuration) -> Option<BuildError> {
     match Design::new(configuration.clone()) {

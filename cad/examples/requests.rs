@@ -2,7 +2,7 @@
 //! the share of simulated prints within tolerance that meet the request. `cad/doc/design.md` shows
 //! the table.
 //!
-//! `cargo run --release --example asks [NUMBER]` takes some minutes; with a number it runs one
+//! `cargo run --release --example requests [NUMBER]` takes some minutes; with a number it runs one
 //! request.
 
 use std::time::Instant;
@@ -32,7 +32,7 @@ enum Source {
 impl Source {
     fn text(&self) -> String {
         match self {
-            Targets(targets) => format!("[ask]\n{targets}"),
+            Targets(targets) => format!("[targets]\n{targets}"),
             File(text) => (*text).to_owned(),
         }
     }
@@ -48,8 +48,8 @@ const REQUESTS: [(Source, bool); 20] = [
     (Targets("max_friction_n = 'between 6 and 8'\n[limits]\npins = [3, 6]"), true),
     (Targets("low_load_friction_n = 'at most 0.15'\nmax_friction_n = 'at least 6'"), true),
     (Targets("threshold_n = { about = 20, within = 0.2 }\nstiffness = 'at least 2'"), true),
-    (File(include_str!("../../templates/asks/small-joint.toml")), true),
-    (File(include_str!("../../templates/asks/gripper.toml")), true),
+    (File(include_str!("../../templates/requests/small-joint.toml")), true),
+    (File(include_str!("../../templates/requests/gripper.toml")), true),
     (
         Targets(
             "threshold_n = { about = 30, within = 0.2 }\n[vary]\npitch_deg = true\n[materials]\nhardness_shore_a = [20, 35, 50, 65]",
@@ -64,7 +64,7 @@ const REQUESTS: [(Source, bool); 20] = [
     ),
     (Targets("max_friction_n = 'between 12 and 16'\n[vary]\nwrap_deg = true\npitch_deg = true"), true),
     (Targets("threshold_n = { about = 20, within = 0.15 }\n[vary]\npattern = false\nlayer_mm = true"), true),
-    (File(include_str!("../../templates/asks/impossible.toml")), false),
+    (File(include_str!("../../templates/requests/impossible.toml")), false),
     (Targets("max_friction_n = 'at least 30'"), false),
     (
         Targets("threshold_n = 'between 34 and 40'\n[limits]\npins = [3, 3]\n[vary]\nlayer_mm = [1.9, 2.1]"),

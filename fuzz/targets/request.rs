@@ -1,4 +1,4 @@
 //! See `tests/harness/readers.rs`.
 #![no_main]
 
-pinswitch_fuzz::target!("ask");
+pinswitch_fuzz::target!("request");

@@ -53,7 +53,7 @@ export async function secondTable(visit, site, { table }) {
 }
 
 export async function searchWithAModel(visit, site, { table }) {
-  await visit.open(`${site.address}${START}&ask.threshold_n=14`);
+  await visit.open(`${site.address}${START}&targets.threshold_n=14`);
   await visit.drop('plateaus.csv', table);
   await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
   await visit.click('#use-model');
@@ -71,7 +71,7 @@ export async function searchWithAModel(visit, site, { table }) {
 }
 
 export async function cardsOfAnEarlierDesign(visit, site) {
-  await visit.open(`${site.address}${START}&ask.threshold_n=24`);
+  await visit.open(`${site.address}${START}&targets.threshold_n=24`);
   await searched(visit);
   visit.findings.check('new cards belong to the present design', !(await visit.page.$('.results.outdated')));
   await visit.type('#f-shell-width_mm', '16');
@@ -85,7 +85,7 @@ export async function cardsOfAnEarlierDesign(visit, site) {
 }
 
 export async function closingCardsKeepsAFit(visit, site, { table }) {
-  await visit.open(`${site.address}${START}&ask.threshold_n=24`);
+  await visit.open(`${site.address}${START}&targets.threshold_n=24`);
   await searched(visit);
   await visit.drop('plateaus.csv', table);
   await visit.click('#results-close');
@@ -95,7 +95,7 @@ export async function closingCardsKeepsAFit(visit, site, { table }) {
 }
 
 export async function filesDuringASearch(visit, site) {
-  await visit.open(`${site.address}${START}&ask.threshold_n=24`);
+  await visit.open(`${site.address}${START}&targets.threshold_n=24`);
   await visit.click('#search');
   await visit.click('#download');
   await visit.check('files that wait for a search report it', () => /Waiting for the search for designs/.test(document.querySelector('#files-status').textContent));
@@ -125,14 +125,14 @@ export async function invalidText(visit, site) {
   await visit.type('#f-segment-grooves', '15');
   await visit.settled();
   await visit.click('#add-friction');
-  await visit.addressHas('ask.friction=');
+  await visit.addressHas('targets.friction=');
   await visit.type('#target-frictions input', '-3');
   await visit.check('an invalid target is reported', () => /above 0/.test(document.querySelector('#targets-status').textContent));
-  const target = await visit.page.evaluate(() => /ask\.friction=[\d.]+:([\d.]+)/.exec(decodeURIComponent(location.hash))[1]);
+  const target = await visit.page.evaluate(() => /targets\.friction=[\d.]+:([\d.]+)/.exec(decodeURIComponent(location.hash))[1]);
   await visit.focus('#explode');
   await visit.check('after blur the input shows the target', (value) => Number(document.querySelector('#target-frictions input').value) === Number(value) && document.querySelector('#targets-status').hidden, target);
   await visit.type('#target-threshold', '1e9');
-  await visit.addressLacks('ask.threshold_n=1000000000');
+  await visit.addressLacks('targets.threshold_n=1000000000');
   await visit.settled();
 }
 

@@ -198,12 +198,12 @@ export async function undoOfTargets(visit, site) {
     await visit.page.keyboard.up('Control');
   };
   await visit.type('#target-threshold', '24');
-  await visit.addressHas('ask.threshold_n=24');
+  await visit.addressHas('targets.threshold_n=24');
   await undo();
-  await visit.addressLacks('ask.threshold_n');
+  await visit.addressLacks('targets.threshold_n');
   visit.findings.check('the input of a removed target is empty', await visit.page.$eval('#target-threshold', (e) => e.value === ''));
   await visit.click('#add-friction');
-  await visit.addressHas('ask.friction=');
+  await visit.addressHas('targets.friction=');
   const before = await visit.page.$eval('#target-frictions input', (e) => e.value);
   await visit.type('#target-frictions input', '8.25');
   await visit.addressHas('8.25');
@@ -213,11 +213,11 @@ export async function undoOfTargets(visit, site) {
 }
 
 export async function address(visit, site) {
-  const hash = '#v=1&layout.pins=3,8,13&label.text=a%20b%2Cc&silicone.thickness_mm=2.5&ask.threshold_n=24&ask.friction=40:8.5';
+  const hash = '#v=1&layout.pins=3,8,13&label.text=a%20b%2Cc&silicone.thickness_mm=2.5&targets.threshold_n=24&targets.friction=40:8.5';
   await visit.open(site.address + hash);
   await visit.page.reload();
   await visit.settled();
-  for (const part of ['layout.pins=3,8,13', 'label.text=a b,c', 'silicone.thickness_mm=2.5', 'ask.threshold_n=24', 'ask.friction=40:8.5']) await visit.addressHas(part);
+  for (const part of ['layout.pins=3,8,13', 'label.text=a b,c', 'silicone.thickness_mm=2.5', 'targets.threshold_n=24', 'targets.friction=40:8.5']) await visit.addressHas(part);
   visit.findings.check('a complete address gives no message', !(await visit.shown('#notice')), await visit.text('#notice'));
   await visit.page.goto(`${site.address}#v=1&layout.pins=7,9`);
   await visit.addressHas('layout.pins=7,9');

@@ -23,8 +23,8 @@ export async function embedded(visit, site) {
   await hears('a refusal is sent as text', () => heard.some((m) => /segment\.grooves/.test(m.trouble)));
   await send({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9' });
   await hears('the design is shown again', () => heard.some((m) => m.hash === '#v=1&layout.pins=7,9' && m.trust && !m.trouble));
-  await send({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9&ask.threshold_n=25&nonsense=1' });
-  await hears('targets are sent, with the ignored part', () => heard.some((m) => m.hash.includes('ask.threshold_n=25') && /nonsense/.test(m.said) && m.trust));
+  await send({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9&targets.threshold_n=25&nonsense=1' });
+  await hears('targets are sent, with the ignored part', () => heard.some((m) => m.hash.includes('targets.threshold_n=25') && /nonsense/.test(m.said) && m.trust));
   await send({ type: 'pinswitch-set', hash: '#' });
   await hears('an empty address is reported', () => heard.some((m) => /neither an address/.test(m.said)));
   await send({ type: 'pinswitch-set', hash: '#section' });

@@ -81,9 +81,9 @@ export async function invalidAddresses(visit, site) {
   await paste('#nonsense');
   await visit.check('an address without a design changes nothing', hasNotice, 'contains no design.*design is unchanged');
   await visit.addressHas('layout.pins=4,8,12');
-  await paste('#v=1&layout.pins&ask.threshold_n=5,6&shell.walls');
-  await visit.check('names without a value are reported', hasNotice, 'Unknown in the address: shell\\.walls\\..*Invalid value in the address: layout\\.pins, ask\\.threshold_n\\.');
-  await visit.addressLacks('ask.threshold_n');
+  await paste('#v=1&layout.pins&targets.threshold_n=5,6&shell.walls');
+  await visit.check('names without a value are reported', hasNotice, 'Unknown in the address: shell\\.walls\\..*Invalid value in the address: layout\\.pins, targets\\.threshold_n\\.');
+  await visit.addressLacks('targets.threshold_n');
   await visit.settled();
   await visit.click('#undo');
   await visit.addressHas('layout.pins=4,8,12');

@@ -65,7 +65,7 @@ export async function focusAfterSearch(visit, site, { table }) {
   await visit.click('#add-friction');
   await focusMoves(visit, 'removing the last friction', '#target-frictions .tiny', /^add-friction$/);
   await visit.type('#target-threshold', '24');
-  await visit.addressHas('ask.threshold_n=24');
+  await visit.addressHas('targets.threshold_n=24');
   await focusMoves(visit, 'starting a search', '#search', /^stop$/);
   await visit.page.waitForFunction(() => document.querySelector('#stop').hidden, { timeout: SLOW_MS });
   visit.findings.check('after a search the focus is at its cards', await visit.page.evaluate(() => document.activeElement.id === 'designs'));

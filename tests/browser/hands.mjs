@@ -90,7 +90,7 @@ export async function numbers(visit, site, { findings }) {
   await visit.page.keyboard.press('ArrowUp');
   await visit.addressHas('silicone.thickness_mm=2.01');
   await visit.type('#target-threshold', '22,5');
-  await visit.addressHas('ask.threshold_n=22.5');
+  await visit.addressHas('targets.threshold_n=22.5');
   for (const [word, field] of [['cable', 'tendon-rope_diameter_mm'], ['mold', 'mould-kind'], ['rubber', 'silicone-hardness_shore_a'], ['screw', 'fasteners-kind']]) {
     await visit.type('#find', word);
     await visit.check(`${word} finds its field`, (id) => document.querySelector(`#f-${id}`).checkVisibility(), field);

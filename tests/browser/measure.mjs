@@ -118,7 +118,7 @@ async function memory(browser, site, facts) {
 // Times of long requests: a search, all files, a calibration.
 async function longRequests(browser, site, table) {
   const visit = await Visit.begin(browser, { findings: new Findings() });
-  await visit.open(`${site.address}#v=1&layout.pins=4,8,12&ask.threshold_n=24`);
+  await visit.open(`${site.address}#v=1&layout.pins=4,8,12&targets.threshold_n=24`);
   const timed = async (what, act, done) => {
     const start = performance.now();
     await act();
@@ -137,7 +137,7 @@ async function main() {
   writeFileSync(join(scratch, 'mine.toml'), '[layout]\npins = [5, 8, 11]\n');
   const sites = [await viewSite(job.binary, scratch, ['mine.toml'])];
   const { origin } = sites[0];
-  const facts = await (await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"ask": "facts"}' })).json();
+  const facts = await (await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"command": "facts"}' })).json();
   if (job.site) { printSize(job.site); sites.push(await moduleSite(job.site)); }
   const browser = await Browser.start({ tools: job.tools, executable: job.browser });
   for (const site of sites.reverse()) {

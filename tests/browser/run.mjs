@@ -44,7 +44,7 @@ function scenarios() {
 
 async function factsOf(site) {
   const { origin } = site;
-  const response = await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"ask": "facts"}' });
+  const response = await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"command": "facts"}' });
   return response.json();
 }
 

@@ -17,16 +17,16 @@ export async function search(visit, site) {
   await mouse.down();
   await mouse.move(grip.x + 40, grip.y + 8, { steps: 3 });
   await mouse.up();
-  await visit.addressHas('ask.threshold_n=');
+  await visit.addressHas('targets.threshold_n=');
   await visit.type('#target-threshold', '24');
-  await visit.addressHas('ask.threshold_n=24');
+  await visit.addressHas('targets.threshold_n=24');
   const isInFront = () => getComputedStyle(document.querySelector('.threshold-line.current')).zIndex > 0 && getComputedStyle(document.querySelector('.threshold-line.current'), '::after').backgroundColor !== 'rgba(0, 0, 0, 0)';
   visit.findings.check('the line of the target does not cross the label of the present threshold', await visit.page.evaluate(isInFront));
   await visit.focus('.grip.diamond');
   await visit.page.keyboard.press('ArrowUp');
-  await visit.addressHas('ask.friction=');
+  await visit.addressHas('targets.friction=');
   await visit.click('#target-frictions .tiny');
-  await visit.addressLacks('ask.friction');
+  await visit.addressLacks('targets.friction');
   await visit.click('#search');
   const reports = await visit.page.evaluate(async () => {
     const texts = new Set();
@@ -50,7 +50,7 @@ export async function search(visit, site) {
   await visit.click('#add-friction');
   await visit.type('#target-frictions label:nth-child(2) input', '40');
   await visit.type('#target-frictions label:nth-child(1) input', '8.5');
-  await visit.addressHas('ask.friction=40:8.5');
+  await visit.addressHas('targets.friction=40:8.5');
   await visit.click('#search');
   await visit.page.waitForFunction(() => /target: 8\.5 N/.test(document.querySelector('#designs').textContent), { timeout: SLOW_MS });
   const card = await visit.text('.design');

@@ -66,8 +66,8 @@ fn shipped_files_are_accepted() {
         let bytes = std::fs::read(path).unwrap();
         assert_eq!(judge("configuration", &bytes), Ok(Reading::Accepted), "{}", path.display());
     }
-    for path in files(&repository("templates/asks")) {
-        let reading = judge("ask", &std::fs::read(&path).unwrap());
+    for path in files(&repository("templates/requests")) {
+        let reading = judge("request", &std::fs::read(&path).unwrap());
         assert!(reading.is_ok(), "{}: {reading:?}", path.display());
     }
     for name in ["effects", "plan", "run", "rig", "measured"] {

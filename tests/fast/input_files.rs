@@ -59,7 +59,7 @@ fn binary_files_have_their_line() {
         &["generate", "bad.toml"][..],
         &["predict", "--model", "bad.toml", "--rows", "bad.toml"],
         &["simulate", "bad.toml", "--out", "x"],
-        &["design", "--ask", "bad.toml"],
+        &["design", "--request", "bad.toml"],
         &["batch", "bad.toml", "--dry-run"],
         &["batch", "base.toml", "--dry-run"],
         &["batch", "rows.toml", "--dry-run"],
@@ -129,10 +129,10 @@ fn other_mesh_formats_are_recognised() {
 #[test]
 fn files_of_other_commands_are_recognised() {
     let folder = tempfile::tempdir().unwrap();
-    let requests = repository("templates/asks");
+    let requests = repository("templates/requests");
     let mut given: Vec<_> = files(&requests)
         .into_keys()
-        .map(|name| (requests.join(name).display().to_string(), "design --ask"))
+        .map(|name| (requests.join(name).display().to_string(), "design --request"))
         .collect();
     for (kind, command) in [
         ("sweep", "batch"),

@@ -22,7 +22,7 @@ fn designs_meet_their_targets() {
         ["design", "--threshold", "24", "--max-friction", "9", "--pins", "3..5", "--out", "found", "--json"];
     let report = json(folder.path(), &[&request[..], &SHORT].concat());
     assert_eq!(report["possible"], true);
-    assert_eq!(report["ask"]["targets"][1]["wish"]["at_most"], 9.0);
+    assert_eq!(report["request"]["targets"][1]["requirement"]["at_most"], 9.0);
     let proposals = report["proposals"].as_array().unwrap();
     assert!(proposals.len() >= 3);
     for (i, proposal) in proposals.iter().enumerate() {
@@ -128,9 +128,18 @@ fn unprintable_request_names_limit() {
 fn shipped_requests_are_answered() {
     let folder = tempfile::tempdir().unwrap();
     for (name, code) in [("gripper", 0), ("small-joint", 0), ("impossible", 1)] {
-        let file = repository(&format!("templates/asks/{name}.toml"));
-        let request =
-            ["design", "--ask", &file.to_string_lossy(), "--starts", "3", "--draws", "100", "--best", "2"];
+        let file = repository(&format!("templates/requests/{name}.toml"));
+        let request = [
+            "design",
+            "--request",
+            &file.to_string_lossy(),
+            "--starts",
+            "3",
+            "--draws",
+            "100",
+            "--best",
+            "2",
+        ];
         let (exit_code, message) = ended(folder.path(), &request);
         assert_eq!(exit_code, Some(code), "{name}: {message}");
     }
@@ -163,7 +172,7 @@ fn design_uses_calibrated_model() {
 #[test]
 fn malformed_targets_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("odd.toml"), "[ask]\nthreshold_n = 20\n[vary]\nthickness = true\n")
+    std::fs::write(folder.path().join("odd.toml"), "[targets]\nthreshold_n = 20\n[vary]\nthickness = true\n")
         .unwrap();
     for (arguments, word) in [
         (&["design", "--threshold=-1"][..], "--threshold = -1"),
@@ -174,7 +183,7 @@ fn malformed_targets_are_refused() {
             &["design", "--friction", "at most 3 at 50", "--friction", "at least 5 at 50"],
             "'friction at 50 N at most 3 N' and 'friction at 50 N at least 5 N'",
         ),
-        (&["design", "--threshold", "24", "--load-range", "30..60"], "ask.load_range_n = 30..60"),
+        (&["design", "--threshold", "24", "--load-range", "30..60"], "targets.load_range_n = 30..60"),
         (
             &["design", "--max-friction", "5", "--friction", "at least 8 at 49.671"],
             "'friction at 49.671 N at least 8 N'",
@@ -192,8 +201,8 @@ fn malformed_targets_are_refused() {
         (&["design", "--threshold", "20", "--vary", "layer_mm=1..99"], "0.3 to 10"),
         (&["design", "--threshold", "20", "--outer-radius=-3"], "outside 0.1 to 1000 mm"),
         (&["design", "--threshold", "20", "--best", "0"], "--best = 0"),
-        (&["design", "--ask", "no-such.toml"], "cannot read"),
-        (&["design", "--ask", "odd.toml"], "vary.thickness"),
+        (&["design", "--request", "no-such.toml"], "cannot read"),
+        (&["design", "--request", "odd.toml"], "vary.thickness"),
         (&["design", "--threshold", "20", "--model", "odd.toml"], "odd.toml"),
         (
             &["design", "--threshold", "20", "--model", "odd.toml", "--set", "segment.grooves=13"],

@@ -96,7 +96,7 @@ fn content_of_files_is_neutral() {
              [[constraints]]\nrequire = \"w{ESCAPED} > 1\"\n"
         ),
     );
-    write(path, "request.toml", &format!("[ask]\n\"t{ESCAPED}\" = 20\n"));
+    write(path, "request.toml", &format!("[targets]\n\"t{ESCAPED}\" = 20\n"));
     write(path, "plan.toml", &format!("[noise]\n\"n{ESCAPED}\" = 0.3\n"));
     write(path, "run.toml", &RIG.replace("a.csv", &format!("a{ESCAPED}.csv")));
     write(path, "rig.toml", &format!("\"r{ESCAPED}\" = 1\n"));
@@ -114,7 +114,7 @@ fn content_of_files_is_neutral() {
         "batch sweep.toml --dry-run",
         "batch axis.toml --dry-run",
         "batch constraint.toml --dry-run",
-        "design --ask request.toml",
+        "design --request request.toml",
         "simulate plan.toml --out x",
         "power plan.toml",
         "segment run.toml --out x.csv",

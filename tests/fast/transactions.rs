@@ -392,7 +392,7 @@ fn bodies_are_bounded_together() {
         let _ = (0..12).all(|_| connection.write_all(&chunk).is_ok());
     }
     // Short requests are answered all the same.
-    let body = r#"{"ask": "design", "values": {}}"#;
+    let body = r#"{"command": "design", "values": {}}"#;
     let headers = format!(
         "{}Origin: http://{}\r\nContent-Length: {}\r\n\r\n{body}",
         preview.host(),

@@ -67,12 +67,11 @@ fn the_configurator_saves_the_followed_file() {
     assert_eq!(start["source"]["file"], "mine.toml");
     assert_eq!(start["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
 
-    let shown = post(&preview, "/answer", r#"{"ask": "design", "values": {"segment.grooves": 40}}"#);
+    let shown = post(&preview, "/answer", r#"{"command": "design", "values": {"segment.grooves": 40}}"#);
     let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
     assert_eq!(shown["trouble"]["field"], "segment.grooves");
     let change = &shown["trouble"]["changes"][0];
-    let fixed =
-        serde_json::json!({"ask": "design", "values": {change["path"].as_str().unwrap(): change["value"]}});
+    let fixed = serde_json::json!({"command": "design", "values": {change["path"].as_str().unwrap(): change["value"]}});
     let shown = post(&preview, "/answer", &fixed.to_string());
     assert!(shown.contains(r#""trouble":null"#), "{shown:.300}");
 
@@ -111,8 +110,7 @@ fn the_configurator_saves_the_followed_file() {
 }
 
 /// A search of many seconds, among 40 grooves.
-const LONG_SEARCH: &str =
-    r#"{"ask": "search", "values": {"segment.grooves": 40, "shell.outer_radius_mm": 45}, "threshold_n": 24}"#;
+const LONG_SEARCH: &str = r#"{"command": "search", "values": {"segment.grooves": 40, "shell.outer_radius_mm": 45}, "threshold_n": 24}"#;
 
 /// Waits until `condition` is true; returns whether it is within 30 s.
 fn becomes_true(condition: impl Fn() -> bool) -> bool {
@@ -134,7 +132,7 @@ fn a_search_delays_no_design() {
     let mut stream = preview.connect();
     write!(stream, "POST /answer HTTP/1.1\r\n{}", with_headers(&preview, LONG_SEARCH)).unwrap();
     assert!(has_children(1), "a search is a process");
-    let design = post(&preview, "/answer", r#"{"ask": "design", "values": {}}"#);
+    let design = post(&preview, "/answer", r#"{"command": "design", "values": {}}"#);
     assert!(design.contains(r#""trouble":null"#), "{design:.300}");
     assert_eq!(preview.children(), Some(1), "a design is answered during the search");
     drop(stream);
@@ -153,7 +151,7 @@ fn a_worker_ends_with_its_input() {
         drop(open);
         (output.status.code(), String::from_utf8(output.stdout).unwrap())
     };
-    let (code, text) = answer(r#"{"ask": "search", "values": {}, "threshold_n": 24}"#, true);
+    let (code, text) = answer(r#"{"command": "search", "values": {}, "threshold_n": 24}"#, true);
     assert!(code == Some(0) && text.contains("layout.pins"), "{code:?} {text:.300}");
     assert_eq!(answer(LONG_SEARCH, false), (Some(1), String::new()), "its input is closed");
 }

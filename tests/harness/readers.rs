@@ -54,7 +54,7 @@ pub struct Reader {
 pub const READERS: [Reader; 20] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
-    Reader { name: "ask", judge: ask },
+    Reader { name: "request", judge: request },
     Reader { name: "run", judge: run_plan },
     Reader { name: "log", judge: log },
     Reader { name: "plateaus", judge: plateaus },
@@ -165,19 +165,19 @@ fn preset(bytes: &[u8]) -> Result<Reading, String> {
     Ok(Reading::Accepted)
 }
 
-fn ask(bytes: &[u8]) -> Result<Reading, String> {
+fn request(bytes: &[u8]) -> Result<Reading, String> {
     let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
-    let ask = match Request::read(text, FILE) {
-        Ok(ask) => ask,
+    let request = match Request::read(text, FILE) {
+        Ok(request) => request,
         Err(e) => return refused(&e),
     };
-    require(!ask.targets.is_empty(), || "a request without targets".to_owned())?;
-    for target in &ask.targets {
+    require(!request.targets.is_empty(), || "a request without targets".to_owned())?;
+    for target in &request.targets {
         let (low, high) = target.requirement.interval();
         require(low <= high && low.is_finite(), || format!("{target}: {low} to {high}"))?;
         require(target.to_string().chars().count() < LONGEST, || "a target without end".to_owned())?;
     }
-    match ask.check_loads(ask.load_range_n.unwrap_or((2.5, 50.0))) {
+    match request.check_loads(request.load_range_n.unwrap_or((2.5, 50.0))) {
         Ok(()) => Ok(Reading::Accepted),
         Err(e) => refused(&e),
     }

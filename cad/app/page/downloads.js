@@ -6,7 +6,7 @@ class Downloads {
     this.dialog = byId('files');
     byId('download').addEventListener('click', () => this.open());
     byId('files-close').addEventListener('click', () => this.dialog.close());
-    byId('zip').addEventListener('click', () => this.download({ ask: 'zip' }, `${this.name()}.zip`, 'application/zip'));
+    byId('zip').addEventListener('click', () => this.download({ command: 'zip' }, `${this.name()}.zip`, 'application/zip'));
     byId('toml').addEventListener('click', () => this.configuration());
   }
 
@@ -47,7 +47,7 @@ class Downloads {
     const number = this.listNumber = (this.listNumber ?? 0) + 1;
     if (isStale) return;
     try {
-      const { files } = await this.engine.request({ ask: 'files', ...this.design() });
+      const { files } = await this.engine.request({ command: 'files', ...this.design() });
       if (number !== this.listNumber) return;
       this.showFiles(files);
       byId('files-status').textContent = '';
@@ -59,7 +59,7 @@ class Downloads {
   // Saves the configuration of the present values; the page may still show the design before.
   async configuration() {
     try {
-      const { toml, data, trouble } = await this.engine.request({ ask: 'design', values: this.state.now.values, quality: 'coarse', extra: true });
+      const { toml, data, trouble } = await this.engine.request({ command: 'design', values: this.state.now.values, quality: 'coarse', extra: true });
       if (trouble) throw new EngineError(troubleText(trouble), 'refused');
       save(`${data.manifest.name}.toml`, toml, 'application/toml');
       byId('files-status').textContent = TEXT.saved(`${data.manifest.name}.toml`);
@@ -84,7 +84,7 @@ class Downloads {
       const list = make('ul');
       for (const { name, bytes } of members) {
         const item = make('li');
-        const act = button(name, () => this.download({ ask: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
+        const act = button(name, () => this.download({ command: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
         act.append(make('span', TEXT.megabytes(bytes), { class: 'dim' }));
         item.append(act);
         list.append(item);

@@ -64,9 +64,9 @@ class WorkerClient {
 
   // Stops requests of this kind, waiting or in progress, and no others.
   stop(kind) {
-    this.waiting.filter((r) => r.request.ask === kind).forEach((r) => r.reject(new Superseded()));
-    this.waiting = this.waiting.filter((r) => r.request.ask !== kind);
-    if (this.current?.request.ask !== kind) return;
+    this.waiting.filter((r) => r.request.command === kind).forEach((r) => r.reject(new Superseded()));
+    this.waiting = this.waiting.filter((r) => r.request.command !== kind);
+    if (this.current?.request.command !== kind) return;
     this.end();
     this.current.reject(new Superseded());
     this.current = null;
@@ -91,7 +91,7 @@ class ServerClient {
   }
 
   async post(request) {
-    const { signal } = (this.aborts[request.ask] ??= new AbortController());
+    const { signal } = (this.aborts[request.command] ??= new AbortController());
     let response;
     try {
       response = await fetch('answer', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(request), signal });
@@ -122,13 +122,13 @@ class Engine {
   }
 
   // The long request in progress, for which files wait: `search`, `calibrate`, or undefined.
-  longRequest() { return [...this.inProgress].map((request) => request.ask).find((kind) => kind === 'search' || kind === 'calibrate'); }
+  longRequest() { return [...this.inProgress].map((request) => request.command).find((kind) => kind === 'search' || kind === 'calibrate'); }
 
   // Returns the answer; throws EngineError if there is none, and Superseded if a newer design
   // replaces this one. A design with `extra` is neither replaced nor replaces others.
   async request({ extra, ...request }) {
-    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.ask);
-    const group = request.ask === 'design' && !extra ? 'design' : undefined;
+    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.command);
+    const group = request.command === 'design' && !extra ? 'design' : undefined;
     this.inProgress.add(request);
     const answer = await (isSlow ? this.slow : this.designs).request(request, group).finally(() => this.inProgress.delete(request));
     if (answer?.error !== undefined) throw new EngineError(answer.error, 'refused');

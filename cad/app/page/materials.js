@@ -77,8 +77,8 @@ function showMaterials(data) {
     row.append(make('dt', name), make('dd', amount));
     return row;
   }));
-  const rows = parts.map((p) => [p.name, sizeOf(p).map((v) => v.toFixed(1)).join(' x '), p.mass_g.toFixed(2), p.volume_mm3.toFixed(1), p.mesh.triangles]);
-  byId('parts').replaceChildren(table([TEXT.part, TEXT.size, TEXT.mass, TEXT.volume, TEXT.triangles], rows));
+  const rows = parts.map((p) => [p.name, sizeOf(p).map((v) => v.toFixed(1)).join(' x '), p.mass_g.toFixed(2), p.volume_mm3.toFixed(1)]);
+  byId('parts').replaceChildren(table([TEXT.part, TEXT.size, TEXT.mass, TEXT.volume], rows));
   const all = beds(data.manifest);
   byId('bed').replaceChildren(...all.map(drawBed));
   byId('bed-caption').textContent = TEXT.bedCaption(all.length, formatNumber(all[0].bed), all[0].placed !== null);

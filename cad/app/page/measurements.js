@@ -46,7 +46,7 @@ class Measurements {
     byId('measurements').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     let answer;
     try {
-      answer = await this.engine.request({ ask: 'import', data: base64Of(bytes), file, set });
+      answer = await this.engine.request({ command: 'import', data: base64Of(bytes), file, set });
     } catch (problem) {
       if (number === this.fitNumber && problem instanceof EngineError) this.report([problem.message], undefined, true);
       if (problem instanceof EngineError || problem instanceof Superseded) return;
@@ -83,7 +83,7 @@ class Measurements {
     byId('stop-fit').hidden = false;
     byId('measurements').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     try {
-      const answer = await this.engine.request({ ask: 'calibrate', csv, file }).finally(endReports);
+      const answer = await this.engine.request({ command: 'calibrate', csv, file }).finally(endReports);
       if (number !== this.fitNumber) return;
       const digits = (v) => (v < 0.1 ? v.toFixed(4) : v.toFixed(2));
       const errors = answer.before_n === null || answer.after_n === null ? [] : [TEXT.heldOutErrors(digits(answer.before_n), digits(answer.after_n), digits(answer.promise_n ?? answer.after_n))];
@@ -165,7 +165,7 @@ class Measurements {
     if (!fitted || model) return;
     let answer;
     try {
-      answer = await this.engine.request({ ask: 'design', values, quality: 'coarse', model: fitted.toml, extra: true });
+      answer = await this.engine.request({ command: 'design', values, quality: 'coarse', model: fitted.toml, extra: true });
     } catch (problem) {
       // The request for the design itself reports a missing engine.
       if (problem instanceof EngineError || problem instanceof Superseded) return;
@@ -188,7 +188,7 @@ class Measurements {
   // Uses a model.toml of an earlier calibration.
   async openModel(toml, file) {
     try {
-      const { trouble } = await this.engine.request({ ask: 'model', toml, file });
+      const { trouble } = await this.engine.request({ command: 'model', toml, file });
       if (trouble) throw new EngineError(troubleText(trouble), 'refused');
     } catch (problem) {
       if (problem instanceof EngineError) showNotice(TEXT.notOpened(file) + problem.message);

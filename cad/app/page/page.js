@@ -59,7 +59,7 @@ class Page {
     byId('busy').textContent = TEXT.starting;
     let facts;
     try {
-      facts = await this.engine.request({ ask: 'facts' });
+      facts = await this.engine.request({ command: 'facts' });
     } catch (problem) {
       byId('busy').textContent = '';
       document.body.dataset.engineFailed = 'true';
@@ -163,7 +163,7 @@ class Page {
     document.body.dataset.pending = 'true';
     const slow = setTimeout(() => { byId('busy').textContent = TEXT.working; }, 300);
     try {
-      const answer = await this.engine.request({ ask: 'design', values, quality, model: model?.toml ?? null });
+      const answer = await this.engine.request({ command: 'design', values, quality, model: model?.toml ?? null });
       if (answer.data) { this.instead = null; this.show(answer, quality, now); }
       else if (!this.data) await this.showPublished();
       document.body.classList.remove('disconnected');
@@ -191,7 +191,7 @@ class Page {
   // If the first design cannot be built, a published one is shown in grey.
   async showPublished() {
     const values = this.published()?.values ?? {};
-    const answer = await this.engine.request({ ask: 'design', values, quality: 'coarse', model: null, extra: true });
+    const answer = await this.engine.request({ command: 'design', values, quality: 'coarse', model: null, extra: true });
     if (!answer.data || this.data) return;
     this.instead = answer.data.manifest.name;
     this.show(answer, 'coarse', { values, model: null });
@@ -225,7 +225,7 @@ class Page {
 
   async open(text, file) {
     try {
-      const { values, trouble } = await this.engine.request({ ask: 'open', toml: text, file });
+      const { values, trouble } = await this.engine.request({ command: 'open', toml: text, file });
       if (values) { this.state.change({ values }); showToast(TEXT.opened(file)); }
       else showNotice(TEXT.notOpened(file) + (trouble ? troubleText(trouble) : ''));
     } catch (problem) {
@@ -346,7 +346,7 @@ class Page {
   // The configuration of the design as TOML.
   async configurationText() {
     const { values } = this.state.now;
-    return (await this.engine.request({ ask: 'design', values, quality: 'coarse', extra: true })).toml;
+    return (await this.engine.request({ command: 'design', values, quality: 'coarse', extra: true })).toml;
   }
 }
 

@@ -81,14 +81,14 @@ class State extends EventTarget {
 }
 
 // ---- the address --------------------------------------------------------------------------------------------------
-// #v=1&layout.pins=5,8,11&shell.wall_mm=9&ask.threshold_n=24&ask.friction=30:8.5&model=(deflated, base64url)
+// #v=1&layout.pins=5,8,11&shell.wall_mm=9&targets.threshold_n=24&targets.friction=30:8.5&model=(deflated, base64url)
 
 function encodeHash(now) {
   const pairs = [`v=${HASH_VERSION}`];
   const text = (value) => encodeURIComponent(Array.isArray(value) ? value.join(',') : String(value)).replaceAll('%2C', ',');
   for (const [path, value] of Object.entries(now.values)) pairs.push(`${encodeURIComponent(path)}=${text(value)}`);
-  if (now.targets.threshold_n !== null) pairs.push(`ask.threshold_n=${now.targets.threshold_n}`);
-  if (now.targets.friction.length) pairs.push(`ask.friction=${now.targets.friction.map((f) => `${f.load_n}:${f.friction_n}`).join(',')}`);
+  if (now.targets.threshold_n !== null) pairs.push(`targets.threshold_n=${now.targets.threshold_n}`);
+  if (now.targets.friction.length) pairs.push(`targets.friction=${now.targets.friction.map((f) => `${f.load_n}:${f.friction_n}`).join(',')}`);
   if (now.model) pairs.push(`model=${now.model.packed}`);
   return `#${pairs.join('&')}`;
 }
@@ -130,7 +130,7 @@ async function decodeHash(hash, fields) {
   const parts = { values: {}, model: null, targets: { threshold_n: null, friction: [] } };
   const [unknown, wrong] = [[], []];
   for (const [name, raw] of given) {
-    const isKnown = fields.has(name) || ['model', 'ask.threshold_n', 'ask.friction'].includes(name);
+    const isKnown = fields.has(name) || ['model', 'targets.threshold_n', 'targets.friction'].includes(name);
     let value;
     // A name without `=`.
     if (raw === undefined) { (isKnown ? wrong : unknown).push(name.slice(0, 60)); continue; }
@@ -138,7 +138,7 @@ async function decodeHash(hash, fields) {
     if (name === 'model') {
       parts.model = await unpackModel(raw);
       if (!parts.model) messages.push(TEXT.hash.model);
-    } else if (name === 'ask.threshold_n' || name === 'ask.friction') {
+    } else if (name === 'targets.threshold_n' || name === 'targets.friction') {
       if (!readTarget(parts.targets, name, value)) wrong.push(name);
     } else if (!fields.has(name)) {
       unknown.push(name.slice(0, 60));
@@ -162,7 +162,7 @@ async function decodeHash(hash, fields) {
 function readTarget(targets, name, text) {
   const numbers = text.split(',').map((item) => item.split(':').map(Number));
   if (!numbers.flat().every(isTarget)) return false;
-  if (name === 'ask.threshold_n') {
+  if (name === 'targets.threshold_n') {
     if (numbers.flat().length !== 1) return false;
     [[targets.threshold_n]] = numbers;
     return true;

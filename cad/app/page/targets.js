@@ -98,7 +98,7 @@ class Targets {
     byId('results').classList.add('outdated');
     const endReports = reportElapsed((seconds) => { byId('search-status').textContent = TEXT.searching(seconds); });
     try {
-      const answer = await this.engine.request({ ask: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
+      const answer = await this.engine.request({ command: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
       this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), varied: answer.varied, input: this.searchInput(targets, values, model, answer.varied) };
       byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
       this.showBlocked(answer.blocked);

@@ -84,7 +84,7 @@ const TEXT = {
   cure: 'cure', cured: (mould, post) => `${TEXT.hoursAt(mould)} in the mould${post ? `, then ${TEXT.hoursAt(post)} outside` : ''}`, hoursAt: ({ temperature_c, hours }) => `${formatNumber(hours, 2)} h at ${formatNumber(temperature_c)} °C`,
   tendon: 'tendon', coated: (d, o) => `${d} mm, ${o} mm coated`, screws: 'screws', nuts: 'nuts', inserts: 'heat-set inserts', dowels: 'dowels', forMount: 'for the mount',
   rightSide: (l, r) => `${l} left, ${r} right`,
-  plastic: 'plastic, all printed parts', part: 'part', size: 'size (mm)', mass: 'mass (g)', volume: 'volume (mm³)', triangles: 'triangles',
+  plastic: 'plastic, all printed parts', part: 'part', size: 'size (mm)', mass: 'mass (g)', volume: 'volume (mm³)',
   bedCaption: (beds, bed, fits) => (fits ? `Outlines of the printed parts, to scale, on ${beds === 1 ? 'a bed' : `${beds} beds`} of ${bed} mm.` : `The parts do not fit on one bed of ${bed} mm: print them in several jobs.`),
   bedPart: (name, x, y) => `${name}, ${x} by ${y} mm`, bedName: (n, bed) => `Outlines of ${n} printed parts on a bed of ${bed} mm`,
 

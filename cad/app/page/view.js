@@ -46,7 +46,7 @@ class View {
     const number = this.pictureNumber = (this.pictureNumber ?? 0) + 1;
     let png;
     try {
-      png = await engine.request({ ask: 'file', name: 'assembly.png', ...design });
+      png = await engine.request({ command: 'file', name: 'assembly.png', ...design });
     } catch (problem) {
       // The reason is shown with the design.
       if (problem instanceof EngineError || problem instanceof Superseded) return;

@@ -90,13 +90,13 @@ pub(crate) fn answer(request: &SearchRequest) -> Answer {
     }
 }
 
-fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
-    let base = feasibility::design(configuration(&request.values)?)?;
-    let ask = ask(request);
-    ask.check().map_err(Diagnostic::from_error)?;
-    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Diagnostic::from_error)?;
-    let options = Options { best: request.most.clamp(1, MAX_DESIGNS), ..OPTIONS };
-    let model = request.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose();
+fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
+    let base = feasibility::design(configuration(&wanted.values)?)?;
+    let request = design_request(wanted);
+    request.check().map_err(Diagnostic::from_error)?;
+    request.check_loads(load_range_n(base.configuration(), &request)).map_err(Diagnostic::from_error)?;
+    let options = Options { best: wanted.most.clamp(1, MAX_DESIGNS), ..OPTIONS };
+    let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose();
     let model = model.map_err(Diagnostic::from_error)?;
     let grooves = base.configuration().segment.grooves;
     if model.is_some() && grooves != GROOVES {
@@ -108,18 +108,18 @@ fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
     let published = PublishedPhysics::default();
     let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL_NAME.to_owned()));
     let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
-    let found = search(&base, &ask, belief, options, &Silent);
+    let found = search(&base, &request, belief, options, &Silent);
     let summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);
     let blocked = found.blocked.as_ref().map(|b| Explanation { problem: b.problem(), help: b.help() });
     let designs = found.proposals.iter().filter_map(|proposal| design(proposal, model.as_ref())).collect();
-    let parameters = ask.vary.parameters.iter().map(|varied| varied.parameter.field());
-    let varied = ask.vary.pattern.then_some("layout.pins").into_iter().chain(parameters).collect();
+    let parameters = request.vary.parameters.iter().map(|varied| varied.parameter.field());
+    let varied = request.vary.pattern.then_some("layout.pins").into_iter().chain(parameters).collect();
     Ok(SearchResult { designs, summary, varied, blocked, tolerance: DEFAULT_WITHIN })
 }
 
 /// Returns the targets of a request. Without a model the search varies what that of the command line varies; a calibrated
 /// model is of one rig, whose dimensions stay.
-fn ask(request: &SearchRequest) -> Request {
+fn design_request(request: &SearchRequest) -> Request {
     let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
     let threshold =
         request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });

@@ -109,8 +109,10 @@ mod tests {
     #[test]
     fn list_files_and_archive_agree() {
         let mut engine = Engine::default();
-        let request = |ask: &str, more: &str| {
-            format!(r#"{{"ask": "{ask}", "values": {{"layout.pins": [8], "switch.name": "one"}}{more}}}"#)
+        let request = |command: &str, more: &str| {
+            format!(
+                r#"{{"command": "{command}", "values": {{"layout.pins": [8], "switch.name": "one"}}{more}}}"#
+            )
         };
         let Answer::Json(text) = engine.answer(&request("files", "")) else { panic!("no list") };
         let list: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -26,11 +26,11 @@
 //! use pinswitch_app::{Answer, Engine};
 //!
 //! let mut engine = Engine::default();
-//! let Answer::Json(text) = engine.answer(r#"{"ask": "design", "values": {"layout.pins": [5, 8, 11]}}"#) else {
+//! let Answer::Json(text) = engine.answer(r#"{"command": "design", "values": {"layout.pins": [5, 8, 11]}}"#) else {
 //!     return Err("a design is JSON");
 //! };
 //! assert!(text.contains(r#""trouble":null"#));
-//! let shell = engine.answer(r#"{"ask": "file", "values": {"layout.pins": [5, 8, 11]}, "name": "shell.stl"}"#);
+//! let shell = engine.answer(r#"{"command": "file", "values": {"layout.pins": [5, 8, 11]}, "name": "shell.stl"}"#);
 //! assert!(matches!(shell, Answer::Bytes(_)));
 //! # Ok::<(), &str>(())
 //! ```

@@ -8,9 +8,9 @@ use serde_json::Value;
 /// Values that differ from the defaults, by `table.key`.
 pub type Values = BTreeMap<String, Value>;
 
-/// One request; `ask` names its kind.
+/// One request; `command` names its kind.
 #[derive(Debug, Deserialize)]
-#[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
+#[serde(tag = "command", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Request {
     /// Fields, templates and formats.
     Facts,

@@ -76,7 +76,7 @@ def test_meshes_are_checked(parts: pinswitch.Parts, tmp_path: Path) -> None:
 
 
 def test_designs_meet_a_request() -> None:
-    designs = pinswitch.design({"ask": {"threshold_n": 24, "max_friction_n": "at most 9"}}, best=2, draws=200)
+    designs = pinswitch.design({"targets": {"threshold_n": 24, "max_friction_n": "at most 9"}}, best=2, draws=200)
     assert designs.is_possible and len(designs) == 2
     best = designs[0]
     assert best.friction_n <= 9 and best.threshold_n == pytest.approx(24, rel=0.1)
@@ -85,10 +85,10 @@ def test_designs_meet_a_request() -> None:
 
 
 def test_impossible_requests_name_the_limit() -> None:
-    designs = pinswitch.design({"ask": {"max_friction_n": "at least 30"}}, best=1, draws=100)
+    designs = pinswitch.design({"targets": {"max_friction_n": "at least 30"}}, best=1, draws=100)
     assert not designs.is_possible and designs.blocked is not None and len(designs) == 1
     with pytest.raises(PinswitchError) as caught:
-        pinswitch.design({"ask": {"threshhold_n": 20}})
+        pinswitch.design({"targets": {"threshhold_n": 20}})
     assert caught.value.line == 2
 
 

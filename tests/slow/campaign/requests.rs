@@ -6,16 +6,16 @@ use super::{campaign, damage};
 
 /// Requests of the configurator's page, to damage.
 const REQUESTS: [&str; 10] = [
-    r#"{"ask": "facts"}"#,
-    r#"{"ask": "design", "values": {"shell.width_mm": 14, "layout.pins": [5, 8, 11]}}"#,
-    r#"{"ask": "design", "values": {"segment.grooves": 40, "switch.name": "mine"}, "quality": "draft"}"#,
-    r#"{"ask": "open", "toml": "[shell]\nwidth_mm = 14\n", "file": "mine.toml"}"#,
-    r#"{"ask": "files", "values": {"mould.kind": "none"}}"#,
-    r#"{"ask": "file", "values": {}, "name": "shell.stl"}"#,
-    r#"{"ask": "model", "toml": "schema = \"x\"\n", "file": "model.toml"}"#,
-    r#"{"ask": "import", "data": "dDtGCjA7MQoxOzIK", "file": "a.csv", "set": ["decimal=comma"]}"#,
-    r#"{"ask": "calibrate", "csv": "series,substrate\n1,abs\n", "file": "t.csv"}"#,
-    r#"{"ask": "search", "values": {"segment.grooves": 2000}, "threshold_n": 24}"#,
+    r#"{"command": "facts"}"#,
+    r#"{"command": "design", "values": {"shell.width_mm": 14, "layout.pins": [5, 8, 11]}}"#,
+    r#"{"command": "design", "values": {"segment.grooves": 40, "switch.name": "mine"}, "quality": "draft"}"#,
+    r#"{"command": "open", "toml": "[shell]\nwidth_mm = 14\n", "file": "mine.toml"}"#,
+    r#"{"command": "files", "values": {"mould.kind": "none"}}"#,
+    r#"{"command": "file", "values": {}, "name": "shell.stl"}"#,
+    r#"{"command": "model", "toml": "schema = \"x\"\n", "file": "model.toml"}"#,
+    r#"{"command": "import", "data": "dDtGCjA7MQoxOzIK", "file": "a.csv", "set": ["decimal=comma"]}"#,
+    r#"{"command": "calibrate", "csv": "series,substrate\n1,abs\n", "file": "t.csv"}"#,
+    r#"{"command": "search", "values": {"segment.grooves": 2000}, "threshold_n": 24}"#,
 ];
 
 #[test]

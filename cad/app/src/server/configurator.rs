@@ -49,9 +49,9 @@ impl Workload {
         #[derive(Deserialize)]
         struct Kind<'a> {
             #[serde(borrow)]
-            ask: Cow<'a, str>,
+            command: Cow<'a, str>,
         }
-        match serde_json::from_slice::<Kind<'_>>(request).as_ref().map(|kind| &*kind.ask) {
+        match serde_json::from_slice::<Kind<'_>>(request).as_ref().map(|kind| &*kind.command) {
             Ok("search" | "calibrate" | "import") => Self::Long,
             Ok("files" | "file" | "zip") => Self::Files,
             _ => Self::Design,
@@ -224,9 +224,9 @@ mod tests {
     #[test]
     fn requests_have_their_workload() {
         for (request, workload) in [
-            (r#"{"ask": "design", "values": {}}"#, Workload::Design),
-            (r#"{"values": {}, "ask": "zip"}"#, Workload::Files),
-            (r#"{"ask": "calibrate"}"#, Workload::Long),
+            (r#"{"command": "design", "values": {}}"#, Workload::Design),
+            (r#"{"values": {}, "command": "zip"}"#, Workload::Files),
+            (r#"{"command": "calibrate"}"#, Workload::Long),
             ("not JSON", Workload::Design),
         ] {
             assert_eq!(Workload::of(request.as_bytes()), workload, "{request}");

@@ -40,7 +40,7 @@ use request_options::RequestOptions;
 #[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
 #[command(after_help = "Examples:
   pinswitch design --threshold 24 --max-friction 9
-  pinswitch design --ask templates/asks/gripper.toml --out out/gripper
+  pinswitch design --request templates/requests/gripper.toml --out out/gripper
   pinswitch design --friction 'at most 1 at 15' --friction 'at least 8 at 50' --pins 3..6 --vary pitch_deg,layer_mm=1.5..3
   pinswitch design --threshold 'at least 30' --model model.toml --json
 
@@ -76,7 +76,7 @@ pub(super) struct Arguments {
 /// Content of `--json` and design.json.
 #[derive(Serialize)]
 struct Report<'a> {
-    ask: &'a Request,
+    request: &'a Request,
     load_range_n: (f64, f64),
     draws: usize,
     seed: u64,
@@ -121,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         found.tried
     );
     let report = Report {
-        ask: &request,
+        request: &request,
         load_range_n: found.range_n,
         draws: options.draws,
         seed: options.seed,

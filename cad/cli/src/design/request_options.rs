@@ -17,7 +17,7 @@ use crate::range::Range;
 pub(super) struct RequestOptions {
     /// TOML file of a request; the options are added to it.
     #[arg(long, value_name = "TOML")]
-    ask: Option<PathBuf>,
+    request: Option<PathBuf>,
     /// Threshold in newtons, the load at which silicone carries half of the friction; a bare number means about.
     #[arg(long, value_name = "TARGET", allow_negative_numbers = true)]
     threshold: Option<String>,
@@ -71,7 +71,7 @@ impl RequestOptions {
     /// # Errors
     /// [`Failure::bad_input`] with option or field, value, bound and help.
     pub(super) fn request(&self) -> Result<Request, Failure> {
-        let mut request = match &self.ask {
+        let mut request = match &self.request {
             Some(path) => {
                 let name = path.display().to_string();
                 let text = crate::input::read_text_file(path)?;
@@ -101,7 +101,7 @@ impl RequestOptions {
         request.vary.pattern &= !self.keep_pins;
         if request.targets.is_empty() {
             return Err(Failure::bad_input(Diagnostic::new("the request has no target").with_help(
-                "give --threshold, --max-friction, --friction, --low-friction, --stiffness or --ask FILE",
+                "give --threshold, --max-friction, --friction, --low-friction, --stiffness or --request FILE",
             )));
         }
         request.check().map_err(|e| Failure::bad_input(self.located(e)))?;
@@ -111,7 +111,7 @@ impl RequestOptions {
     /// Locates an error at the option that set its field, if one did.
     fn located(&self, error: Diagnostic) -> Diagnostic {
         let options = [
-            ("ask.load_range_n", "--load-range", self.load_range.is_some()),
+            ("targets.load_range_n", "--load-range", self.load_range.is_some()),
             ("limits.pins", "--pins", self.pins.is_some()),
             ("limits.outer_radius_mm", "--outer-radius", self.outer_radius.is_some()),
             ("limits.outer_width_mm", "--outer-width", self.outer_width.is_some()),
@@ -146,23 +146,21 @@ impl RequestOptions {
         for (option, text, quantity, bare) in single {
             let Some(text) = text else { continue };
             let parsed = parse_requirement(text, within).map_err(|e| refused(option, text, e))?;
-            let wish = match (parsed, text.trim().parse::<f64>()) {
+            let requirement = match (parsed, text.trim().parse::<f64>()) {
                 ((_, None), Ok(number)) => bare(number, within),
-                ((wish, None), Err(_)) => wish,
+                ((requirement, None), Err(_)) => requirement,
                 ((_, Some(load)), _) => {
                     let problem =
                         Diagnostic::new(format!("'at {load}' gives a load, which only --friction takes"));
                     return Err(refused(option, text, problem.with_help("leave it out, or use --friction")));
                 }
             };
-            request.targets.push(Target { quantity, requirement: wish });
+            request.targets.push(Target { quantity, requirement });
         }
         for text in &self.friction {
             match parse_requirement(text, within).map_err(|e| refused("--friction", text, e))? {
-                (wish, Some(load_n)) => {
-                    request
-                        .targets
-                        .push(Target { quantity: Quantity::Friction { load_n }, requirement: wish });
+                (requirement, Some(load_n)) => {
+                    request.targets.push(Target { quantity: Quantity::Friction { load_n }, requirement });
                 }
                 (_, None) => {
                     let problem = Diagnostic::new("the load is missing")

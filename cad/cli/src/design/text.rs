@@ -12,19 +12,19 @@ const MAX_SOURCES: usize = 3;
 const MIN_SHARE: f64 = 0.005;
 
 /// Formats the targets, and every proposal with its values, its sources of uncertainty and its sensitivities.
-pub(super) fn table(found: &Found, ask: &Request) -> String {
+pub(super) fn table(found: &Found, request: &Request) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_table(&mut text, found, ask);
+    let _ = write_table(&mut text, found, request);
     text
 }
 
-fn write_table(text: &mut String, found: &Found, ask: &Request) -> std::fmt::Result {
-    let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
+fn write_table(text: &mut String, found: &Found, request: &Request) -> std::fmt::Result {
+    let targets: Vec<String> = request.targets.iter().map(ToString::to_string).collect();
     writeln!(text, "targets: {}", targets.join("; "))?;
     for (i, proposal) in found.proposals.iter().enumerate() {
         let name = if found.blocked.is_some() { "nearest".to_owned() } else { (i + 1).to_string() };
-        write_proposal(text, &name, proposal, ask, found.range_n)?;
+        write_proposal(text, &name, proposal, request, found.range_n)?;
     }
     Ok(())
 }
@@ -33,7 +33,7 @@ fn write_proposal(
     text: &mut String,
     name: &str,
     p: &Proposal,
-    ask: &Request,
+    request: &Request,
     range_n: (f64, f64),
 ) -> std::fmt::Result {
     writeln!(
@@ -42,7 +42,7 @@ fn write_proposal(
         100.0 * p.probability.all,
         196.0 * p.standard_error,
         p.pins,
-        parameters(p, ask),
+        parameters(p, request),
         p.trust.as_str()
     )?;
     let threshold = p.threshold_n.map_or("none".to_owned(), |t| format!("{t:.2} N"));
@@ -86,11 +86,11 @@ fn write_proposal(
 }
 
 /// Lists the parameters that were varied or chosen, with their values.
-fn parameters(p: &Proposal, ask: &Request) -> String {
+fn parameters(p: &Proposal, request: &Request) -> String {
     let is_chosen = |parameter: Parameter| {
-        ask.vary.parameters.iter().any(|v| v.parameter == parameter)
-            || (parameter == Parameter::PinDiameterMm && !ask.materials.pin_diameter_mm.is_empty())
-            || (parameter == Parameter::HardnessShoreA && !ask.materials.hardness_shore_a.is_empty())
+        request.vary.parameters.iter().any(|v| v.parameter == parameter)
+            || (parameter == Parameter::PinDiameterMm && !request.materials.pin_diameter_mm.is_empty())
+            || (parameter == Parameter::HardnessShoreA && !request.materials.hardness_shore_a.is_empty())
     };
     let mut all: Vec<String> = Parameter::ALL
         .iter()
@@ -99,7 +99,7 @@ fn parameters(p: &Proposal, ask: &Request) -> String {
             Some(format!("{} {:.2}", parameter.name(), p.parameters.get(parameter.name())?))
         })
         .collect();
-    if !ask.materials.tendon.is_empty() {
+    if !request.materials.tendon.is_empty() {
         all.push(format!("rope {} mm with {} mm of coating", p.tendon_mm[0], p.tendon_mm[1]));
     }
     if all.is_empty() { "other parameters as configured".to_owned() } else { all.join(", ") }

@@ -132,7 +132,7 @@ def design(
     Parameters
     ----------
     request : mapping or path
-        Tables of a request file: ``{"ask": {"threshold_n": 24, "max_friction_n": "at most 9"}}``, and optionally
+        Tables of a request file: ``{"targets": {"threshold_n": 24, "max_friction_n": "at most 9"}}``, and optionally
         ``limits``, ``vary``, ``materials`` and ``tolerances``; or the file.
     base : Config, optional
         The configuration that proposals change; ``three-double`` without it.

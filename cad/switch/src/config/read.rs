@@ -214,7 +214,7 @@ const SERIES: &str = "series";
 const OTHER_KINDS: [(&[&str], &str, &str); 8] = [
     (&["column", "directions"], "a map of an import", "run `pinswitch import SOURCE --map FILE`"),
     (&["sweep", "axes", "constraints", "set"], "a sweep", "run `pinswitch batch FILE`"),
-    (&["ask"], "a request for a design", "run `pinswitch design --ask FILE`"),
+    (&["targets"], "a request for a design", "run `pinswitch design --request FILE`"),
     (&["effect"], "a file of effects", "run `pinswitch calibrate TABLE --effects FILE`"),
     (
         &["effects", "noise", "protocol", "weights_g", "repetitions", "constants"],

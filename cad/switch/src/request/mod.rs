@@ -155,7 +155,7 @@ impl Request {
         {
             let value = format!("{}..{}", short_number(low), short_number(high));
             let problem = format!("not a range within 0 to {HEAVIEST_N} N");
-            return Err(invalid("ask.load_range_n", value, &problem, "give the lightest load first"));
+            return Err(invalid("targets.load_range_n", value, &problem, "give the lightest load first"));
         }
         self.check_limits()?;
         self.check_parameters()?;
@@ -182,7 +182,7 @@ impl Request {
             let (low, high) = target.requirement.interval();
             if low > heaviest || high < lightest {
                 return Err(invalid(
-                    "ask.load_range_n",
+                    "targets.load_range_n",
                     format!("{lightest}..{heaviest}"),
                     &format!("'{target}' is outside the range of loads, in N"),
                     "widen the range (--load-range), or change the threshold",

@@ -18,7 +18,7 @@ use crate::config::{Diagnostic, Location, ValueError};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    ask: Targets,
+    targets: Targets,
     #[serde(default)]
     limits: Limits,
     vary: Option<BTreeMap<String, Value>>,
@@ -28,7 +28,7 @@ struct File {
     tolerances: Tolerances,
 }
 
-/// Table `[ask]`.
+/// Table `[targets]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Targets {
@@ -62,10 +62,10 @@ impl Request {
     /// ```
     /// use pinswitch_switch::request::Request;
     ///
-    /// let text = "[ask]\nthreshold_n = 20\nmax_friction_n = 'at most 9'\n[vary]\nlayer_mm = [1, 3]\n";
+    /// let text = "[targets]\nthreshold_n = 20\nmax_friction_n = 'at most 9'\n[vary]\nlayer_mm = [1, 3]\n";
     /// let request = Request::read(text, "my.toml")?;
     /// assert_eq!(request.targets[1].to_string(), "friction at the heaviest load at most 9 N");
-    /// assert!(Request::read("[ask]\nthreshhold_n = 20\n", "my.toml").is_err());
+    /// assert!(Request::read("[targets]\nthreshhold_n = 20\n", "my.toml").is_err());
     /// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
     /// ```
     pub fn read(text: &str, file: &str) -> Result<Self, Diagnostic> {
@@ -79,8 +79,8 @@ impl Request {
                 .with_location(Location::in_text(file, text, e.span().unwrap_or(0..0)))
         })?;
         let request = Self {
-            targets: parsed.ask.targets().map_err(placed)?,
-            load_range_n: parsed.ask.load_range_n,
+            targets: parsed.targets.targets().map_err(placed)?,
+            load_range_n: parsed.targets.load_range_n,
             limits: parsed.limits,
             vary: parsed.vary.as_ref().map_or(Ok(Vary::default()), vary_of).map_err(placed)?,
             materials: parsed.materials,
@@ -91,7 +91,7 @@ impl Request {
     }
 }
 
-/// Returns the byte range of the field at a path, such as `ask.friction[0]`, or of the innermost
+/// Returns the byte range of the field at a path, such as `targets.friction[0]`, or of the innermost
 /// table on that path that the text contains.
 fn span_of(path: &str, text: &str) -> Range<usize> {
     let span = text.parse::<Document<String>>().ok().and_then(|document| {
@@ -115,7 +115,7 @@ impl Targets {
     fn targets(&self) -> Result<Vec<Target>, Diagnostic> {
         let within = self.within.unwrap_or(DEFAULT_WITHIN);
         if !is_share(within) {
-            return Err(not_a_share(&within.to_string()).in_field("ask.within", within.to_string()));
+            return Err(not_a_share(&within.to_string()).in_field("targets.within", within.to_string()));
         }
         let single = [
             ("threshold_n", &self.threshold_n, Quantity::Threshold),
@@ -127,16 +127,17 @@ impl Targets {
         for (field, value, quantity) in single {
             let Some(value) = value else { continue };
             let requirement = requirement_of(value, within)
-                .map_err(|e| e.in_field(format!("ask.{field}"), value.to_string()))?;
+                .map_err(|e| e.in_field(format!("targets.{field}"), value.to_string()))?;
             targets.push(Target { quantity, requirement });
         }
         for (i, entry) in self.friction.iter().enumerate() {
             let load = entry.load_n.to_string();
-            let load_n =
-                positive(entry.load_n).map_err(|e| e.in_field(format!("ask.friction[{i}].load_n"), load))?;
+            let load_n = positive(entry.load_n)
+                .map_err(|e| e.in_field(format!("targets.friction[{i}].load_n"), load))?;
             let bounds = [entry.at_most_n, entry.at_least_n, entry.about_n, entry.within];
-            let requirement = requirement(bounds, within)
-                .map_err(|e| e.in_field(format!("ask.friction[{i}]"), format!("load_n {}", entry.load_n)))?;
+            let requirement = requirement(bounds, within).map_err(|e| {
+                e.in_field(format!("targets.friction[{i}]"), format!("load_n {}", entry.load_n))
+            })?;
             targets.push(Target { quantity: Quantity::Friction { load_n }, requirement });
         }
         Ok(targets)
@@ -150,7 +151,7 @@ fn requirement_of(value: &Value, within: f64) -> Result<Requirement, ValueError>
             (requirement, None) => Ok(requirement),
             (_, Some(load)) => Err(ValueError::new(
                 format!("'at {load}' is only allowed in a friction"),
-                "write it as an entry of ask.friction",
+                "write it as an entry of targets.friction",
             )),
         },
         Value::Table(table) => {
@@ -243,7 +244,7 @@ mod tests {
     #[test]
     fn a_complete_request_is_read() {
         let text = r#"
-[ask]
+[targets]
 threshold_n = { about = 20, within = 0.15 }
 low_load_friction_n = "at most 0.2"
 stiffness = { at_least = 1.8 }
@@ -275,25 +276,25 @@ groove_diameter_mm = 0.02
     #[test]
     fn errors_name_place_and_accepted_values() {
         for (text, words) in [
-            ("[ask]\nthreshhold_n = 20", &["threshhold_n", "threshold_n"][..]),
-            ("[ask]\nthreshold_n = -3", &["a.toml:2:15: ask.threshold_n", "above 0"]),
+            ("[targets]\nthreshhold_n = 20", &["threshhold_n", "threshold_n"][..]),
+            ("[targets]\nthreshold_n = -3", &["a.toml:2:15: targets.threshold_n", "above 0"]),
             (
-                "[ask]\nthreshold_n = 9\nfriction = [\n  { load_n = 5, at_most_n = 2 },\n  { load_n = 5 },\n]",
-                &["a.toml:5:3: ask.friction[1]"],
+                "[targets]\nthreshold_n = 9\nfriction = [\n  { load_n = 5, at_most_n = 2 },\n  { load_n = 5 },\n]",
+                &["a.toml:5:3: targets.friction[1]"],
             ),
-            ("[ask]\nthreshold_n = 'roughly 3'", &["ask.threshold_n", "at most 8"]),
-            ("[ask]\nthreshold_n = { around = 3 }", &["around", "at_most"]),
-            ("[ask]\nthreshold_n = 20\n[vary]\nthickness = true", &["vary.thickness", "layer_mm"]),
-            ("[ask]\nthreshold_n = 20\n[vary]\nlayer_mm = [3, 1]", &["vary.layer_mm", "reversed"]),
-            ("[ask]\nfriction = [{ load_n = 5 }]", &["ask.friction[0]", "no requirement"]),
+            ("[targets]\nthreshold_n = 'roughly 3'", &["targets.threshold_n", "at most 8"]),
+            ("[targets]\nthreshold_n = { around = 3 }", &["around", "at_most"]),
+            ("[targets]\nthreshold_n = 20\n[vary]\nthickness = true", &["vary.thickness", "layer_mm"]),
+            ("[targets]\nthreshold_n = 20\n[vary]\nlayer_mm = [3, 1]", &["vary.layer_mm", "reversed"]),
+            ("[targets]\nfriction = [{ load_n = 5 }]", &["targets.friction[0]", "no requirement"]),
             (
-                "[ask]\nfriction = [{ load_n = 5, at_most_n = 2, at_least_n = 3 }]",
+                "[targets]\nfriction = [{ load_n = 5, at_most_n = 2, at_least_n = 3 }]",
                 &["at least 3 and at most 2"],
             ),
-            ("[ask]", &["no target"]),
-            ("ask = 3", &["a.toml"]),
-            ("[ask]\nthreshold_n = 20\n[materials]\nrods = [1]", &["rods", "pin_diameter_mm"]),
-            ("[ask]\nthreshold_n = 20\n[tolerances]\nlayer_mm = -1", &["tolerances.layer_mm"]),
+            ("[targets]", &["no target"]),
+            ("targets = 3", &["a.toml"]),
+            ("[targets]\nthreshold_n = 20\n[materials]\nrods = [1]", &["rods", "pin_diameter_mm"]),
+            ("[targets]\nthreshold_n = 20\n[tolerances]\nlayer_mm = -1", &["tolerances.layer_mm"]),
         ] {
             let error = Request::read(text, "a.toml").unwrap_err().to_string();
             assert!(words.iter().all(|w| error.contains(w)), "{text}: {error}");

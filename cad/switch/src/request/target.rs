@@ -154,7 +154,6 @@ pub struct Target {
     #[serde(flatten)]
     pub quantity: Quantity,
     /// The requirement.
-    #[serde(rename = "wish")]
     pub requirement: Requirement,
 }
 

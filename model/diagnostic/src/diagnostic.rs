@@ -186,7 +186,7 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let headline = self.headline();
         let line = match &self.help {
-            Some(help) => format!("{headline}; {}", shown_line(help)),
+            Some(help) => format!("{headline}; {}", shown_line(&help.replace('\n', ", "))),
             None => headline,
         };
         f.write_str(&excerpt(&line, LONGEST_LINE))

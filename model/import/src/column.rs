@@ -6,7 +6,7 @@ use crate::clock::{self, DateOrder};
 use crate::decimal::Decimal;
 use crate::direction_words;
 use crate::header::Header;
-use crate::map::Map;
+use crate::map::{ColumnChoice, Map};
 use crate::name;
 use crate::number::{self, is_missing, sign_evidence};
 use crate::quantity::Quantity;
@@ -21,8 +21,13 @@ const SAMPLE_ROWS: usize = 500;
 /// Shortest usual time between two samples that is assumed to be in seconds: that of 10 kHz, less rounding. Days, as spreadsheets
 /// count them, have shorter ones.
 const SHORTEST_STEP_S: f64 = 0.99e-4;
+/// Largest speed as a share of the full speed, with overspeed.
+const MAX_SHARE: f64 = 2.0;
 /// Largest wrap angle in radians: two revolutions.
 const MAX_RADIANS: f64 = 12.6;
+
+/// Why a column of texts is not read.
+pub(crate) const NOT_NUMBERS: &str = "its cells are not numbers";
 
 /// A column of a sheet.
 #[derive(Clone, Debug)]
@@ -55,6 +60,8 @@ pub(crate) struct Column {
     pub(crate) is_decided: bool,
     /// Whether the user gave the factor.
     has_factor: bool,
+    /// Whether an empty cell has the value of the one above.
+    pub(crate) is_filled: bool,
 }
 
 impl Column {
@@ -136,6 +143,8 @@ pub(crate) fn assign(
     let kinds: Vec<Cells> = (0..header.names.len()).map(|column| cells(sheet, header, column)).collect();
     let mut columns: Vec<Column> =
         header.names.iter().enumerate().map(|(i, name)| column(i, name, header, map, &kinds[i])).collect();
+    remove_statistics(&mut columns);
+    remove_row_numbers(&mut columns, sheet, header);
     find_directions(&mut columns, &kinds);
     find_clocks(&mut columns, &kinds);
     find_trials(&mut columns);
@@ -198,6 +207,7 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         is_assumed: false,
         is_decided: choice.quantity.is_some(),
         has_factor: choice.factor.is_some(),
+        is_filled: choice.is_filled,
     };
     if column.quantity == Quantity::Force && !column.is_decided && vocabulary::is_spread(name, &header.names)
     {
@@ -219,7 +229,7 @@ fn column(index: usize, name: &str, header: &Header, map: &Map, kinds: &Cells) -
         column.ignore("empty");
     } else if column.quantity.is_number() && !column.is_decided && kinds.words > kinds.numbers + kinds.moments
     {
-        column.ignore("its cells are not numbers");
+        column.ignore(NOT_NUMBERS);
     }
     column
 }
@@ -292,6 +302,43 @@ fn split_load_and_force(columns: &mut [Column]) {
             .iter_mut()
             .filter(|column| is_load(column))
             .for_each(|column| column.quantity = Quantity::Force);
+    }
+}
+
+/// Figures computed from the readings next to them, such as `SD (N)`, are no readings. `STD` is the German abbreviation of
+/// hours in a log.
+fn remove_statistics(columns: &mut [Column]) {
+    let has = |quantity| columns.iter().any(|column| column.quantity == quantity);
+    let has_rows = has(Quantity::Load) || has(Quantity::LoadMass) || has(Quantity::Direction);
+    let is_statistic = |c: &Column| {
+        let is_one = match c.quantity {
+            Quantity::Force => true,
+            Quantity::Time => has_rows,
+            _ => false,
+        };
+        is_one && !c.is_decided && vocabulary::is_statistic(&c.name) && !vocabulary::is_average(&c.name)
+    };
+    // A force that is named as one, or a column that may be a trial.
+    let has_reading = columns.iter().any(|c| {
+        let may_be = matches!(c.quantity, Quantity::Force | Quantity::Repetition | Quantity::Ignore);
+        may_be && !is_statistic(c) && !vocabulary::is_statistic(&c.name) || vocabulary::is_average(&c.name)
+    });
+    if has_reading {
+        columns.iter_mut().filter(|c| is_statistic(c)).for_each(|c| c.ignore("computed from other columns"));
+    }
+}
+
+/// A column that counts the rows, such as `Sample`, names no specimens.
+fn remove_row_numbers(columns: &mut [Column], sheet: &Sheet, header: &Header) {
+    let rows = header.first_data..sheet.len();
+    let counts = |column: &Column| {
+        let mut numbered = rows.clone().zip(1_usize..);
+        rows.len() > 1 && numbered.all(|(row, number)| sheet.cell(row, column.index) == number.to_string())
+    };
+    for column in columns.iter_mut().filter(|c| c.quantity == Quantity::Specimen && !c.is_decided) {
+        if counts(column) {
+            column.ignore("counts the rows");
+        }
     }
 }
 
@@ -470,7 +517,12 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
         questions.push(Question::new(problem, readings));
         return;
     }
-    if quantity.dimensions().is_empty() || column.is_clock || column.has_factor {
+    if quantity.dimensions().is_empty() || column.is_clock {
+        return;
+    }
+    let decided = map.column(&column.name, column.index + 1);
+    if column.has_factor {
+        questions.extend(decided.and_then(|choice| unit_and_factor(column, choice)));
         return;
     }
     let given = map.force_unit.filter(|_| quantity == Quantity::Force);
@@ -526,13 +578,13 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
         },
         // A workbook stores 50 % as 0.5, and shows 50 %.
         (Quantity::Speed, Dimension::Share)
-            if choice.is_none_or(|c| c.unit.is_none()) && {
+            if decided.is_none_or(|c| c.unit.is_none()) && {
                 let values = sampled(column, sheet, header);
-                values.iter().any(|v| *v > 0.0) && values.iter().all(|v| (0.0..=1.0).contains(v))
+                values.iter().any(|v| *v > 0.0) && values.iter().all(|v| (0.0..=MAX_SHARE).contains(v))
             } =>
         {
             let name = reference(column);
-            let problem = format!("column '{}' in {} has no value above 1", column.name, unit.name);
+            let problem = format!("column '{}' in {} has no value above {MAX_SHARE}", column.name, unit.name);
             let readings = vec![
                 ("they are shares: 1 is the full speed".to_owned(), format!("factor.{name}=100")),
                 ("they are percent: 1 is a hundredth of the full speed".to_owned(), format!("unit.{name}=%")),
@@ -542,6 +594,34 @@ fn set_factor(column: &mut Column, sheet: &Sheet, header: &Header, map: &Map, qu
         (Quantity::Force, Dimension::Mass) => column.factor = unit.factor.times(NEWTON_PER_GRAM),
         _ => column.factor = unit.factor,
     }
+}
+
+/// A unit and a factor that a person gave for the same column have two readings: the factor is that of the written values, or
+/// one in addition to the unit.
+fn unit_and_factor(column: &Column, choice: &ColumnChoice) -> Option<Question> {
+    let unit = choice.unit.filter(|unit| choice.is_factor_decided && unit.dimension != Dimension::Signal)?;
+    let of_unit = match (column.quantity, unit.dimension) {
+        (Quantity::Force, Dimension::Mass) => unit.factor.times(NEWTON_PER_GRAM),
+        _ => unit.factor,
+    };
+    let (factor, base) = (column.factor, column.quantity.base_unit());
+    if of_unit == factor || of_unit == Decimal::ONE {
+        return None;
+    }
+    let name = reference(column);
+    Some(Question::new(
+        format!("column '{}' has the unit {} and the factor {factor}", column.name, unit.name),
+        [
+            (
+                format!("{factor} {base} for a written 1"),
+                format!("unit.{name}={base}\nfactor.{name}={factor}"),
+            ),
+            (
+                format!("{factor} {} for a written 1", unit.name),
+                format!("unit.{name}={base}\nfactor.{name}={}", factor.times(of_unit)),
+            ),
+        ],
+    ))
 }
 
 /// Returns the numbers in the first rows of a column.
@@ -587,7 +667,7 @@ fn unknown_unit(column: &Column) -> Question {
         Quantity::Time => &["s", "ms", "d"],
         Quantity::Dwell => &["s", "ms"],
         Quantity::Position => &["mm", "m", "in"],
-        Quantity::WrapAngle => &["deg", "rad", "turns"],
+        Quantity::WrapAngle => &["deg", "rad", "pi rad", "turns"],
         Quantity::Speed => &["%", "mm/s"],
         _ => &["W", "mW"],
     };
@@ -598,6 +678,10 @@ fn unknown_unit(column: &Column) -> Question {
     let problem = format!("column '{}' has no unit", column.name);
     let mut readings: Vec<_> =
         units.iter().map(|unit| ((*unit).to_owned(), format!("unit.{}={unit}", reference(column)))).collect();
+    if column.quantity == Quantity::Speed {
+        readings
+            .push(("shares: 1 is the full speed".to_owned(), format!("factor.{}=100", reference(column))));
+    }
     if !matches!(column.quantity, Quantity::Load | Quantity::Force) {
         readings.push(("leave it out".to_owned(), format!("column.{}=ignore", reference(column))));
     }

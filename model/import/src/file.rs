@@ -58,7 +58,7 @@ impl FileReading {
     /// A [`Diagnostic`] if it cannot be read, has no numbers or no names, or has a row that is
     /// neither used nor skipped.
     pub(crate) fn read(name: &str, bytes: &[u8], map: &Map) -> Result<Self, Diagnostic> {
-        let recording = Recording::read(bytes, map).map_err(|d| d.or_in_file(name))?;
+        let mut recording = Recording::read(bytes, map).map_err(|d| d.or_in_file(name))?;
         let sheet = &recording.sheet;
         let mut header =
             header::find(sheet, map.header_line).ok_or_else(|| no_header(name, &recording, map))?;
@@ -79,6 +79,12 @@ impl FileReading {
         if let Some(diagnostic) = too_few_names(name, &recording, &header) {
             return Err(diagnostic);
         }
+        for (i, column) in header.names.iter().enumerate() {
+            if map.column(column, i + 1).is_some_and(|choice| choice.is_filled) {
+                recording.sheet = recording.sheet.fill_down(i, header.first_data)?;
+            }
+        }
+        let sheet = &recording.sheet;
         let mut questions = Vec::new();
         let columns = column::assign(sheet, &header, map, &mut questions);
         let is_used = |choice: &crate::map::ColumnChoice| {
@@ -303,10 +309,21 @@ impl FileReading {
         self.skipped = skipped;
         if self.rows.is_empty() && self.questions.is_empty() {
             let names: Vec<String> = self.columns.iter().map(|column| format!("'{}'", column.name)).collect();
-            let problem = if self.forces().next().is_none() {
-                format!("no column is the force; the columns are {}", names.join(", "))
-            } else {
+            let is_text = |column: &&Column| column.reason == column::NOT_NUMBERS;
+            let problem = if self.forces().next().is_some() {
                 "no row has a force".to_owned()
+            } else if let Some(column) = self.columns.iter().find(is_text) {
+                let rows = self.header.first_data..self.recording.sheet.len();
+                let cells = rows.map(|row| self.recording.sheet.cell(row, column.index));
+                let mut words =
+                    cells.filter(|cell| !is_missing(cell) && number::sign_evidence(cell).is_none());
+                format!(
+                    "no column is the force: the cells of '{}' are not numbers, such as '{}'",
+                    column.name,
+                    words.next().unwrap_or_default()
+                )
+            } else {
+                format!("no column is the force; the columns are {}", names.join(", "))
             };
             return Err(Diagnostic::new(problem).with_location(Location::file(&self.name)).with_help(
                 "name the column of the force, as in --set 'column.NAME=force' --set unit.NAME=N",

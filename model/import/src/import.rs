@@ -15,6 +15,11 @@ use crate::understanding::{FileUnderstanding, Understanding};
 
 /// Rows that are shown before a file is written.
 const PREVIEW_ROWS: usize = 3;
+/// Help for several readings of the same repetition.
+const REPEATED_HELP: &str = "leave the repetition out, and the readings of a series are numbered in their order: write \
+    {_} instead of {trial} in --pattern, or give --set 'column.NAME=ignore'";
+/// Most names of files in an error.
+const MAX_NAMES: usize = 3;
 /// Most readings of a table.
 const MAX_READINGS: usize = 1_000_000;
 
@@ -182,7 +187,12 @@ fn build_table(
     }
     // Values outside the bounds of a plateau table, and repeated readings.
     if questions.is_empty() {
-        PlateauTable::read(csv.as_bytes(), "the imported table").map_err(Diagnostic::from)?;
+        PlateauTable::read(csv.as_bytes(), "the imported table").map_err(Diagnostic::from).map_err(
+            |error| {
+                let is_repeated = error.location().and_then(|at| at.field.as_deref()) == Some("repetition");
+                if is_repeated { error.with_help(REPEATED_HELP) } else { error }
+            },
+        )?;
     }
     Ok(Output::Table(csv))
 }
@@ -194,11 +204,19 @@ fn build_log(
     questions: &mut Vec<Question>,
 ) -> Result<Output, Diagnostic> {
     let [file] = files else {
-        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
-        return Err(Diagnostic::new(format!("{} logs: {}", names.len(), names.join(", ")))
-            .with_help("import each log separately, and list the results in run.toml"));
+        let names: Vec<&str> = files.iter().take(MAX_NAMES).map(|file| file.name.as_str()).collect();
+        let more = if files.len() > MAX_NAMES { " and others" } else { "" };
+        return Err(Diagnostic::new(format!("{} logs: {}{more}", files.len(), names.join(", ")))
+            .with_help(
+                "import each log separately, and list the results in run.toml; for tables whose names have the load, give \
+                 --pattern, such as --pattern '{load_g}g_{trial}.csv'",
+            ));
     };
     let log = log::build(file, map, questions)?;
+    for name in map.constants.keys() {
+        let note = format!("{name} is not used: a log has no such column; its run file has loads and pins");
+        understanding.notes.push(note);
+    }
     understanding.rows = log.time_s.len();
     understanding.preview = log.lines(PREVIEW_ROWS).lines().map(str::to_owned).collect();
     let restarts = log.time_s.windows(2).filter(|w| w[1] < w[0]).count();
@@ -289,6 +307,8 @@ fn choice(column: &Column, understanding: &Understanding) -> ColumnChoice {
         quantity: Some(column.quantity),
         unit: column.unit.filter(|_| has_factor),
         is_unit_decided: false,
+        is_factor_decided: false,
+        is_filled: column.is_filled,
         row_unit: column.row_unit.filter(|_| has_factor),
         factor: Some(column.factor).filter(|_| has_factor),
         offset: Some(column.offset).filter(|offset| has_factor && !offset.is_zero()),

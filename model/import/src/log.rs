@@ -138,7 +138,7 @@ pub(crate) fn build(
         let cell = |row: &usize| file.recording.sheet.cell(*row, column.index);
         let of = |word: &str| map.directions.get(word).copied().or_else(|| direction_words::direction(word));
         if let Some(unknown) = used.iter().map(cell).find(|word| !word.is_empty() && of(word).is_none()) {
-            questions.push(crate::table::unknown_direction(unknown));
+            questions.push(crate::table::unknown_direction(unknown, Some(column)));
         }
         log.direction = Some(used.iter().map(|row| of(cell(row))).collect());
     }

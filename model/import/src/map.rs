@@ -47,6 +47,10 @@ pub(crate) struct ColumnChoice {
     /// Unit in the row of units of the file from which the map was made; another file may have another.
     pub(crate) row_unit: Option<&'static Unit>,
     pub(crate) factor: Option<Decimal>,
+    /// Whether the factor was decided for the file at hand.
+    pub(crate) is_factor_decided: bool,
+    /// Whether an empty cell has the value of the one above.
+    pub(crate) is_filled: bool,
     pub(crate) offset: Option<Decimal>,
     pub(crate) direction: Option<Direction>,
     pub(crate) load: Option<String>,
@@ -115,7 +119,7 @@ const CONSTANTS: [&str; 17] = [
 
 /// Keys of `--set`, for messages.
 const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, date, clock, directions, force_sign, force_unit, \
-    sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, \
+    sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, fill.NAME, \
     direction.NAME, load.NAME, wrap_angle_deg.NAME, repetition.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
 #[derive(Deserialize)]
@@ -157,6 +161,7 @@ struct ColumnEntry {
     load: Option<String>,
     wrap_angle_deg: Option<f64>,
     repetition: Option<u32>,
+    fill: Option<String>,
 }
 
 impl Map {
@@ -229,6 +234,12 @@ impl Map {
                     .transpose()?,
                 row_unit: entry.row_unit.map(|unit| parse_unit(&at("row_unit"), &unit)).transpose()?,
                 is_unit_decided: false,
+                is_factor_decided: false,
+                is_filled: match entry.fill.as_deref() {
+                    None => false,
+                    Some("down") => true,
+                    Some(other) => return Err(refused(&at("fill"), &quoted(other), "expected \"down\"", "")),
+                },
                 factor: entry.factor.map(|f| parse_number(&at("factor"), &f.to_string())).transpose()?,
                 offset: entry.offset.map(|f| parse_number(&at("offset"), &f.to_string())).transpose()?,
                 direction: entry
@@ -354,6 +365,10 @@ impl Map {
             }
             "unit" => ColumnChoice { unit: Some(parse_unit(key, value)?), ..ColumnChoice::default() },
             "factor" => ColumnChoice { factor: Some(parse_number(key, value)?), ..ColumnChoice::default() },
+            "fill" => match value {
+                "down" => ColumnChoice { is_filled: true, ..ColumnChoice::default() },
+                _ => return Err(refused(key, value, "expected down", "")),
+            },
             "offset" => ColumnChoice { offset: Some(parse_number(key, value)?), ..ColumnChoice::default() },
             "direction" => {
                 ColumnChoice { direction: Some(parse_direction(key, value)?), ..ColumnChoice::default() }
@@ -382,9 +397,11 @@ impl Map {
         let old = &mut self.columns[at].1;
         // A new quantity or unit has its own factor.
         if choice.quantity.is_some() || choice.unit.is_some() {
-            old.factor = None;
+            old.factor = old.factor.filter(|_| old.is_factor_decided);
             old.is_unit_decided = true;
         }
+        old.is_factor_decided |= choice.factor.is_some();
+        old.is_filled |= choice.is_filled;
         old.quantity = choice.quantity.or(old.quantity);
         old.unit = choice.unit.or(old.unit);
         old.factor = choice.factor.or(old.factor);
@@ -496,6 +513,7 @@ impl Map {
             line("wrap_angle_deg", choice.angle.map(number));
             line("load", choice.load.as_deref().map(quoted));
             line("repetition", choice.repetition.map(|n| n.to_string()));
+            line("fill", choice.is_filled.then(|| quoted("down")));
         }
         out
     }
@@ -595,6 +613,7 @@ mod tests {
             "direction.F1=eccentric",
             "load.F1=2 kg",
             "wrap_angle_deg.F1=90",
+            "fill.F1=down",
             "substrate=silicone",
             "pins=5;8;11",
             "wrap_angle_deg=90",
@@ -604,8 +623,9 @@ mod tests {
         let text = map.to_toml();
         let mut again = Map::parse(&text, "map.toml").unwrap();
         // Assignments decide for the file at hand; a map that is read does not.
-        again.columns.iter_mut().for_each(|(_, choice)| choice.is_unit_decided = true);
-        map.columns.iter_mut().for_each(|(_, choice)| choice.is_unit_decided = true);
+        for (_, choice) in again.columns.iter_mut().chain(&mut map.columns) {
+            (choice.is_unit_decided, choice.is_factor_decided) = (true, true);
+        }
         assert_eq!(again, map, "{text}");
     }
 

@@ -86,7 +86,10 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
             add(stem, unit);
         }
     }
-    add("", name);
+    // A letter alone is a symbol only as it is written: `n` counts readings.
+    if name.chars().count() > 1 || Unit::parse(name).is_some_and(|unit| unit.name == name) {
+        add("", name);
+    }
     splits
 }
 
@@ -255,11 +258,11 @@ mod tests {
 
     #[test]
     fn a_factor_before_the_unit_is_no_unit() {
-        for name in
-            ["Force [x10 N]", "Force x 10 [N]", "Force (*1000 N)", "Angle [pi rad]", "Angle (x π rad)"]
-        {
+        for name in ["Force [x10 N]", "Force x 10 [N]", "Force (*1000 N)", "Angle (x π rad)"] {
             assert_eq!(read(name, None).unit, None, "{name}");
         }
+        assert_eq!(read("Angle [pi rad]", None).unit.map(|unit| unit.name), Some("pi rad"));
+        assert_eq!((read("n", None).quantity, read("N", None).quantity), (None, Some(Quantity::Force)));
         assert_eq!(read("Fx [N]", None).unit.map(|unit| unit.name), Some("N"));
         for name in ["X1 [mm]", "F_x1 [N]", "accel x 2 [mm]", "x 1 [mm]"] {
             assert!(read(name, None).unit.is_some(), "{name}");

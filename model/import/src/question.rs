@@ -45,6 +45,6 @@ impl Question {
                 format!("{} ({})", options.join(" "), answer.reading)
             })
             .collect();
-        Diagnostic::new(self.problem.clone()).with_help(format!("decide with {}", answers.join(", or ")))
+        Diagnostic::new(self.problem.clone()).with_help(format!("decide with {}", answers.join("\nor with ")))
     }
 }

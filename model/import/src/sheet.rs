@@ -2,6 +2,8 @@
 
 use pinswitch_diagnostic::Diagnostic;
 
+use crate::number::is_missing;
+
 /// Most cells of a row.
 const MAX_COLUMNS: usize = 2_000;
 /// Most characters of a cell: a longer one comes from a quote that is not closed.
@@ -90,6 +92,26 @@ impl Sheet {
     /// Returns the cells of a row.
     pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = &str> {
         (0..self.width(row)).map(move |column| self.cell(row, column))
+    }
+
+    /// Fills the empty cells of a column, from a row on, with the cell above.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] if the sheet becomes too large.
+    pub(crate) fn fill_down(&self, column: usize, first_row: usize) -> Result<Self, Diagnostic> {
+        let mut filled = Self::default();
+        let mut above = "";
+        for row in 0..self.len() {
+            for (i, cell) in self.row(row).enumerate() {
+                let is_filled = i == column && row >= first_row;
+                if is_filled && !is_missing(cell) {
+                    above = cell;
+                }
+                filled.push(if is_filled { above } else { cell });
+            }
+            filled.end_row(self.line(row))?;
+        }
+        Ok(filled)
     }
 
     fn span(&self, cell: usize) -> std::ops::Range<usize> {

@@ -111,12 +111,16 @@ impl Table {
 }
 
 /// Returns the question about a word that is not a known direction.
-pub(crate) fn unknown_direction(word: &str) -> Question {
+pub(crate) fn unknown_direction(word: &str, column: Option<&Column>) -> Question {
     if word.is_empty() {
+        let above = column.map(|column| {
+            ("the direction of the row above".to_owned(), format!("fill.{}=down", reference(column)))
+        });
         let readings = vec![
             ("all such readings are concentric".to_owned(), "concentric=".to_owned()),
             ("all such readings are eccentric".to_owned(), "eccentric=".to_owned()),
         ];
+        let readings = above.into_iter().chain(readings);
         return Question::new("some readings have no direction", readings);
     }
     let readings = vec![
@@ -131,6 +135,9 @@ pub(crate) fn build(files: &[FileReading], map: &Map, questions: &mut Vec<Questi
     let mut table = Table::default();
     if !has_sources(files, map, questions) {
         return table;
+    }
+    for file in files {
+        ask_for_empty(&mut table, file, map, questions);
     }
     let words = direction_words(files, map, questions);
     for file in files {
@@ -228,6 +235,50 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
     true
 }
 
+/// Readings whose cell of the load or the wrap angle is empty, as merged cells of a spreadsheet are: each may have the value
+/// above.
+fn ask_for_empty(table: &mut Table, file: &FileReading, map: &Map, questions: &mut Vec<Question>) {
+    let lacks_load = |row: &usize| {
+        let mut forces = file.forces().filter(|force| file.value(*row, force).is_some());
+        forces.any(|force| load(file, map, *row, force).is_none())
+    };
+    let columns = [
+        (file.column(Quantity::Load).or_else(|| file.column(Quantity::LoadMass)), "load"),
+        (file.column(Quantity::WrapAngle), "wrap angle"),
+    ];
+    for (column, what) in columns {
+        let Some(column) = column else { continue };
+        let is_empty = |row: &usize| match column.quantity {
+            Quantity::WrapAngle => lacks_angle(file, map, *row),
+            _ => lacks_load(row),
+        };
+        let empty: Vec<usize> = file.rows.iter().copied().filter(is_empty).collect();
+        let Some(first) = empty.first() else { continue };
+        let line = file.recording.sheet.line(*first);
+        let found = match empty.len() {
+            1 => format!("the reading in line {line} has no {what}"),
+            count => format!("{count} readings have no {what}, the first in line {line}"),
+        };
+        if map.skip_bad_rows {
+            table.notes.push(format!("{found}: left out"));
+            continue;
+        }
+        let readings = [
+            (format!("the {what} of the row above"), format!("fill.{}=down", reference(column))),
+            ("left out".to_owned(), "bad_rows=skip".to_owned()),
+        ];
+        questions.push(Question::new(found, readings));
+    }
+}
+
+/// Whether a reading has no wrap angle, although a column has those of others.
+fn lacks_angle(file: &FileReading, map: &Map, row: usize) -> bool {
+    let is_empty = |column: &Column| number::is_missing(file.recording.sheet.cell(row, column.index));
+    file.column(Quantity::WrapAngle).is_some_and(is_empty)
+        && constant(file, map, "wrap_angle_deg").is_none()
+        && file.forces().any(|force| force.angle.is_none() && file.value(row, force).is_some())
+}
+
 /// Returns the direction of each word in the columns of directions.
 fn direction_words(
     files: &[FileReading],
@@ -270,7 +321,10 @@ fn direction_words(
     let unknown: Vec<&String> = words.iter().filter(|(_, d)| d.is_none()).map(|(word, _)| word).collect();
     match unknown.as_slice() {
         [a, b] if words.len() == 2 => questions.push(opposite_words(a, b, files)),
-        _ => questions.extend(unknown.iter().take(4).map(|word| unknown_direction(word))),
+        _ => {
+            let column = files.iter().find_map(|file| file.column(Quantity::Direction));
+            questions.extend(unknown.iter().take(4).map(|word| unknown_direction(word, column)));
+        }
     }
     words.into_iter().filter_map(|(word, direction)| Some((word, direction?))).collect()
 }
@@ -313,6 +367,9 @@ fn add_rows(
 ) {
     let times = times(file, map);
     for (i, row) in file.rows.iter().enumerate() {
+        if map.skip_bad_rows && lacks_angle(file, map, *row) {
+            continue;
+        }
         let mut cells: [String; COLUMNS.len()] = Default::default();
         add_words(&mut cells, table, file, map, *row, questions);
         if let Some((times, is_clock)) = &times
@@ -336,13 +393,7 @@ fn add_rows(
             let Some((direction, word, is_decided)) = direction(file, map, *row, column, words) else {
                 continue;
             };
-            let Some((load, mass, load_text)) = load(file, map, *row, column) else {
-                table.notes.push(format!(
-                    "line {}: a reading without a load is left out",
-                    file.recording.sheet.line(*row)
-                ));
-                continue;
-            };
+            let Some((load, mass, load_text)) = load(file, map, *row, column) else { continue };
             let direction =
                 if map.is_swapped == Some(true) && !is_decided { opposite(direction) } else { direction };
             let force = if map.force_sign == Some(true) { force.negated() } else { force };

@@ -100,9 +100,19 @@ impl FileUnderstanding {
             kind_reason: file.kind_reason,
             columns: file.columns.iter().map(ColumnUnderstanding::new).collect(),
             ignored_rows: file.skipped.clone(),
-            notes: file.recording.notes.clone(),
+            notes: file.recording.notes.iter().cloned().chain(before_names(file)).collect(),
         }
     }
+}
+
+/// A note of lines with text before the names, which may have loads or angles.
+fn before_names(file: &FileReading) -> Option<String> {
+    let sheet = &file.recording.sheet;
+    let before = file.header.names_row.unwrap_or(0);
+    let text = |row: usize| sheet.row(row).filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" ");
+    let first = (0..before).map(text).find(|text| !text.is_empty())?;
+    let shown = excerpt(&first, MAX_NAME);
+    Some(format!("{} before the names are not used, such as '{shown}'", counted(before, "line")))
 }
 
 impl ColumnUnderstanding {
@@ -142,13 +152,12 @@ impl fmt::Display for Understanding {
             }
             write_file(f, file)?;
         }
-        writeln!(
-            f,
-            "result     {} with {} ({})",
-            self.kind,
-            counted(self.rows, "row"),
-            self.files.first().map_or("", |file| file.kind_reason)
-        )?;
+        let reason = self.files.first().map_or("", |file| file.kind_reason);
+        if self.questions.is_empty() {
+            writeln!(f, "result     {} with {} ({reason})", self.kind, counted(self.rows, "row"))?;
+        } else {
+            writeln!(f, "result     open: a question below decides")?;
+        }
         for (word, direction, count) in &self.directions {
             writeln!(f, "direction  {} = {direction} ({})", shown(word), counted(*count, "reading"))?;
         }

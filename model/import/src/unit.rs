@@ -51,7 +51,7 @@ const fn unit(
 }
 
 /// All units. Sources: SI brochure; NIST SP 811, appendix B, for pound, ounce, inch and foot.
-const UNITS: [Unit; 46] = [
+const UNITS: [Unit; 47] = [
     unit("N", Dimension::Force, 1, 0, &["newton", "newtons", "nw"]),
     unit("kN", Dimension::Force, 1, 3, &["kilonewton", "kilonewtons"]),
     unit("MN", Dimension::Force, 1, 6, &["meganewton"]),
@@ -110,6 +110,7 @@ const UNITS: [Unit; 46] = [
         &["°", "degree", "degrees", "grad", "degre", "degres", "grados", "gradi"],
     ),
     unit("rad", Dimension::Angle, 57_295_779_513_082_320_876_798_154_814_105, -30, &["radian", "radians"]),
+    unit("pi rad", Dimension::Angle, 180, 0, &["π rad", "pi*rad", "π", "pi"]),
     unit(
         "turns",
         Dimension::Angle,

@@ -320,8 +320,9 @@ const SPREAD: [&str; 12] = [
     "scarto",
 ];
 /// Words that also have other meanings: they are for the spread at the end of a name that has a column of readings.
-const MAYBE_SPREAD: [&str; 12] = [
+const MAYBE_SPREAD: [&str; 13] = [
     "sd",
+    "st",
     "std",
     "se",
     "sem",
@@ -350,8 +351,8 @@ const AVERAGE: [&str; 12] = [
     "moy",
 ];
 /// Further words of a row of a summary.
-const SUMMARY: [&str; 10] =
-    ["maximum", "max", "minimum", "min", "standard", "sum", "summe", "total", "range", "of"];
+const SUMMARY: [&str; 11] =
+    ["maximum", "max", "minimum", "min", "standard", "sum", "summe", "total", "range", "of", "dev"];
 
 /// Words of a name without its unit.
 fn stem_words(name: &str) -> Vec<String> {
@@ -367,11 +368,17 @@ pub(crate) fn is_spread(name: &str, others: &[String]) -> bool {
     let Some((last, rest)) = stem.split_last() else { return false };
     let is_reading = |other: &String| {
         let is_counted = |word: &String| AVERAGE.contains(&word.as_str()) || word.parse::<u32>().is_ok();
-        let mut left = stem_words(other);
-        left.retain(|word| !is_counted(word));
-        other != name && left == rest
+        let all = stem_words(other);
+        let left: Vec<&String> = all.iter().filter(|word| !is_counted(word)).collect();
+        other != name && (all == rest || left == rest.iter().collect::<Vec<_>>())
     };
     MAYBE_SPREAD.contains(&last.as_str()) && !rest.is_empty() && others.iter().any(is_reading)
+}
+
+/// Whether a name has nothing but words for figures that are computed from readings, such as `SD (N)`, `Max` or `n`.
+pub(crate) fn is_statistic(name: &str) -> bool {
+    let stem = name.split(['[', '(', '{']).next().unwrap_or_default();
+    matches!(stem.trim(), "n" | "N") || is_summary(stem, false)
 }
 
 /// Whether a name is that of a mean of readings.

@@ -1,6 +1,7 @@
 //! The schemas of `pinswitch schema` accept what the program reads, and refuse what it refuses.
 
-use crate::harness::done;
+use crate::harness::{done, repository};
+use crate::readers::{Reading, judge};
 use pinswitch_switch::config::{self, Configuration};
 use pinswitch_switch::measured::Measured;
 use pinswitch_switch::templates::{EXAMPLES, TEMPLATES};
@@ -94,5 +95,106 @@ fn readings_and_their_schema_agree() {
         "",
     ] {
         assert_eq!(schema.is_valid(&json(text)), Measured::read(text, "x.toml").is_ok(), "{text}");
+    }
+}
+
+/// Kinds of files with their readers and templates.
+const KINDS: [(&str, &str, &[&str]); 8] = [
+    ("effects", "effects", &["rig/effects.toml"]),
+    ("import", "import_map", &["rig/import.toml"]),
+    ("measured", "measured", &["rig/measured.toml"]),
+    ("plan", "plan", &["rig/plan.toml"]),
+    (
+        "request",
+        "request",
+        &["requests/gripper.toml", "requests/small-joint.toml", "requests/impossible.toml"],
+    ),
+    (
+        "rig",
+        "rig",
+        &["rig/rig.toml", "rig/rig-capstan.toml", "rig/rig-bowden.toml", "rig/rig-cable-machine.toml"],
+    ),
+    ("run", "run", &["rig/run.toml"]),
+    ("sweep", "sweep", &["batch/sweep.toml"]),
+];
+
+/// A change of a file: an unknown key in a table, or a value of another type.
+type Mutation = (toml::Table, String, bool);
+
+/// Returns every change of one place of a table; `rebuild` puts the changed table into the file.
+fn mutations(
+    table: &toml::Table,
+    place: &str,
+    rebuild: &dyn Fn(toml::Table) -> toml::Table,
+) -> Vec<Mutation> {
+    let mut unknown = table.clone();
+    unknown.insert("not_a_key".to_owned(), 1.into());
+    let mut all = vec![(rebuild(unknown), format!("{place}.not_a_key"), true)];
+    for (key, value) in table {
+        let place = format!("{place}.{key}");
+        let with = |new: toml::Value| {
+            let mut changed = table.clone();
+            changed.insert(key.clone(), new);
+            rebuild(changed)
+        };
+        for other in [toml::Value::from(true), "word".into(), 7.into(), toml::Value::Array(Vec::new())] {
+            // serde reads a table from a list of its values, too, which no one writes.
+            let is_list_for_table = other.is_array() && value.is_table();
+            if other.type_str() != value.type_str() && !is_list_for_table {
+                all.push((with(other.clone()), format!("{place} = {other}"), false));
+            }
+        }
+        match value {
+            toml::Value::Table(inner) => all.extend(mutations(inner, &place, &|new| with(new.into()))),
+            toml::Value::Array(items) => {
+                for (i, item) in items.iter().enumerate() {
+                    let toml::Value::Table(inner) = item else { continue };
+                    let with_item = |new: toml::Table| {
+                        let mut changed = items.clone();
+                        changed[i] = new.into();
+                        with(changed.into())
+                    };
+                    all.extend(mutations(inner, &format!("{place}[{i}]"), &with_item));
+                }
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+/// What a reader accepts, its schema accepts; keys that a reader does not know, its schema refuses.
+#[test]
+fn schemas_of_all_kinds_agree_with_their_readers() {
+    for (kind, reader, templates) in KINDS {
+        let schema = validator(kind);
+        let reads = |text: &str| judge(reader, text.as_bytes()).unwrap() == Reading::Accepted;
+        let (mut accepted, mut refused) = (0, 0);
+        for template in templates {
+            let text = std::fs::read_to_string(repository(&format!("templates/{template}"))).unwrap();
+            assert!(reads(&text), "{template}");
+            let table: toml::Table = toml::from_str(&text).unwrap();
+            let errors: Vec<_> = schema.iter_errors(&json(&text)).map(|e| e.to_string()).collect();
+            assert!(errors.is_empty(), "{template}: {errors:?}");
+            for (changed, place, is_unknown) in mutations(&table, "", &|table| table) {
+                let text = toml::to_string(&changed).unwrap();
+                let (reads, is_valid) = (reads(&text), schema.is_valid(&json(&text)));
+                if reads {
+                    assert!(is_valid, "{template}: the reader accepts {place}");
+                    accepted += 1;
+                } else if is_unknown {
+                    assert!(!is_valid, "{template}: the schema accepts {place}");
+                }
+                refused += usize::from(!is_valid);
+            }
+        }
+        assert!(refused > 5 && accepted + refused > 10, "{kind}: {accepted} accepted, {refused} refused");
+        for entry in std::fs::read_dir(repository(&format!("tests/corpus/{reader}"))).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            let Ok(text) = std::fs::read_to_string(&path) else { continue };
+            if toml::from_str::<toml::Table>(&text).is_ok() && reads(&text) {
+                assert!(schema.is_valid(&json(&text)), "{}", path.display());
+            }
+        }
     }
 }

@@ -60,7 +60,7 @@ impl UncheckedSweep {
 }
 
 /// Returns the tables of a sweep with their keys; an empty list means that the keys are fields.
-fn tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+pub(crate) fn tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     let general: [(&str, &[&str]); 2] =
         [("sweep", &["name", "base", "preset", "parts", "plots"]), ("set", &[])];
     let constraints: (&str, &[&str]) = ("constraints", &["require", "because"]);
@@ -121,8 +121,23 @@ fn set_field(base: &mut Configuration, field: ParameterRef, item: &Item) -> Resu
 
 /// Returns the names of all parts that a configuration can have, in the order in which they are
 /// made.
-fn part_names() -> Vec<&'static str> {
+pub(crate) fn part_names() -> Vec<&'static str> {
     PRINTED_PARTS.iter().map(|p| p.name).collect()
+}
+
+/// Whether an item is of a kind.
+type IsKind = fn(&Item) -> bool;
+
+/// The kind of the value of a key, in words; `None` for a table or a list.
+fn kind_of(key: &str) -> Option<(&'static str, IsKind)> {
+    match key {
+        "name" | "base" | "preset" | "method" | "file" | "require" | "because" => {
+            Some(("a string in quotes", Item::is_str))
+        }
+        "plots" => Some(("true or false", Item::is_bool)),
+        "count" | "seed" => Some(("a whole number", Item::is_integer)),
+        _ => None,
+    }
 }
 
 fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diagnostic> {
@@ -151,6 +166,17 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
                 let help = format!("known are {}", keys.join(", "));
                 let error = field_error(&format!("{name}.{key}"), None, "unknown key", help);
                 return Err(source.locate(error, key_span(*table, key).or(item.span())));
+            }
+            for (key, item) in table.iter() {
+                let Some((kind, _)) = kind_of(key).filter(|(_, is_kind)| !is_kind(item)) else { continue };
+                let problem = format!("not {kind}");
+                let error = field_error(
+                    &format!("{name}.{key}"),
+                    Some(&item.to_string()),
+                    problem,
+                    format!("give {kind}"),
+                );
+                return Err(source.locate(error, item.span()));
             }
         }
     }

@@ -1,7 +1,11 @@
 //! `pinswitch schema`.
 
 use clap::{Args, ValueEnum};
-use pinswitch_switch::{config, measured};
+use pinswitch_calibration::effects::effects_schema;
+use pinswitch_calibration::experiment::RigLimits;
+use pinswitch_calibration::segmentation::RunPlan;
+use pinswitch_simulation::Plan;
+use pinswitch_switch::{config, measured, request};
 
 use super::{Failure, print_json};
 
@@ -20,13 +24,34 @@ pub(super) struct Arguments {
 enum Kind {
     /// A configuration, as for `generate`.
     Configuration,
+    /// Effects of your own, as for `calibrate --effects`.
+    Effects,
+    /// A map of an import, as for `import --map`.
+    Import,
     /// The readings of a made switch, as for `--measured`.
     Measured,
+    /// A synthetic rig, as for `simulate`.
+    Plan,
+    /// A request, as for `design --request`.
+    Request,
+    /// The limits of a rig, as for `experiment --rig`.
+    Rig,
+    /// The logs of a run, as for `segment`.
+    Run,
+    /// A sweep, as for `batch`.
+    Sweep,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    print_json(&match arguments.kind {
-        Kind::Configuration => config::json_schema(),
-        Kind::Measured => measured::json_schema(),
-    })
+    match arguments.kind {
+        Kind::Configuration => print_json(&config::json_schema()),
+        Kind::Effects => print_json(&effects_schema()),
+        Kind::Import => print_json(&pinswitch_import::map_schema()),
+        Kind::Measured => print_json(&measured::json_schema()),
+        Kind::Plan => print_json(&schemars::schema_for!(Plan)),
+        Kind::Request => print_json(&request::request_schema()),
+        Kind::Rig => print_json(&schemars::schema_for!(RigLimits)),
+        Kind::Run => print_json(&schemars::schema_for!(RunPlan)),
+        Kind::Sweep => print_json(&pinswitch_batch::json_schema()),
+    }
 }

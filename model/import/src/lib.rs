@@ -59,7 +59,7 @@ pub use decimal::Decimal;
 pub use dialect::Delimiter;
 pub use import::{Import, Output, Source, import, import_with_pattern};
 pub use log::LogColumns;
-pub use map::{Kind, Map, SCHEMA};
+pub use map::{Kind, Map, SCHEMA, map_schema};
 pub use number::DecimalSign;
 pub use pattern::Pattern;
 pub use quantity::Quantity;

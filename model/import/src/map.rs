@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
 use pinswitch_measurements::{locate_field, toml_error};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
 use crate::clock::DateOrder;
@@ -122,45 +123,109 @@ const KEYS: &str = "kind, encoding, delimiter, decimal, header, names, sheet, da
     sample_rate_hz, full_speed_mm_s, bad_rows, concentric, eccentric, column.NAME, unit.NAME, factor.NAME, offset.NAME, fill.NAME, \
     direction.NAME, load.NAME, wrap_angle_deg.NAME, repetition.NAME, and constants such as substrate, wrap_angle_deg and load_N";
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct MapFile {
+    /// Name and version of this kind of file.
+    #[schemars(extend("const" = SCHEMA))]
     schema: String,
+    /// What the file is; by default what its columns show.
+    #[schemars(extend("enum" = ["table", "log"]))]
     kind: Option<String>,
+    /// Encoding of a text, such as `utf-8`.
     encoding: Option<String>,
+    /// Delimiter: a sign or its word, such as `semicolon`.
     delimiter: Option<String>,
+    /// Decimal sign.
+    #[schemars(extend("enum" = ["point", "comma"]))]
     decimal: Option<String>,
+    /// Line of the names of the columns, from 1; 0 without names.
     header_line: Option<usize>,
+    /// Names of the columns, in place of those of the file.
     names: Option<Vec<String>>,
+    /// Sheet of a workbook.
     sheet: Option<String>,
+    /// Order of day and month.
+    #[schemars(extend("enum" = ["dmy", "mdy"]))]
     date: Option<String>,
+    /// Times of two parts.
+    #[schemars(extend("enum" = ["hh:mm", "mm:ss"]))]
     clock: Option<String>,
+    /// -1 if the cell reads a tension as negative.
+    #[schemars(extend("enum" = [1, -1]))]
     force_sign: Option<i64>,
+    /// Unit of the columns of forces without one.
     force_unit: Option<String>,
+    /// Samples per second of a log without times.
     sample_rate_hz: Option<f64>,
+    /// Speed at 100 %, in millimetres per second.
     full_speed_mm_s: Option<f64>,
+    /// What happens to rows with a cell that is not a number.
+    #[schemars(extend("enum" = ["skip", "refuse"]))]
     bad_rows: Option<String>,
+    /// Values of columns that the file lacks.
     #[serde(default)]
+    #[schemars(schema_with = "constants_schema")]
     constants: BTreeMap<String, toml::Value>,
+    /// Direction of each word of the file.
     #[serde(default)]
+    #[schemars(schema_with = "directions_schema")]
     directions: BTreeMap<String, String>,
+    /// Columns of the file.
     #[serde(default)]
     column: Vec<ColumnEntry>,
 }
 
-#[derive(Deserialize)]
+/// The schema of constants: the known names with texts or numbers.
+fn constants_schema(_: &mut SchemaGenerator) -> Schema {
+    let value = serde_json::json!({ "type": ["string", "number"] });
+    let properties: serde_json::Map<String, serde_json::Value> =
+        CONSTANTS.iter().map(|name| ((*name).to_owned(), value.clone())).collect();
+    json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+fn directions_schema(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "object", "additionalProperties": { "enum": ["concentric", "eccentric"] } })
+}
+
+/// The schema of a quantity: its words.
+fn quantity_schema(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "enum": Quantity::all_words() })
+}
+
+/// Returns the JSON Schema of a map.
+pub fn map_schema() -> Schema {
+    schemars::schema_for!(MapFile)
+}
+
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ColumnEntry {
+    /// Name in the file, or number of the column, from 1.
     name: String,
+    /// What it contains.
+    #[serde(default)]
+    #[schemars(schema_with = "quantity_schema")]
     quantity: Option<String>,
+    /// Unit, such as `kN`.
     unit: Option<String>,
+    /// Unit in the row of units of the file from which the map was made.
     row_unit: Option<String>,
+    /// Written value of 1.
     factor: Option<f64>,
+    /// Written value of 0.
     offset: Option<f64>,
+    /// Direction of all its readings, in a wide table.
+    #[schemars(extend("enum" = ["concentric", "eccentric"]))]
     direction: Option<String>,
+    /// Load of all its readings, such as `2 kg`.
     load: Option<String>,
+    /// Wrap angle of all its readings, in degrees.
     wrap_angle_deg: Option<f64>,
+    /// Trial of all its readings, from 1.
     repetition: Option<u32>,
+    /// `down`: an empty cell has the value above.
+    #[schemars(extend("enum" = ["down"]))]
     fill: Option<String>,
 }
 

@@ -102,6 +102,15 @@ impl Quantity {
         WORDS.iter().find(|(quantity, ..)| *quantity == self).map_or("", |(.., column)| column)
     }
 
+    /// All words and names of columns that [`Self::parse`] reads.
+    pub(crate) fn all_words() -> Vec<&'static str> {
+        let mut words: Vec<&str> = WORDS.iter().flat_map(|(_, name, column)| [*name, *column]).collect();
+        words.retain(|word| !word.is_empty());
+        words.sort_unstable();
+        words.dedup();
+        words
+    }
+
     /// All words, for messages.
     pub(crate) fn words() -> String {
         WORDS.map(|(_, name, _)| name).join(", ")

@@ -4,12 +4,13 @@
 use std::f64::consts::{PI, TAU};
 
 use pinswitch_calibration::effects::Covariate;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::row_covariates::RowCovariates;
 
 /// Quantity that a disturbance acts on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DisturbanceTarget {
     /// Friction coefficients of pins and silicone, by a relative change.
@@ -26,7 +27,7 @@ pub enum DisturbanceTarget {
 }
 
 /// Disturbance outside the vocabulary of effects.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
     /// Shape over time, stroke or another covariate.
@@ -39,7 +40,7 @@ pub struct Disturbance {
 }
 
 /// Shape of a disturbance. Shares of the session and of the stroke are from 0 to 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum DisturbanceKind {
     /// Step, or ramp, in the session.
@@ -130,7 +131,7 @@ pub enum DisturbanceKind {
 }
 
 /// Schedule of two operators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum OperatorSchedule {
     /// Random for each series.

@@ -17,6 +17,7 @@ use pinswitch_switch::config::Configuration;
 use pinswitch_switch::config::parameter::Parameter;
 
 pub(crate) use rows::{Rows, cell_value, column_fields};
+pub(crate) use sample::METHODS;
 pub use sample::{Method, unit_points};
 
 /// A parameter of the configuration.
@@ -197,7 +198,7 @@ pub(super) fn key_span(table: &dyn TableLike, key: &str) -> Option<Range<usize>>
 ///
 /// # Errors
 /// An unknown field, and a field that the batch sets itself.
-pub(super) fn field(path: &str) -> Result<ParameterRef, Diagnostic> {
+pub(crate) fn field(path: &str) -> Result<ParameterRef, Diagnostic> {
     let all = Configuration::PARAMETERS;
     if path == "switch.name" {
         let problem = "a sweep cannot set the name (each variant's name is its id)";

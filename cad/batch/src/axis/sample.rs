@@ -31,6 +31,10 @@ pub enum Method {
     Random,
 }
 
+/// Every method with its word, the default first.
+pub(crate) const METHODS: [(&str, Method); 2] =
+    [("latin-hypercube", Method::LatinHypercube), ("random", Method::Random)];
+
 /// Points of the unit cube. The same seed gives the same points on every machine.
 ///
 /// Points are generated on request; only the order of the strata is kept, in four bytes per point
@@ -113,14 +117,11 @@ fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, Diagnostic>
 
 fn axis(table: &dyn TableLike) -> Result<SweepAxis, Diagnostic> {
     let whole = |key: &str| table.get(key).and_then(Item::as_integer);
-    let method = match table.get("method").and_then(Item::as_str) {
-        Some("latin-hypercube") | None => Method::LatinHypercube,
-        Some("random") => Method::Random,
-        Some(other) => {
-            let value = format!("{other:?}");
-            let help = "give \"latin-hypercube\" or \"random\"";
-            return Err(field_error("sample.method", Some(&value), "unknown method", help));
-        }
+    let word = table.get("method").and_then(Item::as_str).unwrap_or(METHODS[0].0);
+    let Some((_, method)) = METHODS.into_iter().find(|(known, _)| *known == word) else {
+        let value = format!("{word:?}");
+        let help = "give \"latin-hypercube\" or \"random\"";
+        return Err(field_error("sample.method", Some(&value), "unknown method", help));
     };
     let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
     if count > MAX_COUNT {

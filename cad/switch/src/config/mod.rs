@@ -23,6 +23,7 @@ pub(crate) use read::shown;
 pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub use reference::{reference_toml, to_toml};
 pub use rewrite::{rewritten, rewritten_fields};
+pub(crate) use schema::DIALECT;
+pub use schema::closed_object;
 pub use schema::json_schema;
-pub(crate) use schema::{DIALECT, closed_object};
 pub use text::text;

@@ -36,7 +36,7 @@ pub fn json_schema() -> Value {
 }
 
 /// The schema of an object without further keys.
-pub(crate) fn closed_object(properties: Map<String, Value>) -> Value {
+pub fn closed_object(properties: Map<String, Value>) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 

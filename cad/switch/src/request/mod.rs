@@ -13,10 +13,12 @@ mod tolerance;
 use crate::config::{Diagnostic, Location};
 use pinswitch_diagnostic::short_number;
 use pinswitch_friction::sort_by_number;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use parameter::Parameter;
 pub use phrase::{FORMS, parse_requirement, parse_share};
+pub use read::request_schema;
 pub use target::{Quantity, Requirement, Target};
 pub use tolerance::{SOURCES, Tolerances};
 
@@ -50,7 +52,7 @@ pub struct Request {
 }
 
 /// Limits of the part.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
     /// Fewest and most pins.
@@ -102,7 +104,7 @@ impl Default for Vary {
 }
 
 /// Available materials. An empty list means the material of the configuration.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Materials {
     /// Diameters of pins, mm.
@@ -114,7 +116,7 @@ pub struct Materials {
 }
 
 /// An available tendon.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tendon {
     /// Diameter of the bare rope, mm.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use toml::Value;
 use toml_edit::Document;
@@ -15,12 +16,14 @@ use super::{
 use crate::config::{Diagnostic, Location, ValueError};
 
 /// The unvalidated content of a file.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {
     targets: Targets,
     #[serde(default)]
     limits: Limits,
+    #[serde(default)]
+    #[schemars(schema_with = "vary_schema")]
     vary: Option<BTreeMap<String, Value>>,
     #[serde(default)]
     materials: Materials,
@@ -29,12 +32,20 @@ struct File {
 }
 
 /// Table `[targets]`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Targets {
+    #[serde(default)]
+    #[schemars(schema_with = "requirement_schema")]
     threshold_n: Option<Value>,
+    #[serde(default)]
+    #[schemars(schema_with = "requirement_schema")]
     max_friction_n: Option<Value>,
+    #[serde(default)]
+    #[schemars(schema_with = "requirement_schema")]
     low_load_friction_n: Option<Value>,
+    #[serde(default)]
+    #[schemars(schema_with = "requirement_schema")]
     stiffness: Option<Value>,
     #[serde(default)]
     friction: Vec<FrictionEntry>,
@@ -43,7 +54,7 @@ struct Targets {
 }
 
 /// One entry of `friction`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FrictionEntry {
     load_n: f64,
@@ -51,6 +62,41 @@ struct FrictionEntry {
     at_least_n: Option<f64>,
     about_n: Option<f64>,
     within: Option<f64>,
+}
+
+/// The schema of a requirement: a number (about), a phrase, or a table.
+fn requirement_schema(_: &mut SchemaGenerator) -> Schema {
+    let above_0 = serde_json::json!({ "type": "number", "exclusiveMinimum": 0 });
+    json_schema!({
+        "anyOf": [
+            above_0,
+            { "type": "string" },
+            {
+                "type": "object",
+                "properties": { "at_most": above_0, "at_least": above_0, "about": above_0, "within": above_0 },
+                "additionalProperties": false,
+            },
+        ],
+    })
+}
+
+/// The schema of `[vary]`: the known parameters, each in its default range or in one that the file gives.
+fn vary_schema(_: &mut SchemaGenerator) -> Schema {
+    let range = serde_json::json!({
+        "anyOf": [
+            { "type": "boolean" },
+            { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 },
+        ],
+    });
+    let parameters = Parameter::ALL.iter().map(|parameter| (parameter.name().to_owned(), range.clone()));
+    let mut properties: serde_json::Map<String, serde_json::Value> = parameters.collect();
+    properties.insert("pattern".to_owned(), serde_json::json!({ "type": "boolean" }));
+    json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
+
+/// Returns the JSON Schema of a request.
+pub fn request_schema() -> Schema {
+    schemars::schema_for!(File)
 }
 
 impl Request {

@@ -1,5 +1,6 @@
 //! Manufacturing tolerances: distributions of the deviations of printed, cast and assembled parts.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
@@ -8,7 +9,7 @@ use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
 pub const SOURCES: usize = 5;
 
 /// Standard deviations of normal distributions about the configured values; `cad/doc/design.md` gives the sources.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerances {
     /// Standard deviation of the diameter of the pins, mm.

@@ -19,6 +19,7 @@ pub use contact_state::{ContactState, REFERENCE_LOAD_N};
 pub use covariate::Covariate;
 pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
 pub(crate) use own::effects_of_model;
+pub use own::effects_schema;
 pub use own::{
     DefinitionError, EffectDefinition, OwnEffect, OwnParameter, formula_variables, own_effect_blocks,
     own_effects_text, read_own_effects,

@@ -2,6 +2,7 @@
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::{Substrate, published};
+use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -12,7 +13,7 @@ use pinswitch_measurements::{locate_field, toml_error};
 const HELP: &str = "see `pinswitch init rig` for each field";
 
 /// Limits of a rig and durations of its work. A field that a file omits is that of the paper's rig.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RigLimits {
     /// Available weights in grams.

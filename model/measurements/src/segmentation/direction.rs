@@ -7,12 +7,13 @@
 //! of the directions.
 
 use pinswitch_friction::Direction;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::two_levels::{TwoLevels, two_levels};
 
 /// Order of the directions in a log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
     /// All eccentric moves, then all concentric ones.

@@ -2,6 +2,7 @@
 
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Substrate, published};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::direction::Protocol;
@@ -12,7 +13,7 @@ use crate::toml_text::{field_location, toml_error};
 const HELP: &str = "see model/doc/file-formats.md, or start from `pinswitch init run`";
 
 /// The rig of a run. Optional values are declarations, with which the logs are compared.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 pub struct Rig {
     /// Wrap angle in degrees.
     pub wrap_angle_deg: f64,
@@ -33,8 +34,21 @@ pub struct Rig {
     pub protocol: Option<Protocol>,
 }
 
+/// The words for what the tendon touches.
+#[derive(JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[expect(dead_code, reason = "describes the words of a file")]
+enum SubstrateWord {
+    /// One contact of any material.
+    Plain,
+    /// Pins in silicone, or silicone alone.
+    Silicone,
+    /// The rigid proxy.
+    Abs,
+}
+
 /// One series of a run: a log, or several logs in the order of recording.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesPlan {
     /// File name of the log, relative to the run description; empty with `files`.
@@ -45,6 +59,7 @@ pub struct SeriesPlan {
     pub files: Vec<String>,
     /// What the tendon touches; `None` for `plain`.
     #[serde(with = "crate::table::substrate_word")]
+    #[schemars(with = "SubstrateWord")]
     pub substrate: Option<Substrate>,
     /// Occupied grooves.
     pub pins: Vec<usize>,
@@ -80,7 +95,7 @@ impl SeriesPlan {
 }
 
 /// A raw run.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub struct RunPlan {
     /// The rig.
     pub rig: Rig,

@@ -2,12 +2,13 @@
 //! (`model/doc/file-formats.md`).
 
 use pinswitch_friction::{Direction, Substrate};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::unknown::Unknown;
 
 /// Order of the loads in the sweep of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Sweep {
     /// Loads ascending.

@@ -1,9 +1,10 @@
 //! Optional columns of the simulated table.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Optional columns of the simulated table (`model/doc/file-formats.md`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColumnsPlan {
     /// `mount`: the number of the mount.

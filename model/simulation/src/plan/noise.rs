@@ -1,10 +1,11 @@
 //! Noise of a synthetic rig.
 
 use pinswitch_calibration::model::Noise;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Noise of the synthetic rig.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct NoisePlan {
     /// Standard deviation of a repetition at zero load, in newtons.

@@ -1,9 +1,10 @@
 //! Sampling and faults of raw logs.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Sampling of the logs, and rates of faults.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RawPlan {
     /// Samples per second.

@@ -2,6 +2,7 @@
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_friction::{LayoutLaw, published};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::columns::ColumnsPlan;
@@ -10,7 +11,7 @@ use super::raw::RawPlan;
 use crate::disturbance::Disturbance;
 
 /// Order and settings of the series of a session.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Protocol {
     /// Ascending loads, speed proportional to load, one dwell, many repetitions.
@@ -21,7 +22,7 @@ pub enum Protocol {
 }
 
 /// Effect of the vocabulary with its constants.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectPlan {
     /// Id of the effect.
@@ -36,7 +37,7 @@ pub struct EffectPlan {
 }
 
 /// Constants of the paper's model on a rig.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RigConstants {
     /// Friction coefficient on the pins.
@@ -80,7 +81,7 @@ impl Default for RigConstants {
 /// assert!(error.to_string().starts_with("plan.toml:1:13: weights_g = [-1.0]: must be 1 to 1000"));
 /// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Plan {
     /// Seed of all random numbers.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::sort_by_number;
+use schemars::{Schema, json_schema};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -261,6 +262,62 @@ const KEYS: [&str; 11] = [
     "parameters",
 ];
 
+/// Keys of a constant of an effect.
+const PARAMETER_KEYS: [&str; 5] = ["size", "start", "low", "high", "unit"];
+
+/// Returns the JSON Schema of a file of effects.
+pub fn effects_schema() -> Schema {
+    let text = |description: &str| json_schema!({ "type": "string", "description": description });
+    let parameter = json_schema!({
+        "type": "object",
+        "properties": {
+            "size": { "type": "boolean", "description": "Whether the effect is proportional to it." },
+            "start": { "type": "number", "description": "Value at which a fit starts." },
+            "low": { "type": "number" },
+            "high": { "type": "number" },
+            "unit": { "type": "string" },
+        },
+        "required": ["start", "unit"],
+        "additionalProperties": false,
+    });
+    let words = |all: Vec<&str>| json_schema!({ "enum": all });
+    let ids = json_schema!({ "type": "array", "items": { "type": "string" } });
+    let property = |key: &str| match key {
+        "side" => words([Side::Switch, Side::Rig].map(Side::as_str).to_vec()),
+        "covariate" => words(Covariate::ALL.map(Covariate::as_str).to_vec()),
+        "acts_on" => words(ActsOn::ALL.map(ActsOn::as_str).to_vec()),
+        "combine" => words(COMBINE.map(|(word, _)| word).to_vec()),
+        "one_sided" => {
+            json_schema!({ "type": "boolean", "description": "Whether its first size is positive." })
+        }
+        "confused_with" | "drawn_from" => ids.clone(),
+        "parameters" => json_schema!({ "type": "object", "additionalProperties": parameter }),
+        "formula" => text("Formula, such as `k*ln(speed_pct/50)`."),
+        _ => json_schema!({ "type": "string" }),
+    };
+    let properties: std::collections::BTreeMap<&str, Schema> =
+        KEYS.iter().map(|key| (*key, property(key))).collect();
+    json_schema!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Effects of a tendon rig (pinswitch)",
+        "type": "object",
+        "properties": {
+            "schema": { "const": SCHEMA },
+            "effect": {
+                "type": "array",
+                "items": {
+                    "type": "object",
+                    "properties": properties,
+                    "required": ["id", "side", "covariate", "acts_on", "combine", "formula", "parameters"],
+                    "additionalProperties": false,
+                },
+            },
+        },
+        "required": ["schema", "effect"],
+        "additionalProperties": false,
+    })
+}
+
 fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, Diagnostic> {
     let table = Table::new(source, value, "the effect")?;
     table.only(&KEYS)?;
@@ -323,7 +380,7 @@ fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), Dia
     for (name, value) in &named {
         let what = format!("parameter '{}'", excerpt(name.get_ref(), 60));
         let table = Table::new(effect.source, value, &what)?;
-        table.only(&["size", "start", "low", "high", "unit"])?;
+        table.only(&PARAMETER_KEYS)?;
         let size = table.boolean("size")?;
         let (low, high) = (table.number("low")?, table.number("high")?);
         let start = table

@@ -19,6 +19,7 @@ mod writer;
 
 pub use definition::{DefinitionError, EffectDefinition, OwnParameter};
 pub(crate) use file::effects_of_model;
+pub use file::effects_schema;
 pub use file::read_own_effects;
 pub(crate) use unknown_name::unknown_name;
 pub use writer::{own_effect_blocks, own_effects_text};

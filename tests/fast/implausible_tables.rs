@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable, TableError, substrate_word};
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
-use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
+use pinswitch_simulation::{EffectPlan, Plan, simulate};
 use proptest::prelude::*;
 
 use crate::harness::{ended, shared_file};
@@ -159,17 +159,6 @@ fn a_refused_table_writes_nothing() {
         "turned.csv: direction: the concentric readings are below the eccentric ones in 7 of 7 condition(s)";
     assert!(output.contains(words), "{output}");
     assert!(output.chars().count() < LONGEST && !folder.path().join("out").exists(), "{output}");
-}
-
-/// Covers every kind of rig of the study, including effects and disturbances.
-#[test]
-fn study_tables_are_plausible() {
-    for case in study_cases() {
-        for seed in [901, 902] {
-            let rows = simulate(&plan_of(&case, seed)).rows;
-            check(&written(&rows)).unwrap_or_else(|e| panic!("{} {seed}: {e}", case.name));
-        }
-    }
 }
 
 /// Errors of a single condition, or of up to three series, are left to the fit. Swapped

@@ -6,6 +6,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 
 use crate::clock::{self, DateOrder};
 use crate::column::{self, Column};
+use crate::columns;
 use crate::decimal::Decimal;
 use crate::direction_words;
 use crate::header::{self, Header};
@@ -86,7 +87,7 @@ impl FileReading {
         }
         let sheet = &recording.sheet;
         let mut questions = Vec::new();
-        let columns = column::assign(sheet, &header, map, &mut questions);
+        let columns = columns::assign(sheet, &header, map, &mut questions);
         let is_used = |choice: &crate::map::ColumnChoice| {
             choice.quantity == Some(Quantity::Ignore)
                 || columns

@@ -24,6 +24,9 @@
 
 mod clock;
 mod column;
+mod columns;
+mod computed;
+mod conversion;
 mod decimal;
 mod dialect;
 mod direction_words;
@@ -34,6 +37,7 @@ mod import;
 mod log;
 mod lvm;
 mod map;
+mod map_file;
 mod name;
 mod number;
 mod parquet_file;
@@ -59,7 +63,8 @@ pub use decimal::Decimal;
 pub use dialect::Delimiter;
 pub use import::{Import, Output, Source, import, import_with_pattern};
 pub use log::LogColumns;
-pub use map::{Kind, Map, SCHEMA, map_schema};
+pub use map::{Kind, Map, SCHEMA};
+pub use map_file::map_schema;
 pub use number::DecimalSign;
 pub use pattern::Pattern;
 pub use quantity::Quantity;

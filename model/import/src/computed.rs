@@ -4,6 +4,7 @@ use crate::column::Column;
 use crate::header::Header;
 use crate::quantity::Quantity;
 use crate::sheet::Sheet;
+use crate::trials::trial;
 use crate::vocabulary;
 
 /// Figures computed from the readings next to them, such as `SD (N)`, are no readings. `STD` is the German abbreviation of
@@ -19,10 +20,12 @@ pub(crate) fn remove_statistics(columns: &mut [Column]) {
         };
         is_one && !c.is_decided && vocabulary::is_statistic(&c.name) && !vocabulary::is_average(&c.name)
     };
-    // A force that is named as one, or a column that may be a trial.
-    let has_reading = columns.iter().any(|c| {
-        let may_be = matches!(c.quantity, Quantity::Force | Quantity::Repetition | Quantity::Ignore);
-        may_be && !is_statistic(c) && !vocabulary::is_statistic(&c.name) || vocabulary::is_average(&c.name)
+    let has_reading = columns.iter().any(|c| match c.quantity {
+        Quantity::Force => !is_statistic(c),
+        Quantity::Repetition | Quantity::Ignore => {
+            trial(&c.name).is_some() || vocabulary::is_average(&c.name)
+        }
+        _ => false,
     });
     if has_reading {
         columns.iter_mut().filter(|c| is_statistic(c)).for_each(|c| c.ignore("computed from other columns"));

@@ -271,10 +271,15 @@ fn ask_for_empty(table: &mut Table, file: &FileReading, map: &Map, questions: &m
     }
 }
 
-/// Whether a reading has no wrap angle, although a column has those of others.
+/// Whether a reading on a plain contact has no wrap angle, although a column has those of others.
 fn lacks_angle(file: &FileReading, map: &Map, row: usize) -> bool {
-    let is_empty = |column: &Column| number::is_missing(file.recording.sheet.cell(row, column.index));
-    file.column(Quantity::WrapAngle).is_some_and(is_empty)
+    let cell = |column: &Column| file.recording.sheet.cell(row, column.index);
+    let is_plain = match file.column(Quantity::Substrate).map(cell) {
+        Some(word) => matches!(word.to_lowercase().as_str(), "" | "-" | "plain"),
+        None => constant(file, map, "substrate").is_none_or(|word| word == "plain"),
+    };
+    is_plain
+        && file.column(Quantity::WrapAngle).is_some_and(|column| number::is_missing(cell(column)))
         && constant(file, map, "wrap_angle_deg").is_none()
         && file.forces().any(|force| force.angle.is_none() && file.value(row, force).is_some())
 }

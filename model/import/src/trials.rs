@@ -23,7 +23,7 @@ const READINGS: [&str; 10] = [
 ];
 
 /// Returns the number of a trial that is all of a name, in addition to words for a trial.
-fn trial(text: &str) -> Option<u32> {
+pub(crate) fn trial(text: &str) -> Option<u32> {
     let words: Vec<String> = words(text).into_iter().filter(|word| !word.is_empty()).collect();
     let (numbers, others): (Vec<&String>, Vec<&String>) =
         words.iter().partition(|word| word.chars().all(|c| c.is_ascii_digit()));

@@ -101,6 +101,19 @@ fn figures_computed_from_readings_are_not_readings() {
     assert_eq!(forces(counted, &decided), [12.8, 12.9]);
 }
 
+/// What is the only force is a reading, whatever its name is.
+#[test]
+fn the_only_force_is_a_reading() {
+    for text in [
+        "time_s,N,Comment\n0,10.1,a\n0.01,10.2,b\n",
+        "time_s,Max (N),Comment\n0,10.1,a\n0.01,10.2,b\n",
+        "Load [N],Direction,Mean (N),SD (N)\n10,up,10.1,0.1\n10,down,10.2,0.1\n",
+        "Load [N],Direction,N,Remark\n10,up,10.1,a\n10,down,10.2,b\n",
+    ] {
+        assert_eq!(forces(text, &["directions=as-named"]), [10.1, 10.2], "{text}");
+    }
+}
+
 #[test]
 fn a_unit_and_a_factor_are_a_question() {
     let text = "Load [N],Direction,adc\n10,up,12.8\n10,down,7.4\n";
@@ -121,6 +134,9 @@ fn empty_cells_of_loads_and_angles_are_a_question() {
     let angles = "Angle [deg],Load [N],Direction,Force [N]\n90,10,up,12.8\n,10,down,7.4\n";
     assert_eq!(problems(angles, &[]), "the reading in line 3 has no wrap angle");
     assert_eq!(forces(angles, &["wrap_angle_deg=90"]), [12.8, 7.4]);
+    // The wrap angle of a switch is that of its rig.
+    let mixed = "Substrate,Pins,Angle [deg],Load [N],Direction,Force [N]\nplain,,90,10,up,12.8\nsilicone,5;8;11,,10,up,14\n";
+    assert_eq!(forces(mixed, &[]), [12.8, 14.0]);
     let directions = "Direction,Load [N],Force [N]\nup,10,12.8\n,20,25.6\ndown,10,7.4\n,20,14.8\n";
     assert_eq!(problems(directions, &[]), "some readings have no direction");
     assert_eq!(forces(directions, &["fill.Direction=down"]), [12.8, 25.6, 7.4, 14.8]);

@@ -25,7 +25,7 @@ pub(crate) fn preparation(c: &Configuration) -> String {
         format!(" {}{rest}: silicone stays tacky on fresh {}.", first.to_uppercase(), material.name)
     });
     format!(
-        "Do not use a release agent on {}.{bake} Sulphur clay and latex gloves inhibit the cure.",
+        "Do not use a release agent on {}.{bake} Latex gloves, and modelling clay with sulphur, prevent the cure.",
         material.name
     )
 }
@@ -69,6 +69,6 @@ pub(crate) fn post_cure(process: &Process) -> Option<String> {
     let [shore_a, scatter] = process.hardness_shore_a?;
     Some(format!(
         "Post-cure the layer outside the mould for {cure}, on a flat metal tray. It then has {shore_a:.0} \u{b1} {scatter:.0} Shore A, the \
-         hardness behind the predicted curve. Without this step it stays softer and switches at a lower load."
+         hardness behind the predicted curve. Without this step it stays softer."
     ))
 }

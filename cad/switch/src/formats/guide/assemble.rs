@@ -142,11 +142,13 @@ impl Assembly<'_> {
         steps.push(
             Step::new("Put the screws in first")
                 .text(format!(
-                    "Push {screw_words} through {base_words} from its outer face, and fix the heads with adhesive tape. Put it on the \
-                     table{} with the screws up: the other parts are put over them.{skin}",
-                    self.pad_words()
+                    "Push {screw_words} through {base_words} from its outer face, and fix the heads with adhesive tape.{skin}"
                 ))
                 .text(if has_mount { String::new() } else { self.marks() })
+                .text(format!(
+                    "Put it on the table{} with the screws up: the other parts are put over them.",
+                    self.pad_words()
+                ))
                 .risk(
                     "A screw is in from the inner face.",
                     "Its tip points down when the engraved face is on the table; turn it around.",
@@ -166,14 +168,15 @@ impl Assembly<'_> {
         steps.push(
             Step::new("Put the shell on the screws")
                 .text(format!(
-                    "Put the shell with the {} over the screws, with its grooves at the outer, longer edge of the support, until it is flat \
-                     on the left support{lip}.{}",
+                    "Put the shell with the {} over the screws, until it is flat on the left support. The grooves of the shell are at the \
+                     longer edge of the support{lip}. Hold the {} on the shell meanwhile.{}",
                     self.bed(),
+                    self.bed_edge(),
                     self.shell_face_words()
                 ))
                 .risk_if(
                     self.has_lip(),
-                    &format!("The lip is on the edge of the {} and not outside of it.", self.bed_edge()),
+                    &format!("The edge of the {} is not under the lip of the support.", self.bed_edge()),
                     "There is a gap between shell and support; press the edge under the lip with a flat stick.",
                 )
                 .picture(self.picture(moves)),

@@ -58,10 +58,11 @@ fn mix_step(design: &Design, manifest: &Manifest) -> Option<Step> {
                 s.base_g, s.agent_g, s.mix_ratio, s.mix_g, s.pour_ml, s.pour_g
             ))
             .text(format!(
-                "Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.{pot_life}"
+                "Mix for three minutes and scrape the walls of the cup. Remove the bubbles in a vacuum chamber, or let the cup stand for 30 \
+                 minutes, until the surface is flat.{pot_life}"
             ))
             .risk("The ratio is wrong.", "The cured rest in the cup is sticky or brittle.")
-            .risk("Bubbles remain.", "The surface of the mix is not flat; wait for 30 minutes or degas again."),
+            .risk("Bubbles remain.", "The surface of the mix is not flat; wait longer."),
     )
 }
 
@@ -169,7 +170,7 @@ fn split(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<Step> {
             .risk("The lid is pulled off without a cut.", "The sprue tears a hole into the layer.")
             .picture(cut),
         Step::new("Open the mould")
-            .text("Remove the lid, and slide the ring off along the axis. Push the plugs out of the lid.")
+            .text("Remove the lid, and slide the ring off along the axis. Push the plugs of silicone out of the lid.")
             .risk("The ring is tilted.", "It jams, and its ribs cut the silicone; push both ends alternately.")
             .picture(opened),
         Step::new("Take the layer out")

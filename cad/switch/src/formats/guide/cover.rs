@@ -38,8 +38,8 @@ fn what_it_is(design: &Design) -> String {
     match (c.layout.substrate, c.layout.pins.is_empty()) {
         (Substrate::Silicone, false) => format!(
             "This is a friction switch: a fixed segment of a pulley with {pins} in a layer of silicone. {wrap} At low load the \
-             tendon slides on the pins, with little friction. At high load the pins sink into the silicone, and the tendon slides \
-             on the silicone, with much friction."
+             tendon slides on the pins, with little friction. As the load grows, the pins sink into the silicone, and the tendon \
+             slides on the silicone too, with more friction."
         ),
         (Substrate::Silicone, true) => format!(
             "This is a fixed segment of a pulley with a layer of silicone and without pins. {wrap} The tendon slides on the \

@@ -17,8 +17,10 @@ pub(super) fn cure_step(design: &Design) -> Step {
 /// The step of the cure outside the mould; `None` if the hardness needs none.
 pub(super) fn post_cure_step(design: &Design) -> Option<Step> {
     let words = instructions::post_cure(&Process::of(design.configuration()))?;
-    Some(Step::new("Post-cure the layer").text(words).risk(
-        "The oven is too cold.",
-        "The layer stays softer: a durometer shows it, and so does a lower load of switching.",
-    ))
+    Some(
+        Step::new("Post-cure the layer")
+            .text(words)
+            .text("Put no printed part into the oven, and use none for food. Take the tray out with gloves, and let the layer cool.")
+            .risk("The oven is too cold.", "The layer stays softer, which a durometer for Shore A shows."),
+    )
 }

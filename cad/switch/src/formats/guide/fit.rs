@@ -17,7 +17,8 @@ pub(super) fn fit(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<
     let number = pins.number + pins.spares;
     let cut = Step::new("Cut the pins")
         .text(format!(
-            "Cut {} of {} mm, {:.1} mm long ({} spare). Deburr and polish them.",
+            "Cut {} of {} mm from the rod, {:.1} mm long ({} spare), with eye protection: the ends fly off. Deburr the ends with the file \
+             and the abrasive paper; the sides are smooth as bought.",
             pluralise(number, "pin"),
             pins.diameter_mm,
             pins.length_mm,
@@ -32,8 +33,7 @@ pub(super) fn fit(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<
         ));
     let slots = Step::new("Try the pins in the supports")
         .text(format!(
-            "Put a pin into {}. It must slide from end to end by its \
-             weight: {:.2} mm.",
+            "Put a pin into {}. It must slide by its own weight over the whole length of the slot, {:.2} mm more than its diameter.",
             slots(design),
             design.slot().outer_mm - design.slot().inner_mm
         ))

@@ -10,7 +10,7 @@ use crate::formats::markdown::escape;
 use crate::plates::Plate;
 use crate::process::instructions;
 use crate::scene::{Bench, COUPON};
-use pinswitch_friction::pluralise;
+use pinswitch_friction::{Substrate, pluralise};
 
 pub(super) fn print(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> Vec<Block> {
     let design = built.design();
@@ -30,6 +30,8 @@ pub(super) fn print(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) ->
             ]
         }),
     ));
+    let has_pins = !design.configuration().layout.pins.is_empty();
+    blocks.extend(spare_parts(built, manifest).map(Block::Paragraph));
     blocks.extend(coupon(built).map(Block::Step));
     blocks.push(Block::Step(print_step(built, manifest, plates)));
     for (index, plate) in plates.iter().enumerate() {
@@ -42,8 +44,17 @@ pub(super) fn print(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) ->
     blocks.push(Block::Step(
         Step::new("Clean the parts")
             .text("Remove brims, strings and the edge of the first layer, which is wider than the others.")
-            .text("Clean slots and grooves with a blade, not with a file: a wide slot cannot be repaired.")
-            .risk("Strings remain in a slot.", "A pin moves in jerks; pull the strings out with tweezers."),
+            .text(if has_pins {
+                "Clean slots and grooves with a blade, not with a file: a wide slot cannot be repaired."
+            } else {
+                "Clean grooves with a blade, not with a file."
+            })
+            .risk_if(
+                has_pins,
+                "Strings remain in a slot.",
+                "A pin moves in jerks; pull the strings out with tweezers.",
+            )
+            .risk_if(!has_pins, "Strings remain in a groove.", "The layer is not flat on the shell."),
     ));
     blocks.push(Block::Heading { number: None, text: "Checks".to_owned() });
     let mut checks: Vec<String> = checklist(design, manifest.widest_bridge_mm())
@@ -60,20 +71,39 @@ pub(super) fn print(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) ->
     blocks
 }
 
+/// Parts that the switch does not need.
+fn spare_parts(built: &Built, manifest: &Manifest) -> Option<String> {
+    let c = built.design().configuration();
+    let has = |name: &str| manifest.parts.iter().any(|part| part.name == name);
+    let mut words = Vec::new();
+    if has("proxy") && c.layout.substrate == Substrate::Silicone {
+        words.push("`proxy` is a rigid copy of the silicone layer, to compare the friction without silicone. The switch does not need it.");
+    }
+    if has("coupon") && c.layout.pins.is_empty() {
+        words.push("`coupon` tests slots for pins. A switch without pins does not need it.");
+    }
+    (!words.is_empty()).then(|| words.join(" "))
+}
+
 fn settings(built: &Built, manifest: &Manifest) -> String {
     let c = built.design().configuration();
     let has_mould = manifest.parts.iter().any(|p| p.name.starts_with("mould"));
-    let infill = if has_mould { "100 % infill for the mould, " } else { "" };
+    let infill = if has_mould {
+        "100 % infill for the mould and 40 % or more for the others, "
+    } else {
+        "40 % infill or more, "
+    };
     let foot = if c.print.elephant_foot_mm > 0.0 {
         format!(
             "Bottom edges have a chamfer of {} mm. Disable the elephant-foot compensation of the slicer.",
             c.print.elephant_foot_mm
         )
     } else {
-        "Enable the elephant-foot compensation of the slicer (0.2 mm). The parts have no chamfer.".to_owned()
+        "Enable the elephant-foot compensation of the slicer (0.2 mm): the bottom edges have no chamfer."
+            .to_owned()
     };
     format!(
-        "{} Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports. Every file is in print \
+        "{} Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no support structures. Every file is in print \
          orientation. {foot}",
         instructions::print_material(c),
         c.print.layer_mm,
@@ -100,10 +130,16 @@ fn bridge(mm: f64) -> String {
     if mm > 0.0 { format!("{mm:.2} mm") } else { "none".to_owned() }
 }
 
+/// Whether the coupon is printed before the other parts.
+fn coupon_is_first(built: &Built) -> bool {
+    let c = built.design().configuration();
+    c.parts.coupon && !c.layout.pins.is_empty()
+}
+
 /// The step of the coupon; `None` without coupon or pins.
 fn coupon(built: &Built) -> Option<Step> {
     let c = built.design().configuration();
-    if !c.parts.coupon || c.layout.pins.is_empty() {
+    if !coupon_is_first(built) {
         return None;
     }
     Some(
@@ -113,8 +149,8 @@ fn coupon(built: &Built) -> Option<Step> {
                 "The number at a slot is its clearance in hundredths of a millimetre: the slot 20 is 0.20 mm wider than the pin.",
             )
             .text(format!(
-                "Set `support.slot_clearance_mm` (now {}) to the smallest clearance in which the pin slides by its weight, and \
-                 generate the set again if it differs.",
+                "Find the smallest clearance in which the pin slides by its weight. If it is more than {} mm, generate the set again with \
+                 it: `pinswitch generate CONFIG --set support.slot_clearance_mm=0.25 --out DIR`.",
                 c.support.slot_clearance_mm
             ))
             .text("Lay the pin into the grooves at the upper edge: half of it is in the groove.")
@@ -149,6 +185,10 @@ fn print_step(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> Step 
                 plates.len()
             ))
             .text(lists.join(" "))
+        }
+        _ if coupon_is_first(built) => {
+            let others = pluralise(manifest.parts.len().saturating_sub(1), "other file");
+            step.text(format!("Print the {others} of the table as in the picture."))
         }
         _ => step.text(format!(
             "Print the {} of the table as in the picture.",

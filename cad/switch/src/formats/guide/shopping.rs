@@ -29,12 +29,14 @@ pub(super) fn shopping(design: &Design, manifest: &Manifest) -> Vec<Block> {
 fn items(design: &Design, manifest: &Manifest) -> Vec<Row> {
     let bill = &manifest.bill_of_materials;
     let mass_g: f64 = manifest.parts.iter().map(|p| p.mass_g).sum();
-    let mut rows = vec![row(material(design), format!("{mass_g:.0} g"), "printed parts")];
+    // With what a printer uses for lines around the parts.
+    let least_g = 5.0 * (1.1 * mass_g / 5.0).ceil();
+    let mut rows = vec![row(material(design), format!("{least_g:.0} g or more"), "printed parts")];
     if bill.pins.number > 0 {
         let number = bill.pins.number + bill.pins.spares;
         rows.push(row(
             format!("{}, {} mm", design.configuration().process.pins.title(), bill.pins.diameter_mm),
-            format!("{number} pieces of {:.1} mm", bill.pins.length_mm),
+            format!("rod for {number} pieces of {:.1} mm", bill.pins.length_mm),
             "pins",
         ));
     }
@@ -44,7 +46,7 @@ fn items(design: &Design, manifest: &Manifest) -> Vec<Row> {
         Coating::Bare => format!("bare wire rope, {} mm", t.rope_diameter_mm),
         coating => {
             format!(
-                "wire rope, {} mm, with {} {} mm",
+                "wire rope, {} mm, with {}, {} mm over the coating",
                 t.rope_diameter_mm,
                 coating.title(),
                 t.outer_diameter_mm
@@ -52,6 +54,10 @@ fn items(design: &Design, manifest: &Manifest) -> Vec<Row> {
         }
     };
     rows.push(row(rope, format!("{} mm", t.length_mm), "tendon"));
+    if design.joint().is_none() && design.rig_layout().is_none() {
+        let clip = format!("wire rope clip or crimp sleeve for {} mm", t.outer_diameter_mm);
+        rows.push(row(clip, "2", "loops at the ends of the tendon"));
+    }
     rows.extend(fasteners(design, bill));
     if let Some(d) = &bill.dowels {
         rows.push(row(
@@ -139,12 +145,15 @@ fn tools(design: &Design, bill: &Bill) -> Vec<String> {
         has_pins || bill.dowels.is_some(),
         "a rotary tool with a cutting disc or hard-wire cutters, a fine file, abrasive paper of grit 1000",
     );
-    add(has_pins, "a micrometer for the diameter of the pins, and tweezers");
+    add(has_pins || bill.dowels.is_some(), "eye protection for cutting");
+    add(has_pins, "a micrometer for the diameter of the pins, tweezers, and a pen");
     if let Some(s) = &bill.silicone {
-        add(true, "a scale with a resolution of 0.1 g, a cup, a stick, and a syringe");
+        add(true, "a scale with a resolution of 0.1 g, a cup, and a flat stick");
         add(true, "nitrile gloves; latex prevents the cure");
         let is_hot = |cure: &Option<Cure>| cure.is_some_and(|cure| cure.temperature_c > ROOM_C);
-        add(is_hot(&s.mould_cure) || is_hot(&s.post_cure), "an oven for the cure of the silicone");
+        add(is_hot(&s.mould_cure), "an oven for the cure in the mould, not one for food");
+        add(is_hot(&s.post_cure), "an oven for the post-cure, not one for food, and a flat metal tray");
+        add(true, "a durometer for Shore A, if there is one");
         add(true, "a vacuum chamber, if there is one, to remove bubbles");
         add(c.mould.kind == MouldKind::Split, "two strong rubber bands and adhesive tape");
     }

@@ -125,7 +125,7 @@ fn sections_match_the_set() {
 #[test]
 fn singular_is_used_for_one() {
     let single = guide("[layout]\npins = [8]\n[fasteners]\ncount = 1\n[pins]\nspares = 0\n");
-    assert!(single.contains("Fasten with 1 screw M3 x ") && single.contains("Cut 1 pin of"), "{single}");
+    assert!(single.contains("Tighten the 1 screw M3 x ") && single.contains("Cut 1 pin of"), "{single}");
     let words = ["pins", "screws", "dowels", "layers", "grooves", "holes", "nuts"];
     assert!(words.iter().all(|w| !single.contains(&format!(" 1 {w} "))), "{single}");
 }

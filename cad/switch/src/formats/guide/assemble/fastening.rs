@@ -41,14 +41,15 @@ impl Assembly<'_> {
             return String::new();
         }
         format!(
-            " A skin of {} mm closes the hole above every recess, so that it prints without support. Break it with the screw.",
+            " A skin of {} mm closes the hole at every recess of this part, so that it prints without support. Push a screw through it \
+             before, and remove the pieces.",
             self.design().membrane_mm()
         )
     }
 
     /// The layer bulges: the screws are not tightened over silicone.
     fn tight_words(&self) -> &'static str {
-        if self.is_silicone() { ", finger tight, so that the layer can bulge" } else { "" }
+        if self.is_silicone() { ", until the supports touch the shell and no further" } else { "" }
     }
 
     pub(super) fn nuts(&self) -> Step {
@@ -57,24 +58,30 @@ impl Assembly<'_> {
         let (number, far) = (nuts.len(), self.length_mm(&nuts) + SMALL_APART_MM);
         let thread = self.bill.fasteners.as_ref().map_or("", |f| f.thread);
         let label = format!("{} {thread}", pluralise(number, "nut"));
-        let place = match (fastening.nut_trap.is_some(), number) {
-            (true, 1) => "Put the nut into the trap of the right support",
-            (true, _) => "Put the nuts into the traps of the right support",
-            (false, 1) => "Put the nut on the screw",
-            (false, _) => "Put the nuts on the screws",
+        let (place, turn) = match (fastening.nut_trap.is_some(), number) {
+            (true, 1) => (
+                "Put the nut into the trap of the right support, with adhesive tape over it",
+                "Turn the stack over onto this face, and remove the tape from the head of the screw",
+            ),
+            (true, _) => (
+                "Put the nuts into the traps of the right support, with adhesive tape over them",
+                "Turn the stack over onto this face, and remove the tape from the heads of the screws",
+            ),
+            (false, 1) => {
+                ("Put the nut on the screw", "Hold the stack together, and remove the tape from the head")
+            }
+            (false, _) => {
+                ("Put the nuts on the screws", "Hold the stack together, and remove the tape from the heads")
+            }
         };
         let moves = vec![each(nuts, label, Motion::Into, along(far))];
         let title = if number == 1 { "Fasten the nut" } else { "Fasten the nuts" };
         Step::new(title)
-            .text(format!(
-                "{place}. Fasten with {}{}. Remove the tape.",
-                self.screw_words(),
-                self.tight_words()
-            ))
+            .text(format!("{place}. {turn}. Tighten the {}{}.", self.screw_words(), self.tight_words()))
             .risk_if(
                 fastening.nut_trap.is_some(),
                 "A nut is not in its trap.",
-                "It turns with the screw; press it into the trap.",
+                "It turns with the screw; press it into the trap with a finger.",
             )
             .risk_if(
                 fastening.nut_trap.is_none(),
@@ -84,7 +91,7 @@ impl Assembly<'_> {
             .risk_if(
                 self.bill.pins.number > 0 && self.is_silicone(),
                 "The screws are too tight.",
-                "A pin does not return after it is pressed in; loosen the nuts by a quarter turn.",
+                "A pin does not return after it is pressed in; loosen the screws by a quarter turn.",
             )
             .picture(self.picture(moves))
     }

@@ -33,7 +33,7 @@ impl Assembly<'_> {
                     "Put a washer on the axle, and the hub of `link-distal` on it, through the hollow of the shell, with its lug between the \
                      stops. Put the second washer and the self-locking nut on the axle. Tighten the nut until the link has no play, and loosen \
                      it until the link falls by its own weight. It turns from {low} to {high} deg of flexion, at which its lug meets a stop. \
-                     Its {} holes of {} mm fasten it to the load.",
+                     Its {} holes of {} mm fasten what the finger carries, with screws of your own.",
                     m.holes, m.hole_diameter_mm
                 ))
                 .risk("The nut is too tight.", "The link stays where it is left; loosen the nut by a quarter turn.")
@@ -50,9 +50,10 @@ impl Assembly<'_> {
         };
         let [low, high] = joint.flexion_deg.map(|deg| joint.contact(deg).wrap_rad().to_degrees());
         format!(
-            " That is the wrap in the picture, at a flexion of {} deg; it grows from {low:.1} to {high:.1} deg between the stops. Lead the \
-             tendon from the motor through the channel of `link-proximal`, over the switch, and through the channel of `link-distal`. Crimp \
-             a sleeve on its end ({sleeve}), which rests on the anchor.",
+            " The picture shows a flexion of {} deg. The contact grows with the flexion, from {low:.1} deg at the first stop to {high:.1} deg \
+             at the other. Lead the tendon from the motor through the channel of `link-proximal`, over the switch, and through the \
+             channel of `link-distal`, which is on the side of groove 1. Measure first, as in the section of use; then crimp a sleeve on \
+             its end ({sleeve}), which rests on the anchor of `link-distal`.",
             joint.assembled_deg
         )
     }

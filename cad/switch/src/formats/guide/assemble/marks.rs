@@ -47,7 +47,7 @@ impl Assembly<'_> {
             ""
         };
         let pen = if self.fixing() == Fixing::Studs && self.bill.pins.number > 0 {
-            " Mark the side of groove 1 with a pen on the edge of the support, because its outer face is hidden in the next steps."
+            " Before you put it down, mark the side of groove 1 with a pen on its edge: its outer face is hidden in the next steps."
         } else {
             ""
         };

@@ -25,7 +25,7 @@ impl Assembly<'_> {
             MountKind::None => String::new(),
             MountKind::Flange => format!("It has {} mounting holes of {} mm.", m.holes, m.hole_diameter_mm),
             MountKind::Joint => format!(
-                "Its {} holes of {} mm fasten it to the base of the finger.",
+                "Its {} holes of {} mm fasten the finished finger to its base, with screws of your own.",
                 m.holes, m.hole_diameter_mm
             ),
             MountKind::Rig => "It is the board of the rig. No head protrudes below it.".to_owned(),
@@ -93,8 +93,13 @@ impl Assembly<'_> {
         };
         if let Some(axle) = &m.axle {
             words.push(format!(
-                "Put the {bolt} ({axle}) through {} from its outer face, with {head}.",
-                self.plate_words()
+                "Of {axle}, put the {bolt} through {} from the outer face, with {head}{}.",
+                self.plate_words(),
+                if self.design().joint().is_some() {
+                    ", and hold it with adhesive tape; washers and nut follow later"
+                } else {
+                    ""
+                }
             ));
         }
         words

@@ -88,7 +88,7 @@ impl Assembly<'_> {
 
     pub(super) fn lip_words(&self) -> String {
         if self.has_lip() {
-            format!(", with its lip over the edge of the {}", self.bed_edge())
+            format!(", and its lip is over the edge of the {}", self.bed_edge())
         } else {
             String::new()
         }

@@ -82,7 +82,7 @@ impl Finger {
         self.wrap_deg[0] + self.wrap_per_flexion() * (flexion_deg - self.flexion_deg[0])
     }
 
-    /// Returns the tension that holds the finger straight without friction, N: the largest of the payload.
+    /// Returns the tension that keeps the finger straight without friction, N: the largest of the payload.
     fn heaviest_tension_n(&self) -> f64 {
         let moment_g_mm = self.distal_mass_g * self.distal_mm / 2.0 + self.payload_g * self.distal_mm;
         moment_g_mm * 1e-3 * GRAVITY_M_S2 / self.moment_arm_mm

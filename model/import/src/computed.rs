@@ -1,4 +1,4 @@
-//! Columns that are computed from others, or count the rows: they are no readings.
+//! Columns that are computed from others or count the rows, and are therefore not read.
 
 use crate::column::Column;
 use crate::header::Header;
@@ -7,7 +7,7 @@ use crate::sheet::Sheet;
 use crate::trials::trial;
 use crate::vocabulary;
 
-/// Figures computed from the readings next to them, such as `SD (N)`, are no readings. `STD` is the German abbreviation of
+/// Figures computed from the readings next to them, such as `SD (N)`, are not read. `STD` is the German abbreviation of
 /// hours in a log.
 pub(crate) fn remove_statistics(columns: &mut [Column]) {
     let has = |quantity| columns.iter().any(|column| column.quantity == quantity);

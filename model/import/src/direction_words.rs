@@ -156,7 +156,7 @@ pub(crate) fn direction(cell: &str) -> Option<Direction> {
     };
     let mut all: Vec<_> = words.iter().filter(|w| w.parse::<f64>().is_err()).filter_map(of_word).collect();
     all.dedup_by_key(|d| d.as_str());
-    // "pull back" says two things.
+    // "pull back" has two meanings.
     if let [one] = all.as_slice() { Some(*one) } else { None }
 }
 

@@ -1,4 +1,4 @@
-//! The map of a file: every decision of an import, as a person may write it and as it is written
+//! The map of a file: every decision of an import, in the form that a person may write and that is written
 //! next to a table.
 
 use std::collections::BTreeMap;

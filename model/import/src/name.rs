@@ -86,7 +86,7 @@ fn unit_splits(name: &str) -> Vec<(String, &'static Unit)> {
             add(stem, unit);
         }
     }
-    // A letter alone is a symbol only as it is written: `n` counts readings.
+    // A single letter is a symbol only in its own case: `n` counts readings.
     if name.chars().count() > 1 || Unit::parse(name).is_some_and(|unit| unit.name == name) {
         add("", name);
     }

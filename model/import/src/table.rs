@@ -172,7 +172,7 @@ fn constant_load(file: &FileReading, map: &Map) -> Option<(Decimal, Option<Decim
     Some((newtons, grams))
 }
 
-/// Asks for a load and a direction if the files have none; returns whether both are known.
+/// Adds a question about a load and a direction if the files have none; returns whether both are known.
 fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) -> bool {
     let before = questions.len();
     for file in files {
@@ -601,7 +601,7 @@ fn negative_share(table: &Table) -> f64 {
     share
 }
 
-/// Asks whether the sign of the cell is reversed, if nearly all readings are negative.
+/// Adds a question whether the sign of the cell is reversed, if nearly all readings are negative.
 fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
     if map.force_sign.is_none() && negative_share(table) > REVERSED_SHARE {
         let readings = vec![

@@ -103,6 +103,10 @@ impl Assembly<'_> {
     /// The side of the shell that is up, by its engraving.
     pub(super) fn shell_face_words(&self) -> &'static str {
         let shell = self.built.printed().iter().map(BuiltPart::part).find(|p| p.name == "shell");
-        if shell.is_some_and(|p| !p.engraved.is_empty()) { " The engraved face of the shell is up." } else { "" }
+        if shell.is_some_and(|p| !p.engraved.is_empty()) {
+            " The engraved face of the shell is up."
+        } else {
+            ""
+        }
     }
 }

@@ -554,7 +554,7 @@ fn resources_of_the_materials_extension_are_checked() {
         r#"<m:texture2d id="9" path="/a.png" contenttype="image/png"/><m:texture2dgroup id="8" texid="9"><m:tex2coord u="x" v="0"/></m:texture2dgroup>"#.to_owned(),
     ] {
         let found = with(&resources);
-        // The textures are no parts of the package.
+        // The package does not contain the textures.
         let found: Vec<_> = checks(&found).into_iter().filter(|check| *check != "texture").collect();
         assert_eq!(found, ["materials"], "{resources}");
     }

@@ -10,7 +10,7 @@ use pinswitch_friction::published;
 /// Number of rows of the table of forces.
 const ROWS: usize = 6;
 
-/// How the switch is held, and how load and pull act on the tendon.
+/// How the switch is clamped, and how load and pull act on the tendon.
 fn arrangement(design: &Design) -> String {
     let c = design.configuration();
     if let Some(joint) = design.joint() {

@@ -102,8 +102,11 @@ impl Sheet {
         let mut filled = Self::default();
         let mut above = "";
         for row in 0..self.len() {
-            for (i, cell) in self.row(row).enumerate() {
-                let is_filled = i == column && row >= first_row;
+            // An empty cell at the end of a row may be absent.
+            let is_data = row >= first_row;
+            let width = if is_data { self.width(row).max(column + 1) } else { self.width(row) };
+            for (i, cell) in (0..width).map(|i| (i, self.cell(row, i))) {
+                let is_filled = i == column && is_data;
                 if is_filled && !is_missing(cell) {
                     above = cell;
                 }

@@ -140,6 +140,8 @@ fn empty_cells_of_loads_and_angles_are_a_question() {
     let directions = "Direction,Load [N],Force [N]\nup,10,12.8\n,20,25.6\ndown,10,7.4\n,20,14.8\n";
     assert_eq!(problems(directions, &[]), "some readings have no direction");
     assert_eq!(forces(directions, &["fill.Direction=down"]), [12.8, 25.6, 7.4, 14.8]);
+    let last = "Direction,Force [N],Load [N]\nup,12.8,10\ndown,7.4\n";
+    assert_eq!(forces(last, &["fill.Load [N]=down"]), [12.8, 7.4]);
     // A map repeats the decision.
     let mut map = Map::default();
     map.set("fill.Load [N]=down").unwrap();

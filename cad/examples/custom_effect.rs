@@ -6,6 +6,8 @@
 //!
 //! `cargo run --release --example custom_effect`
 
+use std::borrow::Cow;
+
 use pinswitch::calibration::effects::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -17,7 +19,7 @@ use pinswitch::simulation::{Plan, simulate};
 #[derive(Debug)]
 struct Creep;
 
-static CREEP: Description = Description {
+static CREEP: Description<'static> = Description {
     id: "cell_creep",
     side: Side::Rig,
     covariate: Covariate::Dwell,
@@ -29,15 +31,15 @@ static CREEP: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["dwell_relaxation"],
+    confused_with: &[Cow::Borrowed("dwell_relaxation")],
     experiment: "dead weights with two pauses",
     invisible_because: "the dwell time never varies",
     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
 };
 
 impl Effect for Creep {
-    fn description(&self) -> &'static Description {
-        &CREEP
+    fn description(&self) -> Description<'_> {
+        CREEP
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
@@ -73,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let evidence = Evidence::baseline(&without, 1)?;
         let fitted = evidence.fitted(&evidence.posterior().baseline).ok_or("not finite")?;
-        let model = fitted.model.with_term(Term::Named(&Creep), &[size]);
+        let model = fitted.model.with_term(Term::named(&Creep), &[size]);
         let residual_n = rms(&rows, &model.predict(&points));
         println!("{} = {size:.2}: residual RMS {residual_n:.3} N", Creep.id());
         if residual_n < best.0 {

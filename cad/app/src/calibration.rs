@@ -147,7 +147,7 @@ mod tests {
     fn every_verdict_and_effect_has_words() {
         let words = include_str!("../page/text.js");
         let vocabulary = Vocabulary::built_in();
-        let effects = vocabulary.effects().map(|effect| effect.description().id);
+        let effects = vocabulary.acting_order().iter().map(|effect| effect.id());
         for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {
             assert!(words.contains(&format!("{word}: ")), "{word} is missing in text.js");
         }

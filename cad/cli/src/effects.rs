@@ -60,7 +60,7 @@ fn variables() -> String {
 fn toml(vocabulary: &Vocabulary) -> String {
     let (mut definitions, mut inexpressible) = (Vec::new(), String::new());
     for effect in Vocabulary::built_in().effects() {
-        match EffectDefinition::of(effect) {
+        match EffectDefinition::of(&*effect) {
             Ok(definition) => definitions.push(definition),
             Err(why) => inexpressible.push_str(&format!("#   {}: {why}\n", effect.id())),
         }

@@ -207,7 +207,7 @@ mod tests {
     }
 
     fn offset() -> Term {
-        Term::Named(crate::effects::effect_named("load_cell_offset").unwrap())
+        Term::named(crate::effects::effect_named("load_cell_offset").unwrap())
     }
 
     /// Returns a session of that name with an offset of the load cell.
@@ -299,7 +299,7 @@ mod tests {
     /// Start of the clock: time of day, and seconds since 1970.
     #[test]
     fn the_clock_start_is_irrelevant() {
-        let drift = Term::Named(crate::effects::effect_named("thermal_drift").unwrap());
+        let drift = Term::named(crate::effects::effect_named("thermal_drift").unwrap());
         let rows = session_with(7, &[(drift, &[0.8])]);
         let size = |begins_s: f64| {
             let mut rows = rows.clone();

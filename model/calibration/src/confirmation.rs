@@ -207,7 +207,7 @@ mod tests {
     /// A drag that is independent of speed is not one that increases with it.
     #[test]
     fn better_explanations_prevent_confirmation() {
-        let drag = session_with(5, &[(Term::Named(effect_named("guide_drag").unwrap()), &[0.5])]);
+        let drag = session_with(5, &[(Term::named(effect_named("guide_drag").unwrap()), &[0.5])]);
         let constant = trial_of(&drag, 0.5, "drawn_from = []");
         assert_ne!(constant.outcome, TrialOutcome::Confirmed, "{constant:?}");
     }

@@ -18,7 +18,7 @@ const MOST_STEP: f64 = 0.5;
 
 /// Returns a model with drag, offset and gain, all zero.
 pub(crate) fn with_rig_terms(baseline: &Model) -> Model {
-    let named = |id| effect_named(id).map(Term::Named);
+    let named = |id| effect_named(id).map(Term::named);
     let terms = ["guide_drag", "load_cell_offset", "load_cell_gain"].into_iter().filter_map(named);
     terms.fold(baseline.clone(), |model, term| model.with_term(term, &[0.0]))
 }
@@ -70,7 +70,7 @@ mod tests {
     /// Drag, offset and gain are recovered, although one reading in twenty is wrong.
     #[test]
     fn gross_errors_do_not_move_the_constants() {
-        let named = |id| Term::Named(effect_named(id).unwrap());
+        let named = |id| Term::named(effect_named(id).unwrap());
         let terms: [(Term, &[f64]); 3] = [
             (named("guide_drag"), &[0.5]),
             (named("load_cell_offset"), &[-0.3]),

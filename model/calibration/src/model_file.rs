@@ -457,7 +457,7 @@ mod tests {
     #[test]
     fn rows_without_the_covariate_are_refused() {
         let effect = crate::effects::effect_named("stroke_position").unwrap();
-        let rows = crate::test_session::session_with(3, &[(Term::Named(effect), &[0.1])]);
+        let rows = crate::test_session::session_with(3, &[(Term::named(effect), &[0.1])]);
         let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
         let file = ModelFile::new(&calibration.augmented);
         let mut row = rows[0].clone();

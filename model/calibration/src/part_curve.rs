@@ -153,14 +153,10 @@ impl ModelFile {
     ///
     /// # Errors
     /// As [`ModelFile::model`].
-    pub fn drawn_constants(
-        &self,
-        z: &[f64],
-        file: &str,
-    ) -> Result<Vec<(String, &'static str, f64)>, Diagnostic> {
+    pub fn drawn_constants(&self, z: &[f64], file: &str) -> Result<Vec<(String, String, f64)>, Diagnostic> {
         let model = self.drawn_model(z, file)?;
         let named = model.names().into_iter().zip(model.values());
-        Ok(named.map(|((name, unit), value)| (name, unit, value)).collect())
+        Ok(named.map(|((name, unit), value)| (name, unit.to_owned(), value)).collect())
     }
 
     /// Returns the model with constants drawn from their covariance with standard normal variates `z`.

@@ -14,7 +14,7 @@ use crate::simulate::simulate;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Power {
     /// Id of the effect.
-    pub id: &'static str,
+    pub id: String,
     /// Constants of the effect.
     pub values: Vec<f64>,
     /// Number of simulated runs.
@@ -58,9 +58,9 @@ pub fn power(plan: &Plan, runs: u64) -> Vec<Power> {
 }
 
 /// Simulates and calibrates the plan with one effect.
-fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64) -> Power {
+fn one(plan: &Plan, id: &str, values: Vec<f64>, runs: u64) -> Power {
     let mut power = Power {
-        id,
+        id: id.to_owned(),
         values: values.clone(),
         runs: 0,
         named: 0,

@@ -1,5 +1,7 @@
 //! `adhesion`: a constant friction force on silicone, present at zero load.
 
+use std::borrow::Cow;
+
 use super::{
     ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -12,7 +14,7 @@ struct Adhesion;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &Adhesion;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "adhesion",
     side: Side::Switch,
     covariate: Covariate::Direction,
@@ -25,15 +27,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: false,
-    confused_with: &["guide_drag"],
+    confused_with: &[Cow::Borrowed("guide_drag")],
     experiment: "a pins-only run or a blank run without the switch",
     invisible_because: "no silicone, or only one direction",
     study: StudyRange { size: Some((0.2, 0.6)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for Adhesion {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

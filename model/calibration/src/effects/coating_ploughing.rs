@@ -1,5 +1,7 @@
 //! `coating_ploughing`: the force at each pin ploughs the coating.
 
+use std::borrow::Cow;
+
 use super::{
     ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -12,7 +14,7 @@ struct CoatingPloughing;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &CoatingPloughing;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "coating_ploughing",
     side: Side::Switch,
     covariate: Covariate::Load,
@@ -25,15 +27,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: false,
-    confused_with: &["coating_stiffening", "polygon_bending"],
+    confused_with: &[Cow::Borrowed("coating_stiffening"), Cow::Borrowed("polygon_bending")],
     experiment: "pins-only runs over load and pin count",
     invisible_because: "no condition with pins",
     study: StudyRange { size: Some((0.012, 0.03)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for CoatingPloughing {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

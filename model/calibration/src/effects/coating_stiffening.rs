@@ -1,5 +1,7 @@
 //! `coating_stiffening`: friction of the coating on the pins increases with load.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
     Stage, StudyRange, Written,
@@ -13,7 +15,7 @@ struct CoatingStiffening;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &CoatingStiffening;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "coating_stiffening",
     side: Side::Switch,
     covariate: Covariate::Load,
@@ -26,7 +28,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: false,
-    confused_with: &["polygon_bending", "coating_ploughing"],
+    confused_with: &[Cow::Borrowed("polygon_bending"), Cow::Borrowed("coating_ploughing")],
     experiment: "pins-only runs over load and pin count",
     invisible_because: "no condition with pins, or only one load",
     study: StudyRange {
@@ -38,8 +40,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for CoatingStiffening {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,6 +1,8 @@
 //! Description of an effect: identity, place in the forward model, constants, rivals, and ranges
 //! for the study.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::{Covariate, Written};
@@ -47,12 +49,12 @@ pub enum Stage {
 }
 
 /// A constant of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Symbol.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit; `1` if dimensionless.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Bounds of a shape; `None` for a size, which is free.
     pub bounds: Option<(f64, f64)>,
 }
@@ -60,12 +62,12 @@ pub struct Parameter {
 impl Parameter {
     /// Returns a size: unbounded, and the effect vanishes at zero.
     pub const fn free(name: &'static str, unit: &'static str) -> Self {
-        Self { name, unit, bounds: None }
+        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), bounds: None }
     }
 
     /// Returns a shape within bounds.
     pub const fn bounded(name: &'static str, unit: &'static str, least: f64, most: f64) -> Self {
-        Self { name, unit, bounds: Some((least, most)) }
+        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), bounds: Some((least, most)) }
     }
 }
 
@@ -84,18 +86,18 @@ pub enum PaperProtocol {
 /// Sizes and shapes that the study of the calibrator and `power` use: the upper part of the typical
 /// range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StudyRange {
+pub struct StudyRange<'a> {
     /// Smallest and largest size in the unit of the first parameter; `None` without a size.
     pub size: Option<(f64, f64)>,
     /// Whether both signs are used.
     pub signed: bool,
     /// Ranges of the shapes, in the order of the parameters.
-    pub shapes: &'static [(f64, f64)],
+    pub shapes: &'a [(f64, f64)],
     /// Whether the paper's protocol identifies it.
     pub paper: PaperProtocol,
 }
 
-impl StudyRange {
+impl StudyRange<'_> {
     /// Returns the constants for a size, with shapes in the middle of their ranges, in the order of
     /// the parameters.
     pub fn values_at(&self, size: Option<f64>) -> Vec<f64> {
@@ -108,11 +110,12 @@ impl StudyRange {
     }
 }
 
-/// Description of an effect.
+/// Description of an effect: of a built-in one for the lifetime of the program, of a user-defined one as
+/// long as the effect itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Description {
+pub struct Description<'a> {
     /// Id: `[a-z][a-z0-9_]*`, a heading of `model/doc/effect-catalogue.md`.
-    pub id: &'static str,
+    pub id: &'a str,
     /// Whether the effect belongs to the part or to the measurement.
     pub side: Side,
     /// Covariate along which the effect shows.
@@ -120,11 +123,11 @@ pub struct Description {
     /// Stage at which the effect acts.
     pub stage: Stage,
     /// Formula in the symbols of the effect catalogue.
-    pub formula: &'static str,
+    pub formula: &'a str,
     /// Formula in the formula language, if the language can express it.
-    pub written: Written,
+    pub written: Written<'a>,
     /// Constants, sizes before shapes.
-    pub parameters: &'static [Parameter],
+    pub parameters: &'a [Parameter],
     /// Whether the size cannot be negative. A fit with a negative size then indicates another
     /// effect.
     pub one_sided: bool,
@@ -136,11 +139,18 @@ pub struct Description {
     /// Whether it can act on a rig that has `plain` contacts only, and is not another effect there.
     pub on_plain: bool,
     /// Ids of effects that may look the same.
-    pub confused_with: &'static [&'static str],
+    pub confused_with: &'a [Cow<'static, str>],
     /// Experiment that separates it from those.
-    pub experiment: &'static str,
+    pub experiment: &'a str,
     /// Property of a table that prevents its identification.
     pub invisible_because: &'static str,
     /// Ranges for the study.
-    pub study: StudyRange,
+    pub study: StudyRange<'a>,
+}
+
+impl Description<'_> {
+    /// Returns whether it names an effect among those that may look the same.
+    pub fn is_confused_with(&self, id: &str) -> bool {
+        self.confused_with.iter().any(|other| other == id)
+    }
 }

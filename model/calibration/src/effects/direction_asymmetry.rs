@@ -1,5 +1,7 @@
 //! `direction_asymmetry`: friction differs between the eccentric and the concentric direction.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct DirectionAsymmetry;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &DirectionAsymmetry;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "direction_asymmetry",
     side: Side::Switch,
     covariate: Covariate::Direction,
@@ -25,15 +27,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["load_cell_gain"],
+    confused_with: &[Cow::Borrowed("load_cell_gain")],
     experiment: "silicone and pins-only runs at the same loads: a gain does not scale with friction",
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.05, 0.2)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for DirectionAsymmetry {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

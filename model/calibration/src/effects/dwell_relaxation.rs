@@ -13,7 +13,7 @@ struct DwellRelaxation;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &DwellRelaxation;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "dwell_relaxation",
     side: Side::Switch,
     covariate: Covariate::Dwell,
@@ -32,8 +32,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for DwellRelaxation {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `fixture_compliance`: the wrap angle increases with load because the fixture bends.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
     Stage, StudyRange, Written,
@@ -13,7 +15,7 @@ struct FixtureCompliance;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &FixtureCompliance;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "fixture_compliance",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -25,7 +27,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["rate_dependence", "substrate_saturation"],
+    confused_with: &[Cow::Borrowed("rate_dependence"), Cow::Borrowed("substrate_saturation")],
     experiment: "a dial gauge on the mount, or several speeds at one load",
     invisible_because: "only one load",
     study: StudyRange {
@@ -37,8 +39,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for FixtureCompliance {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

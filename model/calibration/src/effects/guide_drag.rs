@@ -1,5 +1,7 @@
 //! `guide_drag`: a constant drag of the guide pulleys in every condition.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct GuideDrag;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &GuideDrag;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "guide_drag",
     side: Side::Rig,
     covariate: Covariate::Direction,
@@ -26,15 +28,15 @@ static DESCRIPTION: Description = Description {
     bends: false,
     scales: true,
     on_plain: true,
-    confused_with: &["adhesion"],
+    confused_with: &[Cow::Borrowed("adhesion")],
     experiment: "a pins-only run or a blank run without the switch",
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.1, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for GuideDrag {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

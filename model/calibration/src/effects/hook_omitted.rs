@@ -2,6 +2,8 @@
 
 use pinswitch_friction::published;
 
+use std::borrow::Cow;
+
 use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
@@ -12,7 +14,7 @@ struct HookOmitted;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &HookOmitted;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "hook_omitted",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -24,15 +26,15 @@ static DESCRIPTION: Description = Description {
     bends: false,
     scales: false,
     on_plain: false,
-    confused_with: &["load_cell_offset"],
+    confused_with: &[Cow::Borrowed("load_cell_offset")],
     experiment: "weigh the hook",
     invisible_because: "",
     study: StudyRange { size: None, signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for HookOmitted {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

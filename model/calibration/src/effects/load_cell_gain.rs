@@ -1,5 +1,7 @@
 //! `load_cell_gain`: the reading has a wrong scale.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -12,7 +14,7 @@ struct LoadCellGain;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellGain;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "load_cell_gain",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -24,15 +26,15 @@ static DESCRIPTION: Description = Description {
     bends: false,
     scales: true,
     on_plain: true,
-    confused_with: &["direction_asymmetry", "load_cell_nonlinearity"],
+    confused_with: &[Cow::Borrowed("direction_asymmetry"), Cow::Borrowed("load_cell_nonlinearity")],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.01, 0.06)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for LoadCellGain {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `load_cell_nonlinearity`: the reading has a quadratic error.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
     StudyRange, Written,
@@ -13,7 +15,7 @@ struct LoadCellNonlinearity;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellNonlinearity;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "load_cell_nonlinearity",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -25,15 +27,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["load_cell_gain", "load_cell_saturation"],
+    confused_with: &[Cow::Borrowed("load_cell_gain"), Cow::Borrowed("load_cell_saturation")],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "only one direction, or one load",
     study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for LoadCellNonlinearity {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `load_cell_offset`: the reading has a constant offset.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -12,7 +14,7 @@ struct LoadCellOffset;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellOffset;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "load_cell_offset",
     side: Side::Rig,
     covariate: Covariate::Direction,
@@ -24,15 +26,15 @@ static DESCRIPTION: Description = Description {
     bends: false,
     scales: true,
     on_plain: true,
-    confused_with: &["hook_omitted"],
+    confused_with: &[Cow::Borrowed("hook_omitted")],
     experiment: "a zero reading of the unloaded cell",
     invisible_because: "too few loads",
     study: StudyRange { size: Some((0.2, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for LoadCellOffset {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

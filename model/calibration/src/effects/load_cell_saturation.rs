@@ -1,5 +1,7 @@
 //! `load_cell_saturation`: the reading saturates above a force.
 
+use std::borrow::Cow;
+
 use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
@@ -10,7 +12,7 @@ struct LoadCellSaturation;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellSaturation;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "load_cell_saturation",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -22,15 +24,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: false,
     on_plain: true,
-    confused_with: &["load_cell_nonlinearity"],
+    confused_with: &[Cow::Borrowed("load_cell_nonlinearity")],
     experiment: "dead weights up to 65 N on the cell",
     invisible_because: "no reading is near the limit of the load cell",
     study: StudyRange { size: Some((46.0, 58.0)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for LoadCellSaturation {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>> {

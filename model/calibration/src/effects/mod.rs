@@ -11,6 +11,7 @@ mod contact_state;
 mod covariate;
 mod description;
 mod own;
+mod shared;
 mod structure;
 mod vocabulary;
 mod written;
@@ -24,6 +25,7 @@ pub use own::{
     DefinitionError, EffectDefinition, OwnEffect, OwnParameter, formula_variables, own_effect_blocks,
     own_effects_text, read_own_effects,
 };
+pub use shared::SharedEffect;
 pub use structure::{Abscissa, Channel, Shape, Structure, UNATTRIBUTED};
 pub use vocabulary::Vocabulary;
 pub use written::{ActsOn, Combine, Written};
@@ -79,6 +81,8 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// An effect: its description, the start values of its fit, and its place in the forward model.
 ///
 /// ```
+/// use std::borrow::Cow;
+///
 /// use pinswitch_calibration::effects::{
 ///     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 /// };
@@ -89,7 +93,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// #[derive(Debug)]
 /// struct Creep;
 ///
-/// static CREEP: Description = Description {
+/// static CREEP: Description<'static> = Description {
 ///     id: "cell_creep",
 ///     side: Side::Rig,
 ///     covariate: Covariate::Dwell,
@@ -101,15 +105,15 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///     bends: true,
 ///     scales: true,
 ///     on_plain: true,
-///     confused_with: &["dwell_relaxation"],
+///     confused_with: &[Cow::Borrowed("dwell_relaxation")],
 ///     experiment: "dead weights with two pauses",
 ///     invisible_because: "the dwell time never varies",
 ///     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
 /// };
 ///
 /// impl Effect for Creep {
-///     fn description(&self) -> &'static Description {
-///         &CREEP
+///     fn description(&self) -> Description<'_> {
+///         CREEP
 ///     }
 ///
 ///     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
@@ -127,13 +131,13 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// let rows = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?.rows;
 /// let model = Model::baseline(Frame::new(&rows));
 /// let points = model.frame.points(&rows).ok_or("a condition is new")?;
-/// let with = model.with_term(Term::Named(&Creep), &[0.02]).predict(&points)[0];
+/// let with = model.with_term(Term::named(&Creep), &[0.02]).predict(&points)[0];
 /// assert!((with / model.predict(&points)[0] - (1.0 + 0.02 * 10f64.ln())).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Effect: Debug + Sync {
+pub trait Effect: Debug + Send + Sync {
     /// Returns its description.
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> Description<'_>;
 
     /// Returns the start values of a fit: sizes typical of this rig, one entry per shape.
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
@@ -164,12 +168,12 @@ pub trait Effect: Debug + Sync {
     }
 
     /// Returns its id.
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         self.description().id
     }
 
     /// Returns its constants. Sensitivities to them are finite differences.
-    fn parameters(&self) -> &'static [Parameter] {
+    fn parameters(&self) -> &[Parameter] {
         self.description().parameters
     }
 

@@ -1,5 +1,7 @@
 //! `polygon_bending`: friction increases with the deflection angle of the tendon at a pin.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -16,7 +18,7 @@ struct PolygonBending;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &PolygonBending;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "polygon_bending",
     side: Side::Switch,
     covariate: Covariate::Condition,
@@ -29,15 +31,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: false,
-    confused_with: &["coating_ploughing"],
+    confused_with: &[Cow::Borrowed("coating_ploughing")],
     experiment: "the same number of loads on a layout with another number of pins",
     invisible_because: "all pins-only and device layouts have the same number of pins",
     study: StudyRange { size: Some((0.3, 1.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for PolygonBending {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

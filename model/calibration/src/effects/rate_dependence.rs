@@ -1,5 +1,7 @@
 //! `rate_dependence`: friction depends on the speed of the actuator.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct RateDependence;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &RateDependence;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "rate_dependence",
     side: Side::Switch,
     covariate: Covariate::Speed,
@@ -25,7 +27,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["fixture_compliance", "substrate_saturation"],
+    confused_with: &[Cow::Borrowed("fixture_compliance"), Cow::Borrowed("substrate_saturation")],
     experiment: "several speeds at one load",
     invisible_because: "the speed never varies",
     study: StudyRange {
@@ -37,8 +39,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for RateDependence {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

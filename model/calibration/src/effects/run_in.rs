@@ -1,5 +1,7 @@
 //! `run_in`: friction of the silicone is higher in the first repetitions of a series.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct RunIn;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &RunIn;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "run_in",
     side: Side::Switch,
     covariate: Covariate::Repetition,
@@ -33,7 +35,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["stroke_position"],
+    confused_with: &[Cow::Borrowed("stroke_position")],
     experiment: "a series started in the middle of the stroke",
     invisible_because: "one repetition per series, or no silicone",
     study: StudyRange {
@@ -45,8 +47,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for RunIn {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `stroke_position`: the wrap angle changes along the stroke.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct StrokePosition;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &StrokePosition;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "stroke_position",
     side: Side::Rig,
     covariate: Covariate::Position,
@@ -25,15 +27,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["run_in"],
+    confused_with: &[Cow::Borrowed("run_in")],
     experiment: "both directions over the whole stroke",
     invisible_because: "the position never varies",
     study: StudyRange { size: Some((0.05, 0.2)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for StrokePosition {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `substrate_saturation`: the friction coefficient of the silicone decreases with load.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
     Stage, StudyRange, Written,
@@ -13,7 +15,7 @@ struct SubstrateSaturation;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SubstrateSaturation;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "substrate_saturation",
     side: Side::Switch,
     covariate: Covariate::Load,
@@ -29,7 +31,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["rate_dependence", "fixture_compliance"],
+    confused_with: &[Cow::Borrowed("rate_dependence"), Cow::Borrowed("fixture_compliance")],
     experiment: "several loads at one speed",
     invisible_because: "no silicone, or only one load",
     study: StudyRange {
@@ -41,8 +43,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for SubstrateSaturation {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

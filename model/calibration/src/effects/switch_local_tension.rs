@@ -1,5 +1,7 @@
 //! `switch_local_tension`: the transition follows the local tension over the wrap, not the load.
 
+use std::borrow::Cow;
+
 use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
@@ -10,7 +12,7 @@ struct SwitchLocalTension;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SwitchLocalTension;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "switch_local_tension",
     side: Side::Switch,
     covariate: Covariate::Direction,
@@ -22,15 +24,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: false,
     on_plain: false,
-    confused_with: &["switching_hysteresis", "direction_asymmetry"],
+    confused_with: &[Cow::Borrowed("switching_hysteresis"), Cow::Borrowed("direction_asymmetry")],
     experiment: "both directions on a device at loads near its threshold",
     invisible_because: "no device, or no load near its threshold",
     study: StudyRange { size: None, signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for SwitchLocalTension {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -1,5 +1,7 @@
 //! `switching_hysteresis`: the threshold differs between ascending and descending loads.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct SwitchingHysteresis;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SwitchingHysteresis;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "switching_hysteresis",
     side: Side::Switch,
     covariate: Covariate::Sweep,
@@ -26,15 +28,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: false,
-    confused_with: &["switch_local_tension"],
+    confused_with: &[Cow::Borrowed("switch_local_tension")],
     experiment: "a descending sweep of loads on a device",
     invisible_because: "no device, or loads never descend",
     study: StudyRange { size: Some((3.0, 10.0)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
 };
 
 impl Effect for SwitchingHysteresis {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

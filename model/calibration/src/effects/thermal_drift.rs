@@ -1,5 +1,7 @@
 //! `thermal_drift`: the reading drifts with time.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
@@ -12,7 +14,7 @@ struct ThermalDrift;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &ThermalDrift;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "thermal_drift",
     side: Side::Rig,
     covariate: Covariate::Time,
@@ -24,15 +26,15 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["wear_drift"],
+    confused_with: &[Cow::Borrowed("wear_drift")],
     experiment: "a zero reading before and after the session",
     invisible_because: "the session is too short to drift",
     study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
 
 impl Effect for ThermalDrift {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

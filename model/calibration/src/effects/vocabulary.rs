@@ -5,8 +5,8 @@ use std::sync::Arc;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::sort_by_number;
 
-use super::own::{DefinitionError, LeakedEffect, OwnEffect, duplicate, read_own_effects, unknown_name};
-use super::{CATALOGUE, Effect};
+use super::own::{DefinitionError, OwnEffect, duplicate, read_own_effects, unknown_name};
+use super::{CATALOGUE, SharedEffect};
 
 /// Effects in the order of the catalogue and in the order in which they act. A clone shares them.
 ///
@@ -35,8 +35,8 @@ use super::{CATALOGUE, Effect};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vocabulary {
-    own: Arc<[&'static LeakedEffect]>,
-    acting: Arc<[&'static dyn Effect]>,
+    own: Arc<[Arc<OwnEffect>]>,
+    acting: Arc<[SharedEffect]>,
 }
 
 impl Default for Vocabulary {
@@ -57,9 +57,8 @@ impl Vocabulary {
         Self::of(Vec::new())
     }
 
-    fn of(own: Vec<&'static LeakedEffect>) -> Self {
-        let mut acting: Vec<&'static dyn Effect> = CATALOGUE.to_vec();
-        acting.extend(own.iter().map(|effect| *effect as &dyn Effect));
+    fn of(own: Vec<Arc<OwnEffect>>) -> Self {
+        let mut acting: Vec<SharedEffect> = all(&own).collect();
         sort_by_number(&mut acting, |effect| f64::from(effect.description().stage as u8));
         Self { own: own.into(), acting: acting.into() }
     }
@@ -72,7 +71,7 @@ impl Vocabulary {
         Ok(self.joined(read_own_effects(text, file, self)?))
     }
 
-    /// Adds user-defined effects. They remain in memory until the program ends.
+    /// Adds user-defined effects.
     ///
     /// # Errors
     /// [`DefinitionError`] if an id is not unique.
@@ -87,18 +86,18 @@ impl Vocabulary {
     }
 
     fn joined(&self, own: Vec<OwnEffect>) -> Self {
-        Self::of(self.own.iter().copied().chain(own.into_iter().map(OwnEffect::leaked)).collect())
+        Self::of(self.own.iter().cloned().chain(own.into_iter().map(Arc::new)).collect())
     }
 
     /// Removes the user-defined effects for which `keep` returns false.
     #[must_use]
     pub fn retaining(&self, keep: impl Fn(&OwnEffect) -> bool) -> Self {
-        Self::of(self.own.iter().copied().filter(|effect| keep(&effect.own)).collect())
+        Self::of(self.own.iter().filter(|effect| keep(effect)).cloned().collect())
     }
 
     /// Returns the effect of an id.
-    pub fn named(&self, id: &str) -> Option<&'static dyn Effect> {
-        self.acting.iter().copied().find(|effect| effect.id() == id)
+    pub fn named(&self, id: &str) -> Option<SharedEffect> {
+        self.acting.iter().find(|effect| effect.id() == id).cloned()
     }
 
     /// Returns the diagnostic of an unknown id, which suggests the closest known id or lists all.
@@ -109,19 +108,19 @@ impl Vocabulary {
     }
 
     /// Returns all effects in the order of the catalogue, followed by the user-defined ones.
-    pub fn effects(&self) -> impl Iterator<Item = &'static dyn Effect> {
-        CATALOGUE.iter().copied().chain(self.own.iter().map(|effect| *effect as &dyn Effect))
+    pub fn effects(&self) -> impl Iterator<Item = SharedEffect> {
+        all(&self.own)
     }
 
     /// Returns all effects in the order in which they act, from the load to the end of the load
     /// cell's range.
-    pub fn acting_order(&self) -> &[&'static dyn Effect] {
+    pub fn acting_order(&self) -> &[SharedEffect] {
         &self.acting
     }
 
     /// Returns the user-defined effects in the order in which they were read.
     pub fn own(&self) -> impl Iterator<Item = &OwnEffect> {
-        self.own.iter().map(|effect| &effect.own)
+        self.own.iter().map(Arc::as_ref)
     }
 
     /// Returns the number of effects.
@@ -135,9 +134,15 @@ impl Vocabulary {
     /// starts gains more by chance. A built-in one counts once; false positives of the built-in
     /// effects and their shapes are calibrated on rigs without effect (`model/doc/calibration.md`).
     pub fn tries(&self) -> usize {
-        let places: usize = self.own().map(|own| own.starts().len()).sum();
+        let places: usize = self.own().map(|own| own.shape_starts().len()).sum();
         self.count() - self.own.len() + places
     }
+}
+
+/// Returns the effects of the catalogue, followed by the user-defined ones.
+fn all(own: &[Arc<OwnEffect>]) -> impl Iterator<Item = SharedEffect> {
+    let built_in = CATALOGUE.iter().map(|effect| SharedEffect::Static(*effect));
+    built_in.chain(own.iter().map(|effect| SharedEffect::Counted(effect.clone())))
 }
 
 #[cfg(test)]
@@ -167,5 +172,19 @@ mod tests {
         assert_eq!([more(0), more(1), more(2), more(3)], [1, 4, 16, 10]);
         let two = built_in.read(&with_shapes(0), "a.toml").unwrap().read(&with_shapes(1), "b.toml").unwrap();
         assert_eq!((two.count(), two.tries()), (built_in.count() + 2, built_in.tries() + 5));
+    }
+
+    /// Programs that read many files would otherwise grow without limit.
+    #[test]
+    fn user_defined_effects_end_with_their_last_user() {
+        let vocabulary = Vocabulary::built_in().read(&with_shapes(1), "own.toml").unwrap();
+        let Some(SharedEffect::Counted(effect)) = vocabulary.named("own_1") else {
+            panic!("not user-defined")
+        };
+        let weak = Arc::downgrade(&effect);
+        drop(effect);
+        assert!(weak.upgrade().is_some());
+        drop(vocabulary);
+        assert!(weak.upgrade().is_none());
     }
 }

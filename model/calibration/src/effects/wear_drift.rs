@@ -1,5 +1,7 @@
 //! `wear_drift`: friction drifts with the total travel since the session began.
 
+use std::borrow::Cow;
+
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
     Written,
@@ -13,7 +15,7 @@ struct WearDrift;
 /// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &WearDrift;
 
-static DESCRIPTION: Description = Description {
+static DESCRIPTION: Description<'static> = Description {
     id: "wear_drift",
     side: Side::Switch,
     covariate: Covariate::Time,
@@ -25,7 +27,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     on_plain: true,
-    confused_with: &["thermal_drift"],
+    confused_with: &[Cow::Borrowed("thermal_drift")],
     experiment: "repeat the first series at the end of the session",
     invisible_because: "the session is too short to drift",
     study: StudyRange {
@@ -37,8 +39,8 @@ static DESCRIPTION: Description = Description {
 };
 
 impl Effect for WearDrift {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+    fn description(&self) -> Description<'_> {
+        DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

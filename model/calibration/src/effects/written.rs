@@ -95,7 +95,7 @@ impl Combine {
 
 /// Formula of an effect in the formula language (`model/doc/own-effects.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
+pub enum Written<'a> {
     /// The effect has a formula.
     As {
         /// Quantity that it changes.
@@ -103,20 +103,20 @@ pub enum Written {
         /// How it changes the quantity.
         combine: Combine,
         /// The formula.
-        formula: &'static str,
+        formula: &'a str,
     },
     /// The language cannot express the effect, for this reason.
-    No(&'static str),
+    No(&'a str),
 }
 
-impl Written {
+impl<'a> Written<'a> {
     /// Returns a formula `f` that multiplies by `1 + f`.
-    pub const fn factor(acts_on: ActsOn, formula: &'static str) -> Self {
+    pub const fn factor(acts_on: ActsOn, formula: &'a str) -> Self {
         Self::As { acts_on, combine: Combine::Factor, formula }
     }
 
     /// Returns a formula that is added.
-    pub const fn sum(acts_on: ActsOn, formula: &'static str) -> Self {
+    pub const fn sum(acts_on: ActsOn, formula: &'a str) -> Self {
         Self::As { acts_on, combine: Combine::Sum, formula }
     }
 }

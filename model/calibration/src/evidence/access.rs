@@ -6,7 +6,7 @@ use super::fitted::channel_of;
 use super::forward::Channel;
 use super::structure::Record;
 use super::{Evidence, Fitted};
-use crate::effects::{self, Effect};
+use crate::effects::{self, SharedEffect};
 use crate::table::{Frame, Point};
 
 impl Evidence {
@@ -108,12 +108,12 @@ impl Evidence {
     }
 
     /// Returns the effect of an index of the space.
-    pub fn effect_at(&self, index: usize) -> &'static dyn Effect {
-        self.setup.priors[index].effect
+    pub fn effect_at(&self, index: usize) -> &SharedEffect {
+        &self.setup.priors[index].effect
     }
 
     /// Returns the effect of a member; `None` for structure without a name.
-    pub fn effect(&self, member: Member) -> Option<&'static dyn Effect> {
+    pub fn effect(&self, member: Member) -> Option<&SharedEffect> {
         match member {
             Member::Effect(index) => Some(self.effect_at(index)),
             Member::Kernel(_) => None,

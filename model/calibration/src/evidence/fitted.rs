@@ -93,7 +93,7 @@ impl Evidence {
         let prior = &self.setup.priors[sized.effect];
         let values = prior.values(sized);
         let (term, first) = (model.terms.len(), model.coordinates.len());
-        let mut model = model.with_term(Term::Named(prior.effect), &values);
+        let mut model = model.with_term(Term::Named(prior.effect.clone()), &values);
         if !values.is_empty() {
             let slope = if prior.is_limit() { -1.0 } else { 1.0 };
             places.push((first, Coefficient::Size(sized.effect), slope / model.value(first).1));

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
-use crate::effects::{Covariate, Effect, Vocabulary, effect_named};
+use crate::effects::{Covariate, Effect, SharedEffect, Vocabulary, effect_named};
 use crate::table::{Frame, Unknown};
 
 /// Prior probability of the effects that most rigs have.
@@ -73,7 +73,7 @@ const LIMIT: &str = "load_cell_saturation";
 /// An effect with its prior.
 #[derive(Clone, Debug)]
 pub(super) struct EffectPrior {
-    pub(super) effect: &'static dyn Effect,
+    pub(super) effect: SharedEffect,
     /// Typical size; `None` for an effect without a size.
     typical_size: Option<f64>,
     /// Discrete values of the constants after the size.
@@ -103,7 +103,7 @@ impl EffectPrior {
         };
         vocabulary
             .effects()
-            .filter(|effect| is_candidate(*effect))
+            .filter(|effect| is_candidate(&**effect))
             .map(|effect| {
                 if effect.id() == LIMIT {
                     let typical_size = Some(LIMIT_SIZE_N * force_unit);
@@ -115,7 +115,7 @@ impl EffectPrior {
                 }
                 let known = TYPICAL.iter().find(|typical| typical.id == effect.id());
                 let (size, shapes) = known.map_or_else(
-                    || starts(effect, frame),
+                    || starts(&*effect, frame),
                     |t| {
                         let size = t.size * if t.is_force { force_unit } else { 1.0 };
                         (size, t.shapes.iter().map(|shape| shape.to_vec()).collect())

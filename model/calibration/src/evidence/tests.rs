@@ -26,7 +26,7 @@ fn nothing_is_reported_without_effects() {
 /// The size is within three standard deviations of the true one, and predictions contain it.
 #[test]
 fn an_offset_is_attributed() {
-    let term = Term::Named(effect_named("load_cell_offset").unwrap());
+    let term = Term::named(effect_named("load_cell_offset").unwrap());
     let rows = session_with(4, &[(term, &[0.6])]);
     let evidence = evidence(&rows);
     assert_eq!(reported(&evidence), ["load_cell_offset"]);

@@ -219,7 +219,7 @@ mod tests {
     fn saturated_cells_are_not_overloaded() {
         let rig = RigLimits { cell_limit_n: 58.0, ..RigLimits::default() };
         let model = Model::baseline(Frame::new(&session(1)));
-        let saturated = model.with_term(Term::Named(effect_named("load_cell_saturation").unwrap()), &[50.0]);
+        let saturated = model.with_term(Term::named(effect_named("load_cell_saturation").unwrap()), &[50.0]);
         let heaviest = |model: &Model| {
             let all = candidates(model, &rig, &Agenda::default());
             all.iter().map(|c| c.run.load_mass_g).fold(0.0, f64::max)

@@ -4,7 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::whitening::{Series, separate, together, white_series};
-use crate::effects::Effect;
+use crate::effects::SharedEffect;
 use crate::evidence::CONSEQUENCE;
 use crate::model::{Model, Noise, Term, jacobian};
 use crate::table::{PlateauRow, Point};
@@ -23,7 +23,7 @@ pub(super) enum Contribution {
     /// That of an effect that is not in the model.
     Added {
         /// The effect.
-        effect: &'static dyn Effect,
+        effect: SharedEffect,
         /// Constants of the effect.
         values: Vec<f64>,
     },
@@ -58,7 +58,7 @@ impl Contribution {
                     scale = SMALL;
                     *size *= scale;
                 }
-                (model.with_term(Term::Named(*effect), &values).predict(points), model.predict(points))
+                (model.with_term(Term::Named(effect.clone()), &values).predict(points), model.predict(points))
             }
             Self::NewSession { constant } => return constants[*constant].clone(),
             Self::AboveLoads { from_n, to_n } => {

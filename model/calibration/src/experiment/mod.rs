@@ -459,7 +459,7 @@ mod tests {
     #[test]
     fn planned_runs_separate_drag_and_adhesion() {
         for id in ["guide_drag", "adhesion"] {
-            let truth = Term::Named(effect_named(id).unwrap());
+            let truth = Term::named(effect_named(id).unwrap());
             let mut rows = session_with(1, &[(truth.clone(), &[0.4])]);
             rows.retain(|row| row.pins.is_empty());
             let calibrated = calibrated(rows, &Vocabulary::built_in());
@@ -479,7 +479,7 @@ mod tests {
     /// the compliance of the fixture.
     #[test]
     fn planned_runs_show_an_effect_of_speed() {
-        let truth = Term::Named(effect_named("rate_dependence").unwrap());
+        let truth = Term::named(effect_named("rate_dependence").unwrap());
         let loads_g = RigLimits::default().loads_g.into_iter().step_by(2).collect();
         let few_loads = RigLimits { loads_g, ..RigLimits::default() };
         let first = recorded(&[], &paper_runs(&few_loads, f64::INFINITY), (truth.clone(), &[0.2]), 1);

@@ -11,7 +11,7 @@ use pinswitch_friction::published;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::information::{Contribution, Projected};
-use crate::effects::{Covariate, Effect, Side};
+use crate::effects::{Covariate, Effect, SharedEffect, Side};
 use crate::evidence::STRUCTURE_PROBABILITY;
 use crate::model::{Model, Term};
 use crate::report::{Fate, LimitReport, Report, TrialOutcome};
@@ -199,7 +199,7 @@ pub(super) fn values(questions: &[Question], information: &DMatrix<f64>) -> Vec<
 pub(super) struct Agenda {
     pub(super) contributions: Vec<Contribution>,
     questions: Vec<Question>,
-    effects: Vec<&'static dyn Effect>,
+    effects: Vec<SharedEffect>,
     /// Constants of the model, whose columns come first.
     own: usize,
     /// Columns of effects that only new readings can confirm.
@@ -287,7 +287,7 @@ impl Agenda {
             for rival in &found.rivals {
                 let effects = [&found.id, &rival.id].map(|id| model.vocabulary.named(id));
                 let [Some(effect), Some(other)] = effects else { continue };
-                self.add_pair([effect, other], [found.probability, rival.probability], model, fitted);
+                self.add_pair([&effect, &other], [found.probability, rival.probability], model, fitted);
             }
         }
     }
@@ -304,7 +304,7 @@ impl Agenda {
         });
         for (id, probability) in forms.chain(trials) {
             let Some(effect) = model.vocabulary.named(id) else { continue };
-            self.add_presence(effect, None, probability, model, fitted);
+            self.add_presence(&effect, None, probability, model, fitted);
             if let Some(question) = self.questions.last_mut().filter(|q| q.between[0] == id) {
                 question.size = None;
                 self.unconfirmed.extend(question.cases.iter().map(|case| case.column));
@@ -317,7 +317,7 @@ impl Agenda {
     fn add_candidates(&mut self, report: &Report, model: &Model, fitted: &[usize]) {
         let is_reported = |id: &str| report.effects.iter().any(|found| found.id == id);
         let open = report.candidates.iter().filter(|c| c.fate != Fate::Excluded && !is_reported(&c.id));
-        let mut suspects: Vec<(&'static dyn Effect, f64)> = Vec::new();
+        let mut suspects: Vec<(SharedEffect, f64)> = Vec::new();
         for candidate in open {
             let Some(effect) = model.vocabulary.named(&candidate.id) else { continue };
             if self.asks_about(effect.id()) {
@@ -332,7 +332,7 @@ impl Agenda {
                 || effect.description().side == Side::Switch
                 || hidden.is_some_and(|hidden| hidden.possible.is_some());
             if is_relevant {
-                self.add_presence(effect, limit, candidate.probability, model, fitted);
+                self.add_presence(&effect, limit, candidate.probability, model, fitted);
             }
             if is_suspected {
                 suspects.push((effect, candidate.probability));
@@ -340,10 +340,9 @@ impl Agenda {
         }
         for (i, (effect, probability)) in suspects.iter().enumerate() {
             for (other, of_other) in &suspects[i + 1..] {
-                let are_similar =
-                    |a: &dyn Effect, b: &dyn Effect| a.description().confused_with.contains(&b.id());
-                if are_similar(*effect, *other) || are_similar(*other, *effect) {
-                    self.add_pair([*effect, *other], [*probability, *of_other], model, fitted);
+                let confuses = |a: &SharedEffect, b: &SharedEffect| a.description().is_confused_with(b.id());
+                if confuses(effect, other) || confuses(other, effect) {
+                    self.add_pair([effect, other], [*probability, *of_other], model, fitted);
                 }
             }
         }
@@ -352,14 +351,14 @@ impl Agenda {
     /// Adds the question whether the first or the second effect acts.
     fn add_pair(
         &mut self,
-        effects: [&'static dyn Effect; 2],
+        effects: [&SharedEffect; 2],
         probabilities: [f64; 2],
         model: &Model,
         fitted: &[usize],
     ) {
         let columns = effects.map(|effect| self.column_of(effect, None, model));
         let [Some(first), Some(second)] = columns else { return };
-        let others = effects.map(|effect| without_term_of(effect, model, fitted));
+        let others = effects.map(|effect| without_term_of(&**effect, model, fitted));
         let case = |column: usize, nuisance: &[usize], other: usize| Case {
             column,
             size: 1.0,
@@ -367,13 +366,13 @@ impl Agenda {
             recorded: 0.0,
         };
         let cases = [case(first, &others[0], second), case(second, &others[1], first)];
-        self.questions.push(Question::pair(effects.map(Effect::id), probabilities, cases));
+        self.questions.push(Question::pair(effects.map(|effect| effect.id()), probabilities, cases));
     }
 
     /// Adds the question whether an effect acts, at the size of a limit, in the model, or typical.
     fn add_presence(
         &mut self,
-        effect: &'static dyn Effect,
+        effect: &SharedEffect,
         limit: Option<&LimitReport>,
         probability: f64,
         model: &Model,
@@ -383,9 +382,9 @@ impl Agenda {
         let Some(column) = column else { return };
         let size = match &self.contributions[column - self.own] {
             Contribution::Added { values, .. } => values.first().copied(),
-            _ => term_of(model, effect).map(|term| model.value(model.term_offset(term)).0),
+            _ => term_of(model, &**effect).map(|term| model.value(model.term_offset(term)).0),
         };
-        let nuisance = without_term_of(effect, model, fitted);
+        let nuisance = without_term_of(&**effect, model, fitted);
         let size = Some(size.unwrap_or(1.0).abs());
         self.questions.push(Question::presence(effect.id(), probability, size, column, nuisance));
     }
@@ -393,15 +392,15 @@ impl Agenda {
     /// Returns the column of the contribution of an effect, and adds it if it is new.
     fn column_of(
         &mut self,
-        effect: &'static dyn Effect,
+        effect: &SharedEffect,
         limit: Option<&LimitReport>,
         model: &Model,
     ) -> Option<usize> {
-        let contribution = match term_of(model, effect) {
+        let contribution = match term_of(model, &**effect) {
             Some(term) => Contribution::Term { term },
-            None => Contribution::Added { effect, values: typical(effect, limit, model)? },
+            None => Contribution::Added { effect: effect.clone(), values: typical(&**effect, limit, model)? },
         };
-        self.effects.push(effect);
+        self.effects.push(effect.clone());
         Some(self.add(contribution))
     }
 
@@ -418,7 +417,7 @@ impl Agenda {
         let effects = &self.effects;
         let confuses = |id: &str, other: &str| {
             let effect = effects.iter().find(|effect| effect.id() == id);
-            effect.is_some_and(|effect| effect.description().confused_with.contains(&other))
+            effect.is_some_and(|effect| effect.description().is_confused_with(other))
         };
         for question in self.questions.iter_mut().filter(|question| question.between[1] == NONE) {
             let id = question.between[0].clone();
@@ -471,7 +470,7 @@ fn typical(effect: &dyn Effect, limit: Option<&LimitReport>, model: &Model) -> O
     let mut values = effect.starts(&model.frame).into_iter().next()?;
     if let Some(limit) = limit {
         for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
-            *value = limit.shape.get(parameter.name).copied().unwrap_or(*value);
+            *value = limit.shape.get(&*parameter.name).copied().unwrap_or(*value);
         }
         values.iter_mut().take(1).for_each(|size| *size = limit.typical);
     }

@@ -172,7 +172,7 @@ fn reading_n(terms: &[Acting<'_>], point: &Point, condition: &Condition, tension
             Term::Named(effect) if effect.description().stage == Stage::CellLimit => {
                 // A second limit of the same effect replaces the first.
                 limits.retain(|(other, _)| other.id() != effect.id());
-                limits.push((*effect, acting.constants));
+                limits.push((&**effect, acting.constants));
             }
             Term::Named(effect) => {
                 reading = acting

@@ -7,7 +7,7 @@ mod sensitivity;
 
 use pinswitch_friction::{LayoutLaw, published};
 
-use crate::effects::{Effect, Side, Structure, UNATTRIBUTED, Vocabulary};
+use crate::effects::{Effect, SharedEffect, Side, Structure, UNATTRIBUTED, Vocabulary};
 use crate::table::Frame;
 
 pub(crate) use discrepancy::Largest;
@@ -19,14 +19,19 @@ pub(crate) use sensitivity::{jacobian, prediction_sd_n};
 #[derive(Clone, Debug)]
 pub enum Term {
     /// An effect of the vocabulary.
-    Named(&'static dyn Effect),
+    Named(SharedEffect),
     /// An empirical structure along one covariate.
     Structure(Structure),
 }
 
 impl Term {
+    /// Returns the term of an effect of the program; [`Term::Named`] also takes user-defined ones.
+    pub fn named(effect: &'static dyn Effect) -> Self {
+        Term::Named(SharedEffect::Static(effect))
+    }
+
     /// Returns its id in reports and model files.
-    pub fn id(&self) -> &'static str {
+    pub fn id(&self) -> &str {
         match self {
             Term::Named(effect) => effect.id(),
             Term::Structure(_) => UNATTRIBUTED,
@@ -82,7 +87,7 @@ pub(crate) struct Prior {
 /// let model = Model::baseline(Frame::new(&rows));
 /// let points = model.frame.points(&rows).ok_or("a condition is new")?;
 /// let offset = effect_named("load_cell_offset").ok_or("not in the catalogue")?;
-/// let with = model.with_term(Term::Named(offset), &[0.5]);
+/// let with = model.with_term(Term::named(offset), &[0.5]);
 /// assert!((with.predict(&points)[0] - model.predict(&points)[0] - 0.5).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -188,11 +193,11 @@ impl Model {
     }
 
     /// Returns its effects, in the order of its terms.
-    pub fn named_effects(&self) -> Vec<&'static dyn Effect> {
+    pub fn named_effects(&self) -> Vec<&dyn Effect> {
         self.terms
             .iter()
             .filter_map(|term| match term {
-                Term::Named(effect) => Some(*effect),
+                Term::Named(effect) => Some(&**effect),
                 Term::Structure(_) => None,
             })
             .collect()
@@ -241,7 +246,7 @@ impl Model {
     }
 
     /// Returns names and units of all constants, the baseline's first.
-    pub fn names(&self) -> Vec<(String, &'static str)> {
+    pub fn names(&self) -> Vec<(String, &str)> {
         let mut names = vec![("mu_p".to_owned(), "1"), ("mu_s".to_owned(), "1")];
         for condition in self.frame.conditions.iter().filter(|c| c.device.is_some()) {
             let layout = condition.layout();
@@ -260,7 +265,7 @@ impl Model {
         for term in &self.terms {
             match term {
                 Term::Named(effect) => names.extend(
-                    effect.parameters().iter().map(|p| (format!("{}.{}", effect.id(), p.name), p.unit)),
+                    effect.parameters().iter().map(|p| (format!("{}.{}", effect.id(), p.name), &*p.unit)),
                 ),
                 Term::Structure(structure) => {
                     structures += 1;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pinswitch_inference::{Member, Reported};
 
 use super::{Findings, HeldOut, held_out};
-use crate::effects::{Description, Effect, UNATTRIBUTED};
+use crate::effects::{Description, Effect, SharedEffect, UNATTRIBUTED};
 use crate::model::Term;
 use crate::report::{EffectReport, Estimate, ModelReport, RivalReport};
 
@@ -44,7 +44,7 @@ fn effect_report(findings: &Findings<'_>, reported: &Reported, augmented: &Model
         error_before_n: before,
         error_after_n: augmented.heldout_rmse_n,
         rivals: reported.rivals.iter().map(|rival| rival_report(findings, reported.member, rival)).collect(),
-        includes: effect.map(|effect| included(findings, effect)).unwrap_or_default(),
+        includes: effect.map(|effect| included(findings, &**effect)).unwrap_or_default(),
         form: None,
         id,
     }
@@ -53,19 +53,19 @@ fn effect_report(findings: &Findings<'_>, reported: &Reported, augmented: &Model
 /// Returns the effects that act as this one does on a rig without a switch.
 fn included(findings: &Findings<'_>, effect: &dyn Effect) -> Vec<String> {
     let description = effect.description();
-    let acts_alike = |other: &Description| {
-        !other.on_plain && other.stage == description.stage && other.confused_with.contains(&description.id)
+    let acts_alike = |other: &Description<'_>| {
+        !other.on_plain && other.stage == description.stage && other.is_confused_with(description.id)
     };
-    let all = findings.vocabulary.effects().map(Effect::description);
     let is_plain = findings.baseline.model.frame.is_plain();
-    all.filter(|other| is_plain && acts_alike(other)).map(|other| other.id.to_owned()).collect()
+    let alike = findings.vocabulary.effects().filter(|other| is_plain && acts_alike(&other.description()));
+    alike.map(|other| other.id().to_owned()).collect()
 }
 
 /// Returns the constants of an effect by name; that of a structure keeps its full name.
 fn constants(
     augmented: &ModelReport,
     id: &str,
-    effect: Option<&'static dyn Effect>,
+    effect: Option<&SharedEffect>,
     number: Option<usize>,
 ) -> BTreeMap<String, Estimate> {
     if effect.is_none() {

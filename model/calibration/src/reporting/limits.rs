@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use pinswitch_inference::{Candidate, Member};
 
-use crate::effects::{Effect, Vocabulary};
+use crate::effects::{SharedEffect, Vocabulary};
 use crate::evidence::{Evidence, Fitted};
 use crate::model::Term;
 use crate::report::{CandidateReport, Fate, Invisible, LimitReport};
@@ -37,12 +37,12 @@ fn limit(evidence: &Evidence, candidate: &Candidate) -> LimitReport {
     let shapes = effect.parameters().iter().skip(1).zip(values);
     LimitReport {
         id: effect.id().to_owned(),
-        parameter: effect.parameters().first().map_or("present", |p| p.name).to_owned(),
+        parameter: effect.parameters().first().map_or("present", |p| &p.name).to_owned(),
         low,
         high,
         typical: evidence.parameter_of_size(candidate.effect, candidate.size.relevant),
-        shape: shapes.map(|(p, value)| (p.name.to_owned(), value)).collect::<BTreeMap<_, _>>(),
-        unit: effect.parameters().first().map_or("1", |p| p.unit).to_owned(),
+        shape: shapes.map(|(p, value)| (p.name.to_string(), value)).collect::<BTreeMap<_, _>>(),
+        unit: effect.parameters().first().map_or("1", |p| &p.unit).to_owned(),
         one_sided: effect.description().one_sided,
         experiment: effect.description().experiment.to_owned(),
         excluded: candidate.size.is_excluded(),
@@ -50,7 +50,7 @@ fn limit(evidence: &Evidence, candidate: &Candidate) -> LimitReport {
 }
 
 /// Returns the 95 % interval of the first constant of an effect.
-fn interval(evidence: &Evidence, effect: &'static dyn Effect, candidate: &Candidate) -> [f64; 2] {
+fn interval(evidence: &Evidence, effect: &SharedEffect, candidate: &Candidate) -> [f64; 2] {
     let [mut low, mut high] = candidate.size.interval();
     if evidence.is_one_sided(candidate.effect) {
         (low, high) = (low.max(0.0), high.max(0.0));
@@ -115,12 +115,12 @@ pub(super) fn without_covariate(
 }
 
 /// Returns whether an effect changes a reading of the table.
-fn acts(evidence: &Evidence, effect: &'static dyn Effect, baseline: &Fitted) -> bool {
+fn acts(evidence: &Evidence, effect: &SharedEffect, baseline: &Fitted) -> bool {
     let points: Vec<_> = evidence.rows().map(|(.., point)| *point).collect();
     let model = &baseline.model;
     let before = model.predict(&points);
     effect.starts(&model.frame).iter().any(|start| {
-        let after = model.with_term(Term::Named(effect), start).predict(&points);
+        let after = model.with_term(Term::Named(effect.clone()), start).predict(&points);
         after.iter().zip(&before).any(|(a, b)| (a - b).abs() > NO_CHANGE_N)
     })
 }

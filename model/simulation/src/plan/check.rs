@@ -278,7 +278,7 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
     let Some(effect) = vocabulary.named(&planned.id) else {
         return Err(vocabulary.unknown(&planned.id).with_location(at("id", id())));
     };
-    let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
+    let names: Vec<&str> = effect.parameters().iter().map(|p| &*p.name).collect();
     if names.len() != planned.values.len() {
         let needed = pluralise(names.len(), "value");
         let location = match planned.values.as_slice() {
@@ -291,7 +291,7 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
             .with_help("give its constants in this order"));
     }
     for (i, value) in planned.values.iter().enumerate() {
-        if let Some(problem) = constant_problem(effect, i, *value) {
+        if let Some(problem) = constant_problem(&*effect, i, *value) {
             return Err(Diagnostic::new(problem)
                 .with_location(at(&format!("values[{i}]"), value.to_string()))
                 .with_help("see model/doc/effect-catalogue.md for typical values"));
@@ -311,7 +311,7 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
 /// Returns why the effect cannot have this value of its constant number `index`.
 fn constant_problem(effect: &dyn Effect, index: usize, value: f64) -> Option<String> {
     let parameter = effect.parameters().get(index)?;
-    let name = parameter.name;
+    let name = &parameter.name;
     if let Some((low, high)) = parameter.bounds.filter(|(low, high)| !(*low..=*high).contains(&value)) {
         return Some(format!("{name} must be from {low} to {high}"));
     }

@@ -145,7 +145,7 @@ fn root_mean_square_n(predicted: &[f64], rows: &[PlateauRow]) -> Option<f64> {
 fn covered(plan: &Plan, report: &Report) -> Vec<bool> {
     let covers = |e: &crate::plan::EffectPlan| {
         let parameter = effect_named(&e.id)?.parameters().first()?;
-        let estimate = report.effects.iter().find(|r| r.id == e.id)?.parameters.get(parameter.name)?;
+        let estimate = report.effects.iter().find(|r| r.id == e.id)?.parameters.get(&*parameter.name)?;
         Some((estimate.ci95[0]..=estimate.ci95[1]).contains(e.values.first()?))
     };
     plan.effects.iter().filter(|e| e.form == 0).filter_map(covers).collect()

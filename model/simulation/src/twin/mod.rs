@@ -86,8 +86,10 @@ fn add_fitter_effects(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64
     }
     model.set_values(&values);
     let without = model.predict(&points);
-    let with =
-        effects.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
+    let with = effects
+        .iter()
+        .fold(model, |m, (effect, k)| m.with_term(Term::Named(effect.clone()), k))
+        .predict(&points);
     for ((reading, with), without) in readings_n.iter_mut().zip(with).zip(without) {
         *reading += with - without;
     }
@@ -152,7 +154,7 @@ mod tests {
             let mut random = rand::SeedableRng::seed_from_u64(3);
             let rows = crate::protocol::rows(&plan, &mut random);
             let frame = Frame::new(&rows);
-            let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
+            let model = Model::baseline(frame.clone()).with_term(Term::named(*effect), &values);
             let fitters = model.predict(&frame.points(&rows).unwrap());
             let worst = readings(&plan, &rows, &SessionTraits::default())
                 .iter()

@@ -122,7 +122,7 @@ impl EffectDefinition {
     ///
     /// # Errors
     /// The reason why the formula language cannot express the effect.
-    pub fn of(effect: &dyn Effect) -> Result<Self, &'static str> {
+    pub fn of(effect: &dyn Effect) -> Result<Self, &str> {
         let description = effect.description();
         let (acts_on, combine, formula) = match description.written {
             Written::As { acts_on, combine, formula } => (acts_on, combine, formula.to_owned()),
@@ -130,8 +130,8 @@ impl EffectDefinition {
         };
         let start = effect.starts(&Frame::new(&[])).into_iter().next().unwrap_or_default();
         let parameter = |(p, start): (&Parameter, f64)| OwnParameter {
-            name: p.name.to_owned(),
-            unit: p.unit.to_owned(),
+            name: p.name.to_string(),
+            unit: p.unit.to_string(),
             start,
             bounds: p.bounds,
         };
@@ -143,7 +143,7 @@ impl EffectDefinition {
             combine,
             formula,
             one_sided: description.one_sided,
-            confused_with: description.confused_with.iter().map(|id| (*id).to_owned()).collect(),
+            confused_with: description.confused_with.iter().map(ToString::to_string).collect(),
             experiment: description.experiment.to_owned(),
             drawn_from: None,
             parameters: description.parameters.iter().zip(start).map(parameter).collect(),

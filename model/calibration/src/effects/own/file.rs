@@ -104,7 +104,7 @@ pub fn read_own_effects(
             let is_here = effects.iter().any(|other| other.own.definition().id == *rival);
             if !is_here && vocabulary.named(rival).is_none() {
                 let own = effects.iter().map(|other| other.own.definition().id.as_str());
-                let known = own.chain(vocabulary.effects().map(|e| e.id()));
+                let known = own.chain(vocabulary.acting_order().iter().map(|effect| effect.id()));
                 return Err(source.locate(*at, unknown_name("effect", rival, known)));
             }
         }

@@ -24,6 +24,8 @@ pub use file::read_own_effects;
 pub(crate) use unknown_name::unknown_name;
 pub use writer::{own_effect_blocks, own_effects_text};
 
+use std::borrow::Cow;
+
 use expression::EffectFormula;
 use variable::Moment;
 
@@ -72,6 +74,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 pub struct OwnEffect {
     definition: EffectDefinition,
     formula: EffectFormula,
+    described: Described,
 }
 
 impl OwnEffect {
@@ -84,7 +87,8 @@ impl OwnEffect {
         definition.compiled()?;
         sort_by_number(&mut definition.parameters, |p| f64::from(p.bounds.is_some()));
         let formula = definition.compiled()?;
-        Ok(Self { definition, formula })
+        let described = Described::new(&definition, &formula);
+        Ok(Self { definition, formula, described })
     }
 
     /// Returns the definition.
@@ -109,7 +113,7 @@ impl OwnEffect {
 
     /// Returns the start values, followed by variants with the shapes at other places within their
     /// bounds, so that a fit of a nonlinear shape does not end in a local minimum.
-    pub(super) fn starts(&self) -> Vec<Vec<f64>> {
+    pub(super) fn shape_starts(&self) -> Vec<Vec<f64>> {
         let parameters = &self.definition.parameters;
         let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
         let mut all = vec![start.clone()];
@@ -129,66 +133,52 @@ impl OwnEffect {
         all
     }
 
-    /// Returns a reference for the lifetime of the program, since descriptions are shared by static
-    /// reference. The memory is bounded by the size of the files read.
-    pub(super) fn leaked(self) -> &'static LeakedEffect {
-        let description = Box::leak(Box::new(self.description()));
-        Box::leak(Box::new(LeakedEffect { own: self, description }))
+    fn acts_on(&self) -> ActsOn {
+        self.definition.acts_on
     }
 
-    fn description(&self) -> Description {
-        let definition = &self.definition;
-        let leaked = |text: String| -> &'static str { text.leak() };
-        let names: Vec<&'static str> = definition.confused_with.iter().map(|id| leaked(id.clone())).collect();
-        let parameters: Vec<Parameter> = definition
-            .parameters
-            .iter()
-            .map(|p| Parameter {
-                name: leaked(p.name.clone()),
-                unit: leaked(p.unit.clone()),
-                bounds: p.bounds,
-            })
-            .collect();
-        let start = definition.parameters.first().map_or(0.0, |p| p.start);
-        let middle: Vec<(f64, f64)> =
-            definition.parameters.iter().skip(1).map(|p| (p.start, p.start)).collect();
-        let formula = leaked(definition.formula.clone());
-        let (invisible_because, experiment) = of_covariate(definition.covariate);
-        let experiment = match definition.experiment.as_str() {
-            "" => experiment,
-            given => leaked(given.to_owned()),
+    fn moment<'a>(point: &'a Point, condition: &'a Condition, tension_n: f64) -> Moment<'a> {
+        Moment { point, condition, load_n: point.load_n, tension_n }
+    }
+
+    /// Applies the effect to a tension or reading in newtons.
+    fn changed(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
+        let f = self.formula.value(k, &Self::moment(point, condition, tension_n));
+        self.definition.combine.applied(tension_n, f)
+    }
+}
+
+/// What a description of an effect borrows in addition to the definition.
+#[derive(Clone, Debug, PartialEq)]
+struct Described {
+    /// Formula with the quantity that it changes.
+    full_formula: String,
+    parameters: Vec<Parameter>,
+    confused_with: Vec<Cow<'static, str>>,
+    /// Ranges of the shapes for the study.
+    shapes: Vec<(f64, f64)>,
+    /// Whether the formula reads more than the direction and the tension: a constant force or a scale is
+    /// exact and leaves no residual of its own.
+    bends: bool,
+}
+
+impl Described {
+    fn new(definition: &EffectDefinition, formula: &EffectFormula) -> Self {
+        let parameter = |p: &OwnParameter| Parameter {
+            name: Cow::Owned(p.name.clone()),
+            unit: Cow::Owned(p.unit.clone()),
+            bounds: p.bounds,
         };
-        Description {
-            id: leaked(definition.id.clone()),
-            side: definition.side,
-            covariate: definition.covariate,
-            stage: stage(definition.acts_on, definition.combine),
-            formula: leaked(self.full_formula()),
-            written: Written::As { acts_on: definition.acts_on, combine: definition.combine, formula },
-            parameters: parameters.leak(),
-            one_sided: definition.one_sided,
-            // A constant force or a scale is exact and leaves no residual of its own.
-            bends: self.formula.reads(|v| !["direction", variable::TENSION].contains(&v.name)),
-            scales: true,
-            on_plain: true,
-            confused_with: names.leak(),
-            experiment,
-            invisible_because,
-            study: StudyRange {
-                size: Some((0.5 * start, 1.5 * start)),
-                signed: !definition.one_sided,
-                shapes: middle.leak(),
-                paper: PaperProtocol::Shown,
+        let EffectDefinition { acts_on, combine, formula: text, .. } = definition;
+        Self {
+            full_formula: match combine {
+                super::Combine::Factor => format!("{} (1 + f), f = {text}", acts_on.as_str()),
+                super::Combine::Sum => format!("{} + f, f = {text}", acts_on.as_str()),
             },
-        }
-    }
-
-    /// Returns the formula with the quantity that it changes.
-    fn full_formula(&self) -> String {
-        let EffectDefinition { acts_on, combine, formula, .. } = &self.definition;
-        match combine {
-            super::Combine::Factor => format!("{} (1 + f), f = {formula}", acts_on.as_str()),
-            super::Combine::Sum => format!("{} + f, f = {formula}", acts_on.as_str()),
+            parameters: definition.parameters.iter().map(parameter).collect(),
+            confused_with: definition.confused_with.iter().cloned().map(Cow::Owned).collect(),
+            shapes: definition.parameters.iter().skip(1).map(|p| (p.start, p.start)).collect(),
+            bends: formula.reads(|v| !["direction", variable::TENSION].contains(&v.name)),
         }
     }
 }
@@ -209,46 +199,56 @@ fn of_covariate(covariate: Covariate) -> (&'static str, &'static str) {
     }
 }
 
-/// A user-defined effect with the lifetime of the program.
-#[derive(Debug)]
-pub(super) struct LeakedEffect {
-    pub(super) own: OwnEffect,
-    description: &'static Description,
-}
-
-impl LeakedEffect {
-    fn acts_on(&self) -> ActsOn {
-        self.own.definition.acts_on
-    }
-
-    fn moment<'a>(point: &'a Point, condition: &'a Condition, tension_n: f64) -> Moment<'a> {
-        Moment { point, condition, load_n: point.load_n, tension_n }
-    }
-
-    /// Applies the effect to a tension or reading in newtons.
-    fn changed(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
-        let f = self.own.formula.value(k, &Self::moment(point, condition, tension_n));
-        self.own.definition.combine.applied(tension_n, f)
-    }
-}
-
 /// Places within the bounds of a shape where a fit may start, as shares.
 const PLACES: [f64; 3] = [0.15, 0.5, 0.85];
 
-impl Effect for LeakedEffect {
-    fn description(&self) -> &'static Description {
-        self.description
+impl Effect for OwnEffect {
+    fn description(&self) -> Description<'_> {
+        let EffectDefinition { side, covariate, acts_on, combine, one_sided, .. } = self.definition;
+        let start = self.definition.parameters.first().map_or(0.0, |p| p.start);
+        let (invisible_because, experiment) = of_covariate(covariate);
+        let given = self.definition.experiment.as_str();
+        Description {
+            id: &self.definition.id,
+            side,
+            covariate,
+            stage: stage(acts_on, combine),
+            formula: &self.described.full_formula,
+            written: Written::As { acts_on, combine, formula: &self.definition.formula },
+            parameters: &self.described.parameters,
+            one_sided,
+            bends: self.described.bends,
+            scales: true,
+            on_plain: true,
+            confused_with: &self.described.confused_with,
+            experiment: if given.is_empty() { experiment } else { given },
+            invisible_because,
+            study: StudyRange {
+                size: Some((0.5 * start, 1.5 * start)),
+                signed: !one_sided,
+                shapes: &self.described.shapes,
+                paper: PaperProtocol::Shown,
+            },
+        }
+    }
+
+    fn id(&self) -> &str {
+        &self.definition.id
+    }
+
+    fn parameters(&self) -> &[Parameter] {
+        &self.described.parameters
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        self.own.starts()
+        self.shape_starts()
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, condition: &Condition, state: &mut ContactState) {
         if !self.acts_on().knows_tension() {
             let moment = Moment { load_n: state.load_n, ..Self::moment(point, condition, f64::NAN) };
-            let f = self.own.formula.value(k, &moment);
-            on_contact(self.acts_on(), self.own.definition.combine, f, state);
+            let f = self.formula.value(k, &moment);
+            on_contact(self.acts_on(), self.definition.combine, f, state);
         }
     }
 
@@ -269,7 +269,7 @@ impl Effect for LeakedEffect {
     }
 
     fn moves_along_a_series(&self) -> bool {
-        self.own.formula.reads(|v| v.moves)
+        self.formula.reads(|v| v.moves)
     }
 
     fn acts_on_contact(&self) -> bool {
@@ -277,7 +277,7 @@ impl Effect for LeakedEffect {
     }
 
     fn cited_formula(&self) -> String {
-        format!("{} (user-defined)", self.own.full_formula())
+        format!("{} (user-defined)", self.described.full_formula)
     }
 }
 

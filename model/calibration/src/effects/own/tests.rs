@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::effects::{CATALOGUE, Vocabulary, own_effects_text};
+use crate::effects::{SharedEffect, Vocabulary, own_effects_text};
 use crate::evidence::Fitted;
 use crate::model::{Model, Noise, Term};
 use crate::table::PlateauRow;
@@ -14,23 +14,23 @@ use crate::{ModelFile, calibrate};
 const VALID: &str = include_str!("../../../../../templates/rig/effects.toml");
 
 /// Returns the built-in effects with their formulas under other ids.
-fn written_out() -> Vec<(&'static dyn Effect, OwnEffect)> {
-    let of = |effect: &'static dyn Effect| {
-        let mut definition = EffectDefinition::of(effect).ok()?;
+fn written_out() -> Vec<(SharedEffect, OwnEffect)> {
+    let of = |effect: SharedEffect| {
+        let mut definition = EffectDefinition::of(&*effect).ok()?;
         definition.id = format!("own_{}", definition.id);
         Some((effect, OwnEffect::new(definition).unwrap()))
     };
-    CATALOGUE.iter().copied().filter_map(of).collect()
+    Vocabulary::built_in().effects().filter_map(of).collect()
 }
 
 /// Returns a session with varying dwell and an effect.
-fn varied(effect: &'static dyn Effect, values: &[f64]) -> Vec<PlateauRow> {
+fn varied(effect: &SharedEffect, values: &[f64]) -> Vec<PlateauRow> {
     let mut rows = session_with(7, &[]);
     for (i, row) in rows.iter_mut().enumerate() {
         let series: usize = row.series.parse().unwrap_or(i / 18);
         row.dwell_s = [1.0, 3.0, 10.0][series % 3];
     }
-    let model = Model::baseline(Frame::new(&rows)).with_term(Term::Named(effect), values);
+    let model = Model::baseline(Frame::new(&rows)).with_term(Term::Named(effect.clone()), values);
     let without = Model::baseline(Frame::new(&rows)).predict(&model.frame.points(&rows).unwrap());
     let with = model.predict(&model.frame.points(&rows).unwrap());
     rows.iter_mut().zip(with.iter().zip(&without)).for_each(|(row, (a, b))| row.force_n += a - b);
@@ -52,9 +52,9 @@ fn formulas_and_built_in_effects_agree() {
         let written = vocabulary.named(&id).unwrap();
         let study = effect.description().study;
         let values = study.values_at(study.largest());
-        let rows = varied(effect, &values);
+        let rows = varied(&effect, &values);
         let baseline = Model::baseline(Frame::new(&rows));
-        let both = [effect, written].map(|e| baseline.with_term(Term::Named(e), &values));
+        let both = [&effect, &written].map(|e| baseline.with_term(Term::Named(e.clone()), &values));
         let points = baseline.frame.points(&rows).unwrap();
         for (a, b) in both[0].predict(&points).iter().zip(both[1].predict(&points)) {
             assert!((a - b).abs() < 1e-9 * a.abs().max(1.0), "{id}: {a} and {b}");
@@ -78,7 +78,7 @@ fn written_effects_read_back() {
 fn a_model_contains_its_effects() {
     let vocabulary = Vocabulary::built_in().read(VALID, "mine.toml").unwrap();
     let dip = vocabulary.named("lubricant_dip").unwrap();
-    let rows = varied(dip, &[0.25, 50.0, 6.0]);
+    let rows = varied(&dip, &[0.25, 50.0, 6.0]);
     let calibration = calibrate(&rows, &vocabulary, 1).unwrap();
     assert_eq!(calibration.report.candidates.len(), 22);
     let model =

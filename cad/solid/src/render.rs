@@ -22,6 +22,20 @@ pub struct View {
     pub rise_deg: f64,
 }
 
+impl View {
+    /// The rotation into the frame of the camera, which looks along -z.
+    fn camera(self) -> Rotation3<f64> {
+        let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), self.turn_deg.to_radians());
+        let rise = (self.rise_deg - 90.0).to_radians();
+        Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::x()), rise) * turn
+    }
+
+    /// Returns the direction toward the camera, a unit vector.
+    pub fn toward_camera(self) -> Vector3 {
+        self.camera().inverse() * Vector3::z()
+    }
+}
+
 /// A picture: width, height, and rows of red, green, blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -71,6 +85,21 @@ pub struct Rendering {
     pub projection: Projection,
     /// Number of the body in each pixel, in rows; `None` for the background.
     pub bodies: Vec<Option<u16>>,
+    /// Distance of each pixel's body toward the camera, mm; least for the background.
+    depths_mm: Vec<f32>,
+}
+
+impl Rendering {
+    /// Returns whether a body hides a point: it is nearer to the camera by more than `margin_mm`.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn hides(&self, point: Point3, margin_mm: f64) -> bool {
+        let [column, row] = self.projection.pixel(point);
+        let (width, height) = (f64::from(self.picture.width), f64::from(self.picture.height));
+        let is_inside = (0.0..width).contains(&column) && (0.0..height).contains(&row);
+        let index = |column: f64, row: f64| row as usize * self.picture.width as usize + column as usize;
+        is_inside
+            && f64::from(self.depths_mm[index(column, row)]) > (self.projection.camera * point).z + margin_mm
+    }
 }
 
 /// A parallel projection of space onto the pixels of a picture.
@@ -92,12 +121,7 @@ impl Projection {
 
     /// Creates the projection in which the bodies and the points `also` fill a frame.
     pub fn new(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> Self {
-        let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::z()), view.turn_deg.to_radians());
-        let tilt = Rotation3::from_axis_angle(
-            &Unit::new_unchecked(Vector3::x()),
-            (view.rise_deg - 90.0).to_radians(),
-        );
-        let camera = tilt * turn;
+        let camera = view.camera();
         let points = bodies.iter().flat_map(|b| &b.mesh.positions).chain(also).map(|p| camera * p);
         let (low, high) = points
             .map(|p| (p, p))
@@ -223,6 +247,7 @@ pub fn render_in(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> 
     let faces = visible_faces(bodies, &projection);
     let mut pixels = Vec::with_capacity(width as usize * height as usize * 3);
     let mut owners = Vec::with_capacity(width as usize * height as usize);
+    let mut depths_mm = Vec::with_capacity(width as usize * height as usize);
     #[allow(clippy::cast_possible_truncation)]
     let mut band = Band::new(columns, EDGE_MM.max((EDGE_SAMPLES * projection.sample_mm()) as f32));
     for (number, faces_of_band) in by_band(&faces, rows).into_iter().enumerate() {
@@ -234,8 +259,9 @@ pub fn render_in(bodies: &[Body], also: &[Point3], view: View, frame: Frame) -> 
             band.fill(&faces[face as usize], face);
         }
         band.shade(last - first, &faces, &mut pixels, &mut owners);
+        band.depths(last - first, &mut depths_mm);
     }
-    Rendering { picture: Picture { width, height, pixels }, projection, bodies: owners }
+    Rendering { picture: Picture { width, height, pixels }, projection, bodies: owners, depths_mm }
 }
 
 /// A triangle that faces the camera, in sample coordinates, with its depth as a plane.
@@ -401,6 +427,13 @@ impl Band {
         }
     }
 
+    /// Appends the depths of the first samples of the pixels of `rows` rows of samples.
+    fn depths(&self, rows: usize, depths_mm: &mut Vec<f32>) {
+        for row in (0..rows).step_by(SAMPLES) {
+            depths_mm.extend(self.depths[row * self.columns..][..self.columns].iter().step_by(SAMPLES));
+        }
+    }
+
     /// The colour of the pixel with its first sample in this row and column.
     fn pixel(&self, row: usize, column: usize, lines: &[&[f32]; SAMPLES + 1], faces: &[Face]) -> [f32; 3] {
         let mut sum = [0.0; 3];
@@ -462,6 +495,11 @@ mod tests {
         let middle = &picture.pixels[(16 * 33 + 16) * 3..][..3];
         assert!(middle[0] > 100 && middle[1] == 0, "{middle:?}");
         assert_eq!(&picture.pixels[..3], &[250, 250, 248]);
+        let frame = Frame { width: 33, height: 33, left: 0, right: 0 };
+        let rendering = render_in(&bodies, &[], View { turn_deg: 0.0, rise_deg: 90.0 }, frame);
+        let is_hidden = [0.0, 0.9, 1.0, 2.0].map(|z| rendering.hides(Point3::new(0.0, 0.0, z), 0.05));
+        assert_eq!(is_hidden, [true, true, false, false]);
+        assert!(!rendering.hides(Point3::new(9.0, 0.0, 0.0), 0.05), "outside of the picture");
         assert!(picture.png().unwrap().starts_with(b"\x89PNG"));
     }
 
@@ -479,7 +517,7 @@ mod tests {
         ];
         let frame = Frame { width: 120, height: 60, left: 40, right: 10 };
         let view = View { turn_deg: 0.0, rise_deg: 90.0 };
-        let Rendering { picture, projection, bodies: owners } = render_in(&bodies, &[], view, frame);
+        let Rendering { picture, projection, bodies: owners, .. } = render_in(&bodies, &[], view, frame);
         for (number, [x, y]) in [(0, [1.0, 1.0]), (1, [7.0, 3.0])] {
             let [column, row] = projection.pixel(Point3::new(x, y, 0.0)).map(|v| v as usize);
             assert_eq!(owners[row * 120 + column], Some(number));

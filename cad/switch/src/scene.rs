@@ -1,5 +1,6 @@
 //! Scenes to render: the assembly, its exploded view, the pictures of steps, and the print plates.
 
+mod arrow;
 mod bench;
 mod illustration;
 mod overlay;
@@ -18,7 +19,7 @@ use pinswitch_solid::solid::Solid;
 
 pub use bench::{Bench, Bodies, Item};
 pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
-pub use illustration::{Illustration, Motion, Move, ToolArrow, Upright};
+pub use illustration::{Arrows, Illustration, Motion, Move, ToolArrow, Upright};
 
 /// View of the switch with its grooves up, at which the outer face of the left support is visible.
 pub const FROM_LEFT: View = View { turn_deg: 38.0, rise_deg: 32.0 };

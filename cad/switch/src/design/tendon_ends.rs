@@ -44,6 +44,12 @@ impl Dimensions {
         })
     }
 
+    /// Returns the tips of the ends in pictures, each with the direction of its pull: on the load side, and the other.
+    pub(crate) fn tendon_tips(&self) -> [(Point2, Vector2); 2] {
+        let (ends, lengths) = (self.tendon_ends(), self.shown_ends_mm());
+        [0, 1].map(|i| (ends[i].start + ends[i].along * lengths[i], ends[i].along))
+    }
+
     /// Returns the lengths of the ends in pictures, mm: on the load side, which on the rig extends
     /// to the guide pulley, and on the other side. Ends that would meet are shortened. On a joint
     /// they extend beyond anchor and proximal link.

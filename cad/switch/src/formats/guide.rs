@@ -38,7 +38,7 @@ const PLATE_PIXELS: (u32, u32) = (900, 675);
 /// Width and height of the picture of a step, pixels.
 const STEP_PIXELS: (u32, u32) = (420, 290);
 /// Direction of the camera above a plate.
-pub(super) const PLATE_VIEW: View = View { turn_deg: 0.0, rise_deg: 55.0 };
+pub(super) const PLATE_VIEW: View = View { turn_deg: 0.0, rise_deg: 72.0 };
 
 fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let plates = plates(built);
@@ -97,7 +97,7 @@ pub(super) fn document(
         ("Fit the pins", fit::fit(design, manifest, bodies)),
         ("Assemble", assemble::assemble(built, manifest, bodies)),
         ("Check", check::check(design, manifest)),
-        ("Use", usage::usage(design, prediction, manifest)),
+        ("Use", usage::usage(design, prediction, manifest, bodies)),
     ]));
     Document { title: format!("How to make {}", manifest.name), blocks }
 }

@@ -1,5 +1,6 @@
 //! Pictures of steps: bodies in place, bodies in motion with arrows, and call-outs.
 
+use super::arrow::{Target, motion_arrow};
 use super::bench::{Bench, Bodies};
 use super::overlay::{Canvas, Pixel, gap, size};
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
@@ -32,6 +33,17 @@ impl Motion {
     }
 }
 
+/// The arrows of bodies that move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrows {
+    /// None: other bodies of the same step have the same motion.
+    None,
+    /// One.
+    One,
+    /// One for each body.
+    Each,
+}
+
 /// Bodies that a step moves together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
@@ -43,8 +55,8 @@ pub struct Move {
     pub motion: Motion,
     /// Displacement from the place to where the picture shows the bodies, mm, in the frame of the bench.
     pub by: Vector3,
-    /// Whether every body has an arrow, or all have one.
-    pub arrow_each: bool,
+    /// Arrows.
+    pub arrows: Arrows,
 }
 
 /// The motion of a tool or a liquid.
@@ -57,12 +69,14 @@ pub struct ToolArrow {
 }
 
 /// Orientation of a bench in a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Upright {
     /// The axis of the pulley is vertical, as on the workbench.
     Axis,
     /// The grooves are up, and the axis is horizontal, from left to right.
     Grooves,
+    /// The same, turned around the axis by an angle in radians, from the load side upward.
+    Turned(f64),
 }
 
 /// The picture of a step.
@@ -90,14 +104,15 @@ const PRESENT_WHITE: f64 = 0.62;
 const MOST_LETTERS: usize = 16;
 /// Share of the width of a picture, left of which a body has its call-out at the left.
 const LEFT_SHARE: f64 = 0.4;
-/// Least gap between a moved body and its place for an arrow between them, mm.
-const LEAST_ARROW_MM: f64 = 3.0;
 /// Distance from the edge of a body that the end of a leader line keeps where it can, as a part of the width of the picture, and
 /// the detour for it in such distances.
 const EDGE_SHARE: usize = 130;
 const EDGE_PENALTY: usize = 8;
-/// Length of an arrow beyond a body, mm.
-const BEYOND_MM: f64 = 10.0;
+/// Largest difference of shades of an even surface, and the detour for it in distances from the edge.
+const EVEN: u8 = 12;
+const MARK_PENALTY: usize = 5;
+/// Depth by which a body must be in front of an arrow to hide it, mm: an arrow on a surface is visible.
+const HIDING_MM: f64 = 0.5;
 
 /// A body of the picture, with the move or note to which it belongs.
 struct Shown {
@@ -114,6 +129,10 @@ impl Upright {
         match self {
             Self::Axis => p,
             Self::Grooves => Point3::new(p.z, p.x, p.y),
+            Self::Turned(angle_rad) => {
+                let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
+                Point3::new(p.z, cos * p.x + sin * p.y, cos * p.y - sin * p.x)
+            }
         }
     }
 
@@ -161,25 +180,28 @@ impl Illustration {
             if widest > 0.0 { (widest + 2.0 * gap(width)).ceil() as u32 } else { 0 }
         };
         let frame = Frame { left: column(true), right: column(false), ..frame };
-        let Rendering { mut picture, projection, bodies: owners } =
-            render_in(&plain, &also, self.view, frame);
+        let rendering = render_in(&plain, &also, self.view, frame);
+        let projection = rendering.projection;
         for ((names, _), lettering) in callouts.iter().zip(&mut letterings) {
-            lettering.anchor = anchor(&shown, names, &owners, width);
+            lettering.anchor = anchor(&shown, names, &rendering, width);
         }
         for (arrow, lettering) in self.arrows.iter().zip(&mut letterings[callouts.len()..]) {
             lettering.anchor = Some(projection.pixel(self.upright.point(arrow.ends[0])));
         }
         place(&mut letterings, frame);
+        let mut picture = rendering.picture.clone();
         let mut canvas = Canvas::new(&mut picture);
         for [from, to] in &arrows {
-            canvas.arrow(projection.pixel(*from), projection.pixel(*to));
+            let is_hidden = |share: f64| rendering.hides(from + (to - from) * share, HIDING_MM);
+            canvas.arrow(projection.pixel(*from), projection.pixel(*to), is_hidden);
         }
         for l in &letterings {
             if let Some(anchor) = l.anchor {
                 canvas.leader(l.leader_start(width), anchor);
             }
         }
-        for l in &letterings {
+        // A call-out of a hidden body would name nothing.
+        for l in letterings.iter().filter(|l| l.anchor.is_some()) {
             canvas.write(&l.lines, l.at);
         }
         picture
@@ -215,31 +237,25 @@ impl Illustration {
     fn arrow_ends(&self, shown: &[Shown]) -> Vec<[Point3; 2]> {
         let mut all: Vec<[Point3; 2]> =
             self.arrows.iter().map(|arrow| arrow.ends.map(|p| self.upright.point(p))).collect();
+        let targets: Vec<(&String, Target<'_>)> =
+            shown.iter().filter_map(|s| Some((&s.name, Target::new(&s.body.mesh)?))).collect();
+        let toward_camera = self.view.toward_camera();
         for m in self.moves.iter().filter(|m| m.motion != Motion::Still) {
             let by = self.upright.vector(m.by);
-            let Some(out) = by.try_normalize(1e-9) else { continue };
-            let boxes: Vec<(Point3, Point3)> = m
-                .bodies
-                .iter()
-                .filter_map(|name| shown.iter().rev().find(|s| s.name == *name)?.body.mesh.bounds())
-                .collect();
-            let joined = boxes.iter().copied().reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)));
-            let boxes = if m.arrow_each { boxes } else { joined.into_iter().collect() };
-            all.extend(boxes.into_iter().map(|(low, high)| arrow(low, high, by, out, m.motion.stays())));
+            let of = |is_moved: bool| -> Vec<&Target<'_>> {
+                let wanted = targets.iter().filter(|(name, _)| m.bodies.contains(name) == is_moved);
+                wanted.map(|(_, target)| target).collect()
+            };
+            let (moved, others) = (of(true), of(false));
+            let groups: Vec<&[&Target<'_>]> = match m.arrows {
+                Arrows::None => Vec::new(),
+                Arrows::One => vec![&moved],
+                Arrows::Each => moved.chunks(1).collect(),
+            };
+            let arrow = |group: &[&Target<'_>]| motion_arrow(group, &others, by, m.motion, toward_camera);
+            all.extend(groups.into_iter().filter_map(arrow));
         }
         all
-    }
-}
-
-/// The arrow of a body in a box, which is displaced by `by` from its place, in the direction `out`.
-fn arrow(low: Point3, high: Point3, by: Vector3, out: Vector3, is_into: bool) -> [Point3; 2] {
-    let centre = nalgebra::center(&low, &high);
-    let half = (high - low).abs().dot(&out.abs()) / 2.0;
-    let (near, place) = (centre - out * half, centre - by);
-    match is_into {
-        true => [near, place],
-        false if by.norm() - half > LEAST_ARROW_MM => [place, near],
-        false => [centre + out * half, centre + out * (half + BEYOND_MM)],
     }
 }
 
@@ -279,9 +295,10 @@ fn wrapped(label: &str) -> Vec<String> {
 }
 
 /// Returns the visible pixel of one of the bodies nearest to the middle of its visible pixels, for the body with most of them,
-/// away from its edges where possible.
-fn anchor(shown: &[Shown], names: &[String], owners: &[Option<u16>], width: u32) -> Option<Pixel> {
+/// away from its edges, and on an even surface, where possible.
+fn anchor(shown: &[Shown], names: &[String], rendering: &Rendering, width: u32) -> Option<Pixel> {
     let (width, around) = (width as usize, width as usize / EDGE_SHARE);
+    let owners = &rendering.bodies;
     let numbers = shown.iter().enumerate().filter(|(_, s)| names.contains(&s.name)).map(|(i, _)| i);
     let is_own = |i: usize, number: usize| {
         owners.get(i).copied().flatten().is_some_and(|owner| usize::from(owner) == number)
@@ -298,10 +315,21 @@ fn anchor(shown: &[Shown], names: &[String], owners: &[Option<u16>], width: u32)
             [i + around, i.wrapping_sub(around), i + around * width, i.wrapping_sub(around * width)];
         neighbours.into_iter().all(|i| is_own(i, number))
     };
+    // Engraved text has other shades than the face around it.
+    let shade = |i: usize| &rendering.picture.pixels[3 * i..3 * i + 3];
+    let is_even = |i: usize| {
+        let near = |j: usize| shade(i).iter().zip(shade(j)).all(|(a, b)| a.abs_diff(*b) <= EVEN);
+        (1..=2 * around)
+            .step_by(2)
+            .all(|k| near(i + k) && near(i - k) && near(i + k * width) && near(i - k * width))
+    };
+    let margin = 2 * around * (width + 1);
     let off = |i: usize| {
         let [x, y] = place(i);
         let edge = if is_inside(i) { 0.0 } else { (EDGE_PENALTY * around) as f64 };
-        libm::hypot(x - mean[0], y - mean[1]) + edge
+        let is_far = (margin..owners.len().saturating_sub(margin)).contains(&i);
+        let marks = if is_far && is_even(i) { 0.0 } else { (MARK_PENALTY * around) as f64 };
+        libm::hypot(x - mean[0], y - mean[1]) + edge + marks
     };
     let nearest = pixels.into_iter().map(|i| (off(i), i)).min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(place(nearest.1))

@@ -10,11 +10,13 @@ pub(super) type Pixel = [f64; 2];
 const INK: [u8; 3] = [38, 42, 48];
 /// Colour of arrows of motion.
 const MOTION: [u8; 3] = [214, 74, 26];
+/// Colour of arrows behind a body.
+const HIDDEN: [u8; 3] = [236, 150, 118];
 /// Colour around lines, so that they are visible on every body.
 const HALO: [u8; 3] = [250, 250, 248];
 
 /// Sizes in a picture of [`REFERENCE_PX`], pixels: height of a letter, width of its strokes, width of leader lines and of their
-/// halo, radius of their ends, width of arrows, length and half of the width of their heads.
+/// halo, radius of their ends, width of arrows, length and half of the width of their heads, length of a dash.
 const LETTER_PX: f64 = 31.0;
 const STROKE_PX: f64 = 4.2;
 const LEADER_PX: f64 = 3.0;
@@ -23,6 +25,9 @@ const DOT_PX: f64 = 7.0;
 const ARROW_PX: f64 = 9.0;
 const HEAD_PX: f64 = 34.0;
 const HEAD_HALF_PX: f64 = 17.0;
+const DASH_PX: f64 = 16.0;
+/// Number of places along an arrow at which it may end.
+const ENDS: u32 = 64;
 /// Width of the picture to which these sizes belong, pixels.
 const REFERENCE_PX: f64 = 1600.0;
 /// Advance from letter to letter, and from line to line, in heights of a letter.
@@ -88,27 +93,53 @@ impl<'a> Canvas<'a> {
         });
     }
 
-    /// Draws an arrow of motion.
-    pub(super) fn arrow(&mut self, from: Pixel, to: Pixel) {
+    /// Draws an arrow of motion, as far as it is visible. A part of it that `is_hidden`, by its share of the length, is dashed and
+    /// pale, and so is an arrow of which nothing is visible.
+    pub(super) fn arrow(&mut self, from: Pixel, to: Pixel, is_hidden: impl Fn(f64) -> bool) {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-        let length = libm::hypot(dx, dy);
-        if length < 1.0 {
+        let full = libm::hypot(dx, dy);
+        if full < 1.0 {
             return;
         }
-        let along = [dx / length, dy / length];
+        let along = [dx / full, dy / full];
+        // The end is what matters: a head behind a body would be missed.
+        let visible =
+            (1..=ENDS).rev().map(|i| f64::from(i) / f64::from(ENDS)).find(|share| !is_hidden(*share));
+        let visible = visible.filter(|share| share * full > HEAD_PX * self.unit);
+        let length = visible.unwrap_or(1.0) * full;
+        let to = [from[0] + along[0] * length, from[1] + along[1] * length];
         let head = (HEAD_PX * self.unit).min(0.7 * length);
         let half = head * HEAD_HALF_PX / HEAD_PX;
-        let foot = [to[0] - along[0] * head, to[1] - along[1] * head];
+        let at = |distance: f64| [from[0] + along[0] * distance, from[1] + along[1] * distance];
+        let foot = at(length - head);
         let corners = [
             to,
             [foot[0] - along[1] * half, foot[1] + along[0] * half],
             [foot[0] + along[1] * half, foot[1] - along[0] * half],
         ];
-        let (width, halo) = (ARROW_PX * self.unit, HALO_PX * self.unit);
-        self.line(from, foot, width + 2.0 * halo, HALO);
+        let (width, halo, dash) = (ARROW_PX * self.unit, HALO_PX * self.unit, DASH_PX * self.unit);
+        let shaft = length - head;
+        let steps = (shaft / (dash / 2.0)).ceil().max(1.0);
+        // Stretches of the shaft with equal visibility, of half a dash.
+        let stretches: Vec<(f64, f64, bool)> = (0..steps as u32)
+            .map(|step| {
+                let [start, end] = [0.0, 1.0].map(|k| (f64::from(step) + k) / steps * shaft);
+                (start, end, is_hidden((start + end) / 2.0 / full))
+            })
+            .collect();
+        let head_colour = if visible.is_some() { MOTION } else { HIDDEN };
+        for (start, end, _) in stretches.iter().filter(|(.., hidden)| !hidden) {
+            self.line(at(*start), at(*end), width + 2.0 * halo, HALO);
+        }
         self.triangle(corners, halo, HALO);
-        self.line(from, foot, width, MOTION);
-        self.triangle(corners, 0.0, MOTION);
+        for (number, (start, end, hidden)) in stretches.iter().enumerate() {
+            if !hidden {
+                self.line(at(*start), at(*end), width, MOTION);
+            } else if number % 4 < 2 {
+                self.line(at(*start), at(*end), width / 2.0, HIDDEN);
+            }
+        }
+        self.triangle(corners, 0.0, head_colour);
     }
 
     /// Draws a leader line from a lettering to a dot on a body.
@@ -148,6 +179,7 @@ fn strokes(letter: char) -> Vec<Vec<[f64; 2]>> {
         'V' => &[[0.0, 6.0], [2.0, 0.0], [4.0, 6.0]],
         'W' => &[[0.0, 6.0], [1.0, 0.0], [2.0, 4.0], [3.0, 0.0], [4.0, 6.0]],
         'O' => return letter_strokes('0').unwrap_or_default(),
+        ',' => &[[1.0, 0.8], [0.4, -1.2]],
         _ => return letter_strokes(letter).unwrap_or_default(),
     };
     vec![points.to_vec()]
@@ -186,7 +218,7 @@ mod tests {
     #[test]
     fn arrows_point_to_their_end() {
         let mut picture = blank();
-        Canvas::new(&mut picture).arrow([50.0, 100.0], [200.0, 100.0]);
+        Canvas::new(&mut picture).arrow([50.0, 100.0], [200.0, 100.0], |_| false);
         assert!(is_drawn(&picture, [100, 100]) && is_drawn(&picture, [198, 100]));
         assert!(!is_drawn(&picture, [204, 100]) && !is_drawn(&picture, [44, 100]));
         // The head is wider than the shaft.

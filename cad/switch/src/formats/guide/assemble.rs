@@ -16,8 +16,13 @@ use crate::built::Built;
 use crate::config::MountKind;
 use crate::design::Design;
 use crate::documents::{Bill, Manifest};
-use crate::scene::{Bench, Bodies, FROM_LEFT, FROM_RIGHT, Illustration, Motion, Move, Upright, switch_view};
+use crate::scene::{
+    Bench, Bodies, FROM_LEFT, FROM_RIGHT, Illustration, Motion, Move, ToolArrow, Upright, switch_view,
+};
 use pinswitch_friction::{Substrate, pluralise};
+use pinswitch_solid::mesh::Point3;
+use pinswitch_solid::profile::polar;
+use pinswitch_solid::render::View;
 
 /// Distances of bodies from their places in pictures, mm.
 const SUPPORT_APART_MM: f64 = 18.0;
@@ -27,6 +32,12 @@ const TENDON_APART_MM: f64 = 14.0;
 const NUT_APART_MM: f64 = 44.0;
 /// Gap between small hardware and the part into which it is put, mm.
 const SMALL_APART_MM: f64 = 8.0;
+
+/// Most pins whose grooves a call-out lists.
+const MOST_LISTED: usize = 6;
+/// Length of the arrow that points to a groove, and its distance from the end of the groove, mm.
+const GROOVE_ARROW_MM: f64 = 9.0;
+const GROOVE_END_MM: f64 = 2.0;
 
 /// The set whose assembly is described.
 struct Assembly<'a> {
@@ -237,7 +248,17 @@ impl Assembly<'_> {
         let pins = self.names(&["pin"]);
         let far = self.length_mm(&pins) + SMALL_APART_MM;
         let words = if number == 1 { "pin" } else { "pins" };
-        let moves = vec![each(pins, pluralise(number, "pin"), Motion::Into, along(far))];
+        let label = match number {
+            0..=MOST_LISTED => {
+                let grooves: Vec<String> = c.layout.pins.iter().map(ToString::to_string).collect();
+                let word = if number == 1 { "groove" } else { "grooves" };
+                format!("{} in {word} {}", pluralise(number, "pin"), grooves.join(", "))
+            }
+            _ => pluralise(number, "pin"),
+        };
+        let moves = vec![each(pins, label, Motion::Into, along(far))];
+        let mut picture = self.picture_from_right(moves);
+        picture.arrows.extend(self.first_groove());
         Some(
             Step::new(if number == 1 { "Put the pin in" } else { "Put the pins in" })
                 .text(format!(
@@ -252,13 +273,32 @@ impl Assembly<'_> {
                     ),
                 )
                 .risk("A pin is not in its slot.", "It is higher than the others, or it tilts.")
-                .picture(self.picture_from_right(moves)),
+                .picture(picture),
         )
+    }
+
+    /// The arrow that points to groove 1, at its upper end.
+    fn first_groove(&self) -> Option<ToolArrow> {
+        let angle_rad = self.design().groove_angles_rad().into_iter().next()?;
+        let bed = self.names(&["silicone-layer", "proxy"]);
+        let mesh = &self.bodies.find(Bench::Switch, bed.first()?)?.mesh;
+        let radius_mm = mesh.positions.iter().map(|p| libm::hypot(p.x, p.y)).fold(0.0, f64::max);
+        let (_, high) = mesh.bounds()?;
+        let at = |mm: f64| {
+            let p = polar(radius_mm + mm, angle_rad);
+            Point3::new(p.x, p.y, high.z - GROOVE_END_MM)
+        };
+        Some(ToolArrow { ends: [at(GROOVE_ARROW_MM), at(0.5)], label: "groove 1".to_owned() })
     }
 
     fn tendon(&self) -> Step {
         let c = self.design().configuration();
         let t = &self.bill.tendon;
+        // The links of a joint hide the tendon from the side.
+        let view = match c.mount.kind {
+            MountKind::Joint => View { rise_deg: 62.0, ..switch_view(self.design()) },
+            _ => switch_view(self.design()),
+        };
         let moves =
             vec![moving(self.names(&["tendon"]), "tendon", Motion::Flexible, outward(TENDON_APART_MM))];
         Step::new("Put the tendon over the switch")
@@ -275,6 +315,6 @@ impl Assembly<'_> {
                 "The tendon rubs on a support.",
                 "Its coating has a bright line at the side; centre it between the supports.",
             )
-            .picture(scene(Bench::Switch, Upright::Grooves, switch_view(self.design()), moves))
+            .picture(scene(Bench::Switch, Upright::Grooves, view, moves))
     }
 }

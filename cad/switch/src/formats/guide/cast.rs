@@ -187,10 +187,11 @@ fn split(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<Step> {
 
 /// The arrow of a blade that cuts between ring and lid, from the side of the ribs.
 fn blade(bodies: &Bodies) -> Vec<ToolArrow> {
-    let Some((_, high)) = bodies.find(Bench::Mould, "mould-ring").and_then(|item| item.mesh.bounds()) else {
+    // The ring has keys on its upper face, and the lid has a flat lower one.
+    let Some((low, high)) = bodies.find(Bench::Mould, "mould-lid").and_then(|item| item.mesh.bounds()) else {
         return Vec::new();
     };
-    let at = |y: f64| Point3::new(0.0, y, high.z + CUT_MM / 2.0);
+    let at = |y: f64| Point3::new(0.0, y, low.z + CUT_MM / 2.0);
     vec![ToolArrow { ends: [at(high.y + STREAM_MM), at(high.y - 1.0)], label: "blade".to_owned() }]
 }
 

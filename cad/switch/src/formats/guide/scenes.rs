@@ -1,7 +1,7 @@
 //! Pictures of steps: their moves and views.
 
 use crate::parts::SPACER;
-use crate::scene::{Bench, Bodies, GUIDE_PULLEY, Illustration, Motion, Move, Upright};
+use crate::scene::{Arrows, Bench, Bodies, GUIDE_PULLEY, Illustration, Motion, Move, Upright};
 use pinswitch_solid::mesh::Vector3;
 use pinswitch_solid::render::View;
 
@@ -24,12 +24,17 @@ pub(super) fn outward(mm: f64) -> Vector3 {
 
 /// Bodies with a call-out that move together along `by`.
 pub(super) fn moving(bodies: Vec<String>, label: impl Into<String>, motion: Motion, by: Vector3) -> Move {
-    Move { bodies, label: label.into(), motion, by, arrow_each: false }
+    Move { bodies, label: label.into(), motion, by, arrows: Arrows::One }
 }
 
 /// The same, with an arrow for each body.
 pub(super) fn each(bodies: Vec<String>, label: impl Into<String>, motion: Motion, by: Vector3) -> Move {
-    Move { arrow_each: true, ..moving(bodies, label, motion, by) }
+    Move { arrows: Arrows::Each, ..moving(bodies, label, motion, by) }
+}
+
+/// The same without an arrow, along with other bodies of the step.
+pub(super) fn along_with(bodies: Vec<String>, label: impl Into<String>, motion: Motion, by: Vector3) -> Move {
+    Move { arrows: Arrows::None, ..moving(bodies, label, motion, by) }
 }
 
 /// Bodies in their place, without an arrow.

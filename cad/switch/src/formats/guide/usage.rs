@@ -1,11 +1,15 @@
 //! The section of use: loads, and how to read the curve.
 
-use super::document::{Block, Table};
+use super::document::{Block, Step, Table};
+use super::scenes::scene;
 use crate::config::MountKind;
 use crate::design::Design;
 use crate::documents::Manifest;
 use crate::prediction::Prediction;
+use crate::scene::{Bench, Bodies, FROM_LEFT, Illustration, ToolArrow, Upright};
 use pinswitch_friction::published;
+use pinswitch_solid::mesh::Point3;
+use pinswitch_solid::profile::{Point2, Vector2};
 
 /// Number of rows of the table of forces.
 const ROWS: usize = 6;
@@ -41,17 +45,43 @@ fn arrangement(design: &Design) -> String {
     )
 }
 
-pub(super) fn usage(design: &Design, prediction: &Prediction, manifest: &Manifest) -> Vec<Block> {
+/// Length of the arrows of load and pull, mm.
+const FORCE_MM: f64 = 12.0;
+
+/// The switch as it is used, with the load hanging down; `None` on a rig and on a joint, whose tendon is led by them.
+fn forces(design: &Design, bodies: &Bodies) -> Option<Illustration> {
+    if matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Joint) {
+        return None;
+    }
+    let (low, high) = bodies.find(Bench::Switch, "tendon")?.mesh.bounds()?;
+    let z = f64::midpoint(low.z, high.z);
+    let tips = design.tendon_tips();
+    let arrow = |(tip, along): (Point2, Vector2), label: &str| {
+        let at = |mm: f64| Point3::new(tip.x + mm * along.x, tip.y + mm * along.y, z);
+        ToolArrow { ends: [at(1.0), at(1.0 + FORCE_MM)], label: label.to_owned() }
+    };
+    // The direction of the load becomes that of gravity.
+    let (_, load) = tips[0];
+    let turned = Upright::Turned(libm::atan2(load.x, -load.y));
+    let mut picture = scene(Bench::Switch, turned, FROM_LEFT, Vec::new());
+    picture.arrows = vec![arrow(tips[0], "load"), arrow(tips[1], "pull")];
+    Some(picture)
+}
+
+pub(super) fn usage(
+    design: &Design,
+    prediction: &Prediction,
+    manifest: &Manifest,
+    bodies: &Bodies,
+) -> Vec<Block> {
     let c = design.configuration();
     let curve = &prediction.curve;
     let switching = manifest.friction.threshold_n.map_or_else(String::new, |n| {
         format!(" Below {n:.1} N most of the friction comes from the pins, above from the silicone.")
     });
     let range = format!(
-        "{} The curve applies from {:.1} to {:.1} N of load (10 N are the weight of 1.02 kg).{switching}",
-        arrangement(design),
-        c.friction.load_min_n,
-        c.friction.load_max_n
+        "The curve applies from {:.1} to {:.1} N of load (10 N are the weight of 1.02 kg).{switching}",
+        c.friction.load_min_n, c.friction.load_max_n
     );
     let reading = "Lift the load slowly, read the pull, lower it slowly, and read it again. The friction is half of the difference of the \
                    two pulls. Between them the tendon does not move. The table has all three forces, and the curve the friction.";
@@ -70,10 +100,15 @@ pub(super) fn usage(design: &Design, prediction: &Prediction, manifest: &Manifes
             format!("{:.2} to {:.2} N", curve.band_low_n[i], curve.band_high_n[i]),
         ]
     });
+    let mut hang = Step::new("Hang the load, and pull").text(arrangement(design)).text(safety).risk(
+        "A clip or sleeve slips.",
+        "The tendon moves in it under a small load; press it again before you add more.",
+    );
+    hang.picture = forces(design, bodies).map(|picture| (0, picture));
     vec![
+        Block::Step(hang),
         Block::Paragraph(range),
         Block::Paragraph(reading.to_owned()),
-        Block::Paragraph(safety),
         Table::block(
             ["load", "pull to lift it", "pull to lower it", "friction", "95 % band of friction"],
             rows,

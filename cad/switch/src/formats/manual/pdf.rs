@@ -151,12 +151,14 @@ impl Writer {
         }
     }
 
-    /// Begins a page unless a block of this height fits.
-    fn reserve(&mut self, height_mm: f64) {
-        if self.top_mm + height_mm > PAGE_MM[1] - BOTTOM_MM && self.top_mm > TOP_MM {
+    /// Begins a page unless a block of this height fits. Returns whether it did.
+    fn reserve(&mut self, height_mm: f64) -> bool {
+        let is_full = self.top_mm + height_mm > PAGE_MM[1] - BOTTOM_MM && self.top_mm > TOP_MM;
+        if is_full {
             self.pages.push(Page::default());
             self.top_mm = TOP_MM;
         }
+        is_full
     }
 
     /// Writes lines at a height; returns the height below them.
@@ -284,22 +286,33 @@ impl Writer {
                 .map(|(cell, width)| Setting::new(cell, TEXT_SIZE_MM, *width, typeface))
                 .collect()
         };
-        let mut rows = vec![(row(&table.head, Typeface::Bold), SOFT)];
-        rows.extend(table.rows.iter().map(|cells| (row(cells, Typeface::Regular), INK)));
-        for (cells, colour) in &rows {
-            let height = cells.iter().map(Setting::height_mm).fold(0.0, f64::max);
-            self.reserve(height + GAP_MM / 2.0);
-            let mut left = SIDE_MM;
-            for (cell, width) in cells.iter().zip(&widths) {
-                self.lines(cell, left, self.top_mm, *colour);
-                left += width + CELL_GAP_MM;
+        let height_mm = |cells: &[Setting]| cells.iter().map(Setting::height_mm).fold(0.0, f64::max);
+        let head = row(&table.head, Typeface::Bold);
+        let rows: Vec<Vec<Setting>> = table.rows.iter().map(|cells| row(cells, Typeface::Regular)).collect();
+        // The titles are above the rows of every page.
+        let first_mm = rows.first().map_or(0.0, |cells| height_mm(cells) + GAP_MM);
+        self.reserve(height_mm(&head) + first_mm);
+        self.row(&head, &widths, height_mm(&head), SOFT);
+        for cells in &rows {
+            if self.reserve(height_mm(cells) + GAP_MM / 2.0) {
+                self.row(&head, &widths, height_mm(&head), SOFT);
             }
-            self.top_mm += height + GAP_MM / 4.0;
-            let rule = [SIDE_MM, SIDE_MM + WIDTH_MM].map(|x| [x, PAGE_MM[1] - self.top_mm]);
-            self.add(PageItem::Line { points: rule.to_vec(), width_mm: RULE_MM, colour: RULE });
-            self.top_mm += GAP_MM / 4.0;
+            self.row(cells, &widths, height_mm(cells), INK);
         }
         self.top_mm += GAP_MM;
+    }
+
+    /// Writes a row of a table, with a line below it.
+    fn row(&mut self, cells: &[Setting], widths: &[f64], height_mm: f64, colour: Rgb) {
+        let mut left = SIDE_MM;
+        for (cell, width) in cells.iter().zip(widths) {
+            self.lines(cell, left, self.top_mm, colour);
+            left += width + CELL_GAP_MM;
+        }
+        self.top_mm += height_mm + GAP_MM / 4.0;
+        let rule = [SIDE_MM, SIDE_MM + WIDTH_MM].map(|x| [x, PAGE_MM[1] - self.top_mm]);
+        self.add(PageItem::Line { points: rule.to_vec(), width_mm: RULE_MM, colour: RULE });
+        self.top_mm += GAP_MM / 4.0;
     }
 
     fn figure(&mut self, figure: &Figure) {

@@ -1,12 +1,14 @@
 //! The distal link of a joint, and the end of its tendon.
 
 use super::super::document::Step;
-use super::super::scenes::{along, moving};
-use super::{Assembly, MOUNT_APART_MM, NUT_APART_MM, SMALL_APART_MM};
+use super::super::scenes::{along, along_with, moving};
+use super::{Assembly, MOUNT_APART_MM, SMALL_APART_MM};
 use crate::scene::{Bench, Motion};
 
 /// Distance of the bodies from their places in pictures, mm.
-const DISTAL_APART_MM: f64 = 34.0;
+const DISTAL_APART_MM: f64 = 48.0;
+/// The same for the nut on the axle.
+const AXLE_NUT_APART_MM: f64 = 60.0;
 
 impl Assembly<'_> {
     /// The distal link of a joint, on the axle.
@@ -22,10 +24,10 @@ impl Assembly<'_> {
         washers.sort_by(|a, b| height(a).total_cmp(&height(b)));
         let outer = washers.split_off(washers.len().min(1));
         let moves = vec![
-            moving(washers, "", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
+            moving(washers, "washer", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
             moving(self.names(&["link-distal"]), "distal link", Motion::Into, along(DISTAL_APART_MM)),
-            moving(outer, "", Motion::Into, along(NUT_APART_MM)),
-            moving(self.names(&["axle-nut"]), "washer and nut", Motion::Into, along(NUT_APART_MM)),
+            along_with(outer, "", Motion::Into, along(AXLE_NUT_APART_MM)),
+            moving(self.names(&["axle-nut"]), "washer and nut", Motion::Into, along(AXLE_NUT_APART_MM)),
         ];
         Some(
             Step::new("Put the distal link on the axle")

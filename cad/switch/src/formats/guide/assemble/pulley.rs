@@ -1,7 +1,7 @@
 //! The guide pulleys.
 
 use super::super::document::Step;
-use super::super::scenes::{ON_BENCH, along, moving, scene, still};
+use super::super::scenes::{ON_BENCH, along, along_with, each, scene, still};
 use super::{Assembly, NUT_APART_MM};
 use crate::parts::SPACER;
 use crate::scene::{Bench, GUIDE_PULLEY, Motion, Upright};
@@ -19,10 +19,10 @@ impl Assembly<'_> {
         {
             let pulley = self.names(&[GUIDE_PULLEY]);
             let moves = vec![
-                moving(self.names(&[SPACER]), "spacers", Motion::Into, along(SPACER_APART_MM)),
-                moving(self.names(&["bearing"]), "", Motion::Into, along(PULLEY_APART_MM)),
-                moving(pulley, "guide pulley with bearing", Motion::Into, along(PULLEY_APART_MM)),
-                moving(
+                along_with(self.names(&[SPACER]), "spacers", Motion::Into, along(SPACER_APART_MM)),
+                along_with(self.names(&["bearing"]), "", Motion::Into, along(PULLEY_APART_MM)),
+                each(pulley, "guide pulley with bearing", Motion::Into, along(PULLEY_APART_MM)),
+                along_with(
                     self.names(&["washer", "bolt-nut"]),
                     "washer and nut",
                     Motion::Into,

@@ -1,0 +1,236 @@
+//! Arrows of motion: from a body toward the place where it goes, as far as the next body.
+
+use super::illustration::Motion;
+use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
+
+/// Least gap between a moved body and its place for an arrow between them, mm.
+const LEAST_MM: f64 = 3.0;
+/// Length of an arrow beyond a body, mm.
+const BEYOND_MM: f64 = 10.0;
+/// Places beside the middle where an arrow may be, in halves of the size of the bodies.
+const BESIDE: f64 = 0.85;
+/// Visible share of an arrow that suffices in the middle, and the number of its points that are examined.
+const VISIBLE: f64 = 0.5;
+const SAMPLES: u32 = 8;
+/// Distance of a point of an arrow from the surface before which it is examined, mm.
+const AIR_MM: f64 = 0.5;
+
+/// A mesh with its bounds, which exclude most rays.
+pub(super) struct Target<'a> {
+    mesh: &'a Mesh,
+    low: Point3,
+    high: Point3,
+}
+
+impl<'a> Target<'a> {
+    /// Creates a target; `None` for an empty mesh.
+    pub(super) fn new(mesh: &'a Mesh) -> Option<Self> {
+        let (low, high) = mesh.bounds()?;
+        Some(Self { mesh, low, high })
+    }
+
+    /// Returns whether a ray may meet the mesh (Kay and Kajiya, 1986).
+    fn may_meet(&self, from: Point3, direction: Vector3) -> bool {
+        let (mut enter, mut leave) = (0.0, f64::INFINITY);
+        for k in 0..3 {
+            // Along an axis of which the ray has no part, the quotients are infinite, or NaN on a face.
+            let ends = [self.low[k], self.high[k]].map(|end| (end - from[k]) / direction[k]);
+            enter = f64::max(enter, ends[0].min(ends[1]));
+            leave = f64::min(leave, ends[0].max(ends[1]));
+        }
+        enter <= leave
+    }
+
+    /// Distances along a ray to the triangles that it meets, mm.
+    fn hits(&self, from: Point3, direction: Vector3) -> impl Iterator<Item = f64> {
+        let triangles = self.may_meet(from, direction).then_some(&self.mesh.triangles);
+        triangles
+            .into_iter()
+            .flatten()
+            .filter_map(move |t| distance(t.map(|i| self.mesh.positions[i as usize]), from, direction))
+    }
+}
+
+fn first_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> Option<f64> {
+    targets.iter().flat_map(|target| target.hits(from, direction)).min_by(f64::total_cmp)
+}
+
+/// Where the arrow of bodies meets them: a point of their surface, and the half of their thickness there, mm.
+struct Contact {
+    point: Point3,
+    half_mm: f64,
+}
+
+/// Returns the first and the last point of the arrow of bodies that are shown displaced by `by` from their place. `others` are the
+/// bodies on which it ends; `toward_camera` is a unit vector. `None` for bodies without a displacement.
+///
+/// The arrow is where the bodies have material, in their middle if it is visible there.
+pub(super) fn motion_arrow(
+    moved: &[&Target<'_>],
+    others: &[&Target<'_>],
+    by: Vector3,
+    motion: Motion,
+    toward_camera: Vector3,
+) -> Option<[Point3; 2]> {
+    let out = by.try_normalize(1e-9)?;
+    let bounds = moved.iter().map(|target| (target.low, target.high));
+    let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))?;
+    let (centre, size) = (nalgebra::center(&low, &high), high - low);
+    let extent = |direction: Vector3| size.dot(&direction.abs()) / 2.0;
+    let front = centre - out * extent(out);
+    let all: Vec<&Target<'_>> = moved.iter().chain(others).copied().collect();
+    let ends = |contact: Contact| arrow(contact, others, by, out, motion);
+    let visible = |[from, to]: &[Point3; 2]| {
+        let at = |i: u32| from + (to - from) * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
+        let is_free = |i: &u32| first_hit(&all, at(*i) + toward_camera * AIR_MM, toward_camera).is_none();
+        (0..SAMPLES).filter(is_free).count() as f64 / f64::from(SAMPLES)
+    };
+    // A hole around the middle, as in a nut, counts as material.
+    let sideways = (toward_camera - out * toward_camera.dot(&out)).try_normalize(1e-9);
+    let sideways = sideways.unwrap_or_else(|| out.yzx().cross(&out).normalize());
+    let across = out.cross(&sideways);
+    let is_enclosed =
+        || [sideways, -sideways, across, -across].iter().all(|d| first_hit(moved, centre, *d).is_some());
+    let hole = || is_enclosed().then(|| Contact { point: front, half_mm: extent(out) });
+    let middle = contact(moved, front, out).or_else(hole).map(&ends);
+    if let Some(middle) = middle.filter(|middle| visible(middle) >= VISIBLE) {
+        return Some(middle);
+    }
+    let beside = [sideways, across, -across, -sideways].into_iter().flat_map(|direction| {
+        [0.5, 1.0].map(|share| front + direction * (share * BESIDE * extent(direction)))
+    });
+    let beside = beside.filter_map(|place| contact(moved, place, out)).map(&ends);
+    // The first of the most visible ones.
+    let best = middle.into_iter().chain(beside).map(|arrow| (visible(&arrow), arrow));
+    let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
+    Some(best.map_or_else(|| ends(Contact { point: front, half_mm: extent(out) }), |(_, arrow)| arrow))
+}
+
+/// The contact on a line in the direction `out`; `None` where it misses the bodies.
+fn contact(moved: &[&Target<'_>], place: Point3, out: Vector3) -> Option<Contact> {
+    let from = place - out;
+    let distances = || moved.iter().flat_map(|target| target.hits(from, out));
+    let (first, last) = (distances().min_by(f64::total_cmp)?, distances().max_by(f64::total_cmp)?);
+    Some(Contact { point: from + out * first, half_mm: (last - first) / 2.0 })
+}
+
+fn arrow(
+    Contact { point, half_mm }: Contact,
+    others: &[&Target<'_>],
+    by: Vector3,
+    out: Vector3,
+    motion: Motion,
+) -> [Point3; 2] {
+    // To the middle of the place: the tips of long bodies end far behind what receives them.
+    let way_mm = by.norm() - half_mm;
+    let length_mm = if way_mm > LEAST_MM { way_mm } else { by.norm() };
+    let free_mm = first_hit(others, point, -out).filter(|free| *free > LEAST_MM);
+    let end = point - out * free_mm.map_or(length_mm, |free| free.min(length_mm));
+    match motion.stays() {
+        true => [point, end],
+        false if (point - end).norm() > LEAST_MM => [end, point],
+        false => {
+            let back = point + out * (2.0 * half_mm);
+            [back, back + out * BEYOND_MM]
+        }
+    }
+}
+
+/// The distance along a ray to a triangle (Möller and Trumbore, 1997); `None` if the ray misses it.
+fn distance([a, b, c]: [Point3; 3], from: Point3, direction: Vector3) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let across = direction.cross(&ac);
+    let determinant = ab.dot(&across);
+    if determinant == 0.0 {
+        return None;
+    }
+    let offset = from - a;
+    let u = offset.dot(&across) / determinant;
+    let along = offset.cross(&ab);
+    let v = direction.dot(&along) / determinant;
+    let t = ac.dot(&along) / determinant;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_solid::profile::{ChordTolerance, Contour, Point2};
+    use pinswitch_solid::solid::Solid;
+
+    const UP: Vector3 = Vector3::new(0.0, 0.0, 10.0);
+
+    fn prism(outer: &Contour, holes: &[Contour], low: f64, high: f64) -> Mesh {
+        let solid = Solid::prism(outer, holes, low, high, 0.0).unwrap();
+        solid.mesh(ChordTolerance::new(0.01).unwrap()).unwrap()
+    }
+
+    fn plate(low: f64, high: f64) -> Mesh {
+        prism(&Contour::circle(Point2::origin(), 20.0), &[], low, high)
+    }
+
+    /// The arrow of a mesh seen from above at the front.
+    fn arrow_of(moved: &Mesh, others: &[&Mesh], by: Vector3, motion: Motion) -> Option<[Point3; 2]> {
+        let others: Vec<Target<'_>> = others.iter().filter_map(|mesh| Target::new(mesh)).collect();
+        let camera = Vector3::new(0.0, 1.0, 0.3).normalize();
+        motion_arrow(&[&Target::new(moved).unwrap()], &others.iter().collect::<Vec<_>>(), by, motion, camera)
+    }
+
+    fn is_near(arrow: Option<[Point3; 2]>, expected: [[f64; 3]; 2]) -> bool {
+        let expected = expected.map(Point3::from);
+        arrow.is_some_and(|a| a.iter().zip(expected).all(|(p, q)| (p - q).norm() < 0.05))
+    }
+
+    /// The arrow begins at the lower face and ends on the next body.
+    #[test]
+    fn arrows_end_on_the_next_body() {
+        let lid = plate(15.0, 17.0);
+        let heights = |base_top: f64, motion| {
+            arrow_of(&lid, &[&plate(0.0, base_top)], UP, motion).map(|ends| ends.map(|p| p.z))
+        };
+        assert_eq!(heights(5.0, Motion::Into), Some([15.0, 6.0]));
+        assert_eq!(heights(8.0, Motion::Into), Some([15.0, 8.0]));
+        assert_eq!(heights(8.0, Motion::Away), Some([8.0, 15.0]));
+    }
+
+    /// A nut is put over the middle of its hole.
+    #[test]
+    fn holes_have_their_arrow_in_the_middle() {
+        let hole = Contour::circle(Point2::origin(), 2.0);
+        let nut = prism(&Contour::circle(Point2::origin(), 4.0), &[hole], 10.0, 12.0);
+        let arrow = arrow_of(&nut, &[], UP, Motion::Into);
+        assert!(is_near(arrow, [[0.0, 0.0, 10.0], [0.0, 0.0, 1.0]]), "{arrow:?}");
+    }
+
+    fn arch() -> Mesh {
+        let corners = [(-20.0, 0.0), (-16.0, 0.0), (0.0, 18.0), (16.0, 0.0), (20.0, 0.0), (0.0, 22.0)];
+        let corners = corners.map(|(x, y)| Point2::new(x, y)).to_vec();
+        prism(&Contour::polygon(corners), &[], 0.0, 2.0)
+    }
+
+    /// The arrow of a rope over a wheel begins on the rope, not in the empty middle of its box.
+    #[test]
+    fn curved_bodies_have_their_arrow_on_their_material() {
+        let arrow = arrow_of(&arch(), &[], Vector3::new(0.0, 10.0, 0.0), Motion::Flexible);
+        assert!(is_near(arrow, [[0.0, 18.0, 1.0], [0.0, 10.0, 1.0]]), "{arrow:?}");
+        // Put down flat, it has its empty middle below the camera's side.
+        let [start, end] = arrow_of(&arch(), &[], UP, Motion::Into).unwrap();
+        assert!((18.0..22.0).contains(&start.y) && start.z.abs() < 1e-9 && start.x == end.x, "{start}");
+    }
+
+    /// A lid has its arrow at the edge toward the camera if a wall hides its middle.
+    #[test]
+    fn arrows_are_where_they_are_visible() {
+        let lid = plate(15.0, 17.0);
+        let corners = [(-30.0, 5.0), (30.0, 5.0), (30.0, 7.0), (-30.0, 7.0)];
+        let wall =
+            prism(&Contour::polygon(corners.map(|(x, y)| Point2::new(x, y)).to_vec()), &[], -20.0, 60.0);
+        let [start, _] = arrow_of(&lid, &[&wall], UP, Motion::Into).unwrap();
+        assert!(start.y > 7.0, "{start}");
+    }
+
+    #[test]
+    fn bodies_in_their_place_have_no_arrow() {
+        assert_eq!(arrow_of(&plate(0.0, 1.0), &[], Vector3::zeros(), Motion::Still), None);
+    }
+}

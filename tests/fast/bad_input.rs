@@ -144,7 +144,7 @@ fn negative_numbers_are_compared_with_bounds() {
     for (arguments, words) in [
         (
             "generate three-double --tolerance -1",
-            ["--tolerance: mesh.chord_tolerance_mm = -1.0: ", "0.0001 to 0.1"],
+            ["--tolerance: mesh.chord_tolerance_mm = -1.0: ", "0.001 to 0.1"],
         ),
         (
             "experiment x --minutes -5 --out y",

@@ -71,7 +71,7 @@ pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
 /// Returns configurations over the whole range of sizes, with dependent values, so that many can be
 /// built.
 pub(super) fn configurations() -> impl Strategy<Value = Configuration> {
-    let shape = (8.0..120.0f64, 20.0..340.0f64, 1usize..=40, 0.15..2.0f64, -4.0..-1.0f64);
+    let shape = (8.0..120.0f64, 20.0..340.0f64, 1usize..=40, 0.15..2.0f64, -3.0..-1.0f64);
     let layer = (0.5..4.0f64, 0.0..1.0f64, 4.0..30.0f64, 0.5..1.0f64, 0.0..2.0f64);
     let choices = (0usize..2, 0usize..2, 0usize..3, 0usize..2, 0usize..5);
     let extras = (0.0..0.4f64, 0.0..4.0f64, 0.0..2.0f64, 0.1..0.5f64, any::<u64>(), any::<bool>());

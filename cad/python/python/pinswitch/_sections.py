@@ -654,7 +654,7 @@ class Mesh(Section):
     Attributes
     ----------
     chord_tolerance_mm : float
-        Largest absolute distance between mesh and true curve. Range: 0.0001 to 0.1 mm; default 0.01 (chosen).
+        Largest absolute distance between mesh and true curve. Range: 0.001 to 0.1 mm; default 0.01 (chosen).
     """
 
     _table = "mesh"

@@ -270,7 +270,7 @@ configuration! {
         }
         /// The mesh.
         mesh: MeshTable {
-            chord_tolerance_mm: f64 = 0.01, 1e-4..=0.1, Chosen, "largest absolute distance between mesh and true curve";
+            chord_tolerance_mm: f64 = 0.01, 1e-3..=0.1, Chosen, "largest absolute distance between mesh and true curve";
         }
         /// The drawing.
         drawing: DrawingTable {

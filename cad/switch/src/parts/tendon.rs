@@ -14,8 +14,8 @@ use pinswitch_solid::solid::{Facing, Solid};
 const SIDES: u32 = 12;
 /// Length of the ends beyond the guide pulleys of a rig, mm. The rest is drawn with the bought bodies.
 pub(crate) const RIG_END_MM: f64 = 20.0;
-/// Shorter arcs are left out, radians.
-const SAME_RAD: f64 = 1e-9;
+/// Shorter arcs of the axis are points, mm: their facets would have no height.
+const SHORTEST_ARC_MM: f64 = 2e-4;
 
 /// A contact of the tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,38 +133,41 @@ impl Ends {
     }
 }
 
+/// The point at an angle of a disc, outward of its edge by `by_mm`.
+fn on(disc: Disc, angle: f64, by_mm: f64) -> Point2 {
+    disc.centre + Vector2::new(libm::cos(angle), libm::sin(angle)) * (disc.radius_mm + by_mm)
+}
+
+/// Adds a contact with a disc, from one angle to another, to an outline at `by_mm` from the axis of the tendon. A contact that is
+/// too short for an arc is a point.
+fn along(pen: Pen, disc: Disc, [from_rad, to_rad]: [f64; 2], by_mm: f64) -> Pen {
+    if (to_rad - from_rad).abs() * disc.radius_mm < SHORTEST_ARC_MM {
+        return pen.line_to(on(disc, f64::midpoint(from_rad, to_rad), by_mm));
+    }
+    let pen = pen.line_to(on(disc, from_rad, by_mm));
+    pen.arc_to(disc.centre, on(disc, to_rad, by_mm), to_rad > from_rad)
+}
+
 /// The outline of a string of width `2 * half_mm`, counter-clockwise.
 fn strip(discs: &[Disc], arcs: &[HullArc], ends: &Ends, half_mm: f64) -> Contour {
-    let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
     let onward = |angle: f64| Vector2::new(-libm::sin(angle), libm::cos(angle));
-    let at = |arc: &HullArc, angle: f64, by: f64| {
-        discs[arc.disc].centre + direction(angle) * (discs[arc.disc].radius_mm + by)
-    };
+    let at = |arc: &HullArc, angle: f64, by: f64| on(discs[arc.disc], angle, by);
     let (Some(first), Some(last)) = (arcs.first(), arcs.last()) else { return Contour::polygon(Vec::new()) };
     let start = |by: f64| at(first, first.from_rad, by) - onward(first.from_rad) * ends.leads_mm[0];
     let end = |by: f64| at(last, last.to_rad, by) + onward(last.to_rad) * ends.leads_mm[1];
-    let is_arc = |arc: &&HullArc| arc.to_rad - arc.from_rad > SAME_RAD;
     let mut pen = match ends.drive_side(first.from_rad, half_mm) {
         Some([end, foot, head, axle]) => Pen::at(end).line_to(foot).arc_to(axle, head, false),
         None => Pen::at(start(half_mm)),
     };
-    for arc in arcs.iter().filter(is_arc) {
-        pen = pen.line_to(at(arc, arc.from_rad, half_mm)).arc_to(
-            discs[arc.disc].centre,
-            at(arc, arc.to_rad, half_mm),
-            true,
-        );
+    for arc in arcs {
+        pen = along(pen, discs[arc.disc], [arc.from_rad, arc.to_rad], half_mm);
     }
     pen = match ends.load_side(pen.clone(), last.to_rad, half_mm) {
         Some(pen) => pen,
         None => pen.line_to(end(half_mm)).line_to(end(-half_mm)),
     };
-    for arc in arcs.iter().rev().filter(is_arc) {
-        pen = pen.line_to(at(arc, arc.to_rad, -half_mm)).arc_to(
-            discs[arc.disc].centre,
-            at(arc, arc.from_rad, -half_mm),
-            false,
-        );
+    for arc in arcs.iter().rev() {
+        pen = along(pen, discs[arc.disc], [arc.to_rad, arc.from_rad], -half_mm);
     }
     match ends.drive_side(first.from_rad, -half_mm) {
         Some([end, foot, head, axle]) => pen.line_to(head).arc_to(axle, foot, true).line_to(end).close(),
@@ -177,11 +180,7 @@ fn strip(discs: &[Disc], arcs: &[HullArc], ends: &Ends, half_mm: f64) -> Contour
 fn joint_strip(joint: &Joint, contact: &JointContact, half_mm: f64) -> Contour {
     let (guide, anchor) = (joint.proximal.mouth(), contact.anchor);
     let (start, end) = (joint.proximal_end(), joint.distal_end(contact));
-    let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
-    let at = |arc: &HullArc, angle: f64, by: f64| {
-        let disc = joint.discs()[arc.disc];
-        disc.centre + direction(angle) * (disc.radius_mm + by)
-    };
+    let at = |arc: &HullArc, angle: f64, by: f64| on(joint.discs()[arc.disc], angle, by);
     let arcs = &contact.arcs;
     let first = arcs.first().map_or(anchor, |arc| at(arc, arc.from_rad, 0.0));
     let last = arcs.last().map_or(guide, |arc| at(arc, arc.to_rad, 0.0));
@@ -196,15 +195,13 @@ fn joint_strip(joint: &Joint, contact: &JointContact, half_mm: f64) -> Contour {
     let [first, second, third, fourth] = ends(half_mm);
     let mut pen = Pen::at(first).line_to(second);
     for arc in arcs {
-        let to = at(arc, arc.to_rad, half_mm);
-        pen = pen.line_to(at(arc, arc.from_rad, half_mm)).arc_to(joint.discs()[arc.disc].centre, to, true);
+        pen = along(pen, joint.discs()[arc.disc], [arc.from_rad, arc.to_rad], half_mm);
     }
     pen = pen.line_to(third).line_to(fourth);
     let [first, second, third, fourth] = ends(-half_mm);
     pen = pen.line_to(fourth).line_to(third);
     for arc in arcs.iter().rev() {
-        let to = at(arc, arc.from_rad, -half_mm);
-        pen = pen.line_to(at(arc, arc.to_rad, -half_mm)).arc_to(joint.discs()[arc.disc].centre, to, false);
+        pen = along(pen, joint.discs()[arc.disc], [arc.to_rad, arc.from_rad], -half_mm);
     }
     pen.line_to(second).line_to(first).close()
 }

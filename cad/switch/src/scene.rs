@@ -1,5 +1,6 @@
 //! Scenes to render: the assembly, its exploded view, the pictures of steps, and the print plates.
 
+mod annotated;
 mod arrow;
 mod bench;
 mod illustration;
@@ -14,9 +15,10 @@ use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::profile::{Contour, Point2};
-use pinswitch_solid::render::{Body, View, render};
+use pinswitch_solid::render::{Body, Picture, View, render};
 use pinswitch_solid::solid::Solid;
 
+use annotated::{Annotated, Annotation, Shown};
 pub use bench::{Bench, Bodies, Item};
 pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
 pub use illustration::{Arrows, Illustration, Motion, Move, ToolArrow, Upright};
@@ -91,9 +93,17 @@ const BED_COLOUR: [u8; 3] = [214, 216, 222];
 pub fn plate(plate: &Plate<'_>) -> Vec<Body> {
     let body = |(part, place): &(&BuiltPart, _)| Body {
         mesh: Placement::apply(place, part.print_mesh.clone()),
-        colour: part.part().role.colour(),
+        colour: bench::colour(part.part().role),
     };
     plate.parts.iter().map(body).collect()
+}
+
+/// Draws a plate with the names of its parts.
+pub(crate) fn labelled_plate(shown: &Plate<'_>, view: View, (width, height): (u32, u32)) -> Picture {
+    let names = || shown.parts.iter().map(|(part, _)| part.part().name.clone());
+    let bodies = names().zip(plate(shown)).map(|(name, body)| Shown { name, body }).collect();
+    let annotations = names().map(|name| Annotation::Named { label: name.clone(), bodies: vec![name] });
+    Annotated { bodies, annotations: annotations.collect(), arrows: Vec::new(), view }.draw(width, height)
 }
 
 /// Returns all printed parts in print orientation. Several plates are side by side, each on its bed.

@@ -17,7 +17,7 @@ mod shopping;
 mod usage;
 
 use self::document::{Block, Document, number};
-use super::{Format, Inclusion, png};
+use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::design::Design;
 use crate::documents::Manifest;
@@ -26,7 +26,7 @@ use crate::parallel::map_each;
 use crate::parts::touches;
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
-use crate::scene::{Bodies, exploded_png, plate};
+use crate::scene::{Bodies, exploded_png, labelled_plate};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
 
@@ -50,7 +50,10 @@ fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<V
     ));
     let mut files = vec![OutputFile::new("assembly.png", exploded_png(built)?)];
     for p in &plates {
-        files.push(OutputFile::new(p.picture(), png(&plate(p), PLATE_VIEW, PLATE_PIXELS.0, PLATE_PIXELS.1)?));
+        files.push(OutputFile::new(
+            p.picture(),
+            labelled_plate(p, PLATE_VIEW, PLATE_PIXELS).indexed_png().map_err(SetError::encoding)?,
+        ));
     }
     files.extend(step_pictures(&document, &bodies, STEP_PIXELS)?);
     files.push(OutputFile::new("PRINTING.md", markdown::markdown(&document)));

@@ -14,8 +14,7 @@ use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::plates::plates;
 use crate::prediction::Prediction;
-use crate::scene::{Bodies, plate};
-use pinswitch_solid::render::render;
+use crate::scene::{Bodies, labelled_plate};
 
 pub(super) const FORMAT: Format = Format {
     name: "manual",
@@ -53,7 +52,7 @@ fn manual(
             PictureSource::Exploded => named_parts(&bodies).draw(&bodies, pixels.0, pixels.1),
             PictureSource::Plate(index) => {
                 let Some(shown) = plates.get(*index) else { continue };
-                render(&plate(shown), PLATE_VIEW, pixels.0, pixels.1)
+                labelled_plate(shown, PLATE_VIEW, pixels)
             }
         };
         pictures.insert(file.clone(), picture.indexed_png().map_err(SetError::encoding)?);

@@ -12,6 +12,13 @@ const BESIDE: f64 = 0.85;
 /// Visible share of an arrow that suffices in the middle, and the number of its points that are examined.
 const VISIBLE: f64 = 0.5;
 const SAMPLES: u32 = 8;
+/// Visible share of an arrow that an end on a body is worth.
+const MET: f64 = 0.4;
+/// Greatest distance of an arrow from the axis around which it is, mm, and the number of places up to there.
+const AROUND_MM: f64 = 15.0;
+const STEPS: u32 = 60;
+/// Difference of heights of the same face, mm.
+const SAME_MM: f64 = 1e-6;
 /// Distance of a point of an arrow from the surface before which it is examined, mm.
 const AIR_MM: f64 = 0.5;
 
@@ -55,31 +62,39 @@ fn first_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> Optio
     targets.iter().flat_map(|target| target.hits(from, direction)).min_by(f64::total_cmp)
 }
 
+/// The motion of bodies.
+pub(super) struct Way {
+    /// Displacement from their place to where they are shown, mm.
+    pub(super) by: Vector3,
+    pub(super) motion: Motion,
+    /// A point of the line on which the arrow is; `None` for where the bodies have material.
+    pub(super) axis: Option<Point3>,
+}
+
 /// Where the arrow of bodies meets them: a point of their surface, and the half of their thickness there, mm.
 struct Contact {
     point: Point3,
     half_mm: f64,
 }
 
-/// Returns the first and the last point of the arrow of bodies that are shown displaced by `by` from their place. `others` are the
-/// bodies on which it ends; `toward_camera` is a unit vector. `None` for bodies without a displacement.
+/// Returns the first and the last point of the arrow of bodies. `others` are the bodies on which it ends; `toward_camera` is a
+/// unit vector. `None` for bodies without a displacement.
 ///
-/// The arrow is where the bodies have material, in their middle if it is visible there.
+/// The arrow is where the bodies have material, in their middle if it is visible there and ends on a body.
 pub(super) fn motion_arrow(
     moved: &[&Target<'_>],
     others: &[&Target<'_>],
-    by: Vector3,
-    motion: Motion,
+    way: &Way,
     toward_camera: Vector3,
 ) -> Option<[Point3; 2]> {
-    let out = by.try_normalize(1e-9)?;
+    let out = way.by.try_normalize(1e-9)?;
     let bounds = moved.iter().map(|target| (target.low, target.high));
     let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))?;
     let (centre, size) = (nalgebra::center(&low, &high), high - low);
     let extent = |direction: Vector3| size.dot(&direction.abs()) / 2.0;
     let front = centre - out * extent(out);
     let all: Vec<&Target<'_>> = moved.iter().chain(others).copied().collect();
-    let ends = |contact: Contact| arrow(contact, others, by, out, motion);
+    let ends = |contact: Contact| arrow(contact, others, way, out);
     let visible = |[from, to]: &[Point3; 2]| {
         let at = |i: u32| from + (to - from) * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
         let is_free = |i: &u32| first_hit(&all, at(*i) + toward_camera * AIR_MM, toward_camera).is_none();
@@ -91,18 +106,43 @@ pub(super) fn motion_arrow(
     let across = out.cross(&sideways);
     let is_enclosed =
         || [sideways, -sideways, across, -across].iter().all(|d| first_hit(moved, centre, *d).is_some());
-    let hole = || is_enclosed().then(|| Contact { point: front, half_mm: extent(out) });
-    let middle = contact(moved, front, out).or_else(hole).map(&ends);
-    if let Some(middle) = middle.filter(|middle| visible(middle) >= VISIBLE) {
-        return Some(middle);
+    if let Some(axis) = way.axis {
+        // In front of what is on the axis: at the foremost face around it, as near to the camera as it reaches.
+        let around = |step: u32| axis + sideways * (f64::from(step) * AROUND_MM / f64::from(STEPS));
+        let contacts =
+            (1..=STEPS).filter_map(|step| contact(moved, around(step) + out * (front - axis).dot(&out), out));
+        let height = |c: &Contact| c.point.coords.dot(&out);
+        let foremost = contacts
+            .reduce(|best, other| if height(&other) <= height(&best) + SAME_MM { other } else { best });
+        return foremost.map(ends);
     }
+    let hole = || is_enclosed().then(|| Contact { point: front, half_mm: extent(out) });
+    let middle = contact(moved, front, out).or_else(hole);
+    let is_met =
+        |contact: &Contact| first_hit(others, contact.point, -out).is_some_and(|free| free <= way.by.norm());
     let beside = [sideways, across, -across, -sideways].into_iter().flat_map(|direction| {
         [0.5, 1.0].map(|share| front + direction * (share * BESIDE * extent(direction)))
     });
-    let beside = beside.filter_map(|place| contact(moved, place, out)).map(&ends);
-    // The first of the most visible ones.
-    let best = middle.into_iter().chain(beside).map(|arrow| (visible(&arrow), arrow));
+    let beside: Vec<Contact> = beside.filter_map(|place| contact(moved, place, out)).collect();
+    let some_are_met = beside.iter().any(is_met);
+    let is_middle_met = middle.as_ref().is_some_and(is_met) || !some_are_met;
+    let middle = middle.map(&ends);
+    if let Some(middle) = middle.filter(|middle| is_middle_met && visible(middle) >= VISIBLE) {
+        return Some(middle);
+    }
+    // The first of the most visible ones, among those that end on a body.
+    let middle = middle.map(|arrow| (is_middle_met, arrow));
+    let beside = beside.into_iter().map(|contact| (is_met(&contact), ends(contact)));
+    let merit =
+        |(is_met, arrow): (bool, [Point3; 2])| (visible(&arrow) + f64::from(u8::from(is_met)) * MET, arrow);
+    let best = middle.into_iter().chain(beside).map(merit);
     let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
+    if !way.motion.stays() && best.is_some_and(|(_, arrow)| visible(&arrow) < VISIBLE) {
+        // The body hides the way behind it: the arrow goes on in front.
+        let foremost = contact(moved, front, out)
+            .or_else(|| contact(moved, front + sideways * (0.5 * BESIDE * extent(sideways)), out));
+        return foremost.map(|contact| beyond(&contact, out));
+    }
     Some(best.map_or_else(|| ends(Contact { point: front, half_mm: extent(out) }), |(_, arrow)| arrow))
 }
 
@@ -117,9 +157,8 @@ fn contact(moved: &[&Target<'_>], place: Point3, out: Vector3) -> Option<Contact
 fn arrow(
     Contact { point, half_mm }: Contact,
     others: &[&Target<'_>],
-    by: Vector3,
+    &Way { by, motion, .. }: &Way,
     out: Vector3,
-    motion: Motion,
 ) -> [Point3; 2] {
     // To the middle of the place: the tips of long bodies end far behind what receives them.
     let way_mm = by.norm() - half_mm;
@@ -129,11 +168,14 @@ fn arrow(
     match motion.stays() {
         true => [point, end],
         false if (point - end).norm() > LEAST_MM => [end, point],
-        false => {
-            let back = point + out * (2.0 * half_mm);
-            [back, back + out * BEYOND_MM]
-        }
+        false => beyond(&Contact { point, half_mm }, out),
     }
+}
+
+/// The arrow from the far side of the bodies away from them.
+fn beyond(contact: &Contact, out: Vector3) -> [Point3; 2] {
+    let back = contact.point + out * (2.0 * contact.half_mm);
+    [back, back + out * BEYOND_MM]
 }
 
 /// The distance along a ray to a triangle (Möller and Trumbore, 1997); `None` if the ray misses it.
@@ -171,9 +213,10 @@ mod tests {
 
     /// The arrow of a mesh seen from above at the front.
     fn arrow_of(moved: &Mesh, others: &[&Mesh], by: Vector3, motion: Motion) -> Option<[Point3; 2]> {
+        let way = Way { by, motion, axis: None };
         let others: Vec<Target<'_>> = others.iter().filter_map(|mesh| Target::new(mesh)).collect();
         let camera = Vector3::new(0.0, 1.0, 0.3).normalize();
-        motion_arrow(&[&Target::new(moved).unwrap()], &others.iter().collect::<Vec<_>>(), by, motion, camera)
+        motion_arrow(&[&Target::new(moved).unwrap()], &others.iter().collect::<Vec<_>>(), &way, camera)
     }
 
     fn is_near(arrow: Option<[Point3; 2]>, expected: [[f64; 3]; 2]) -> bool {

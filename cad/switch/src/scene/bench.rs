@@ -44,14 +44,16 @@ const CUT_APART_MM: f64 = 5.0;
 
 const SILICONE: [u8; 3] = [104, 182, 224];
 const SHELL: [u8; 3] = [142, 160, 184];
+const PROXY: [u8; 3] = [226, 206, 122];
 const PIN: [u8; 3] = [206, 72, 52];
 const TENDON: [u8; 3] = [38, 128, 96];
 const MOUNT: [u8; 3] = [146, 118, 190];
 
-const fn colour(role: Role) -> [u8; 3] {
+pub(super) const fn colour(role: Role) -> [u8; 3] {
     match role {
         Role::Layer => SILICONE,
         Role::Shell => SHELL,
+        Role::Proxy => PROXY,
         Role::Pin { .. } => PIN,
         Role::Tendon => TENDON,
         Role::Mount | Role::DistalLink => MOUNT,

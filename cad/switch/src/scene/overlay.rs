@@ -28,6 +28,8 @@ const HEAD_HALF_PX: f64 = 17.0;
 const DASH_PX: f64 = 16.0;
 /// Number of places along an arrow at which it may end.
 const ENDS: u32 = 64;
+/// Share of the visible length of an arrow that ends behind a body.
+const BEFORE: f64 = 0.85;
 /// Width of the picture to which these sizes belong, pixels.
 const REFERENCE_PX: f64 = 1600.0;
 /// Advance from letter to letter, and from line to line, in heights of a letter.
@@ -105,6 +107,8 @@ impl<'a> Canvas<'a> {
         // The end is what matters: a head behind a body would be missed.
         let visible =
             (1..=ENDS).rev().map(|i| f64::from(i) / f64::from(ENDS)).find(|share| !is_hidden(*share));
+        // An end that goes behind a body stops before it, so that it does not point to that body.
+        let visible = visible.map(|share| if share < 1.0 { share * BEFORE } else { share });
         let visible = visible.filter(|share| share * full > HEAD_PX * self.unit);
         let length = visible.unwrap_or(1.0) * full;
         let to = [from[0] + along[0] * length, from[1] + along[1] * length];

@@ -10,7 +10,7 @@ mod shell;
 mod support;
 
 use super::document::{Block, Step};
-use super::scenes::{FROM_BELOW, ON_BENCH, along, each, moving, outward, placed, scene};
+use super::scenes::{FROM_BELOW, JOINT_VIEW, ON_BENCH, along, each, moving, outward, placed, scene};
 use super::{bed_contact, carried_by, groove_list};
 use crate::built::Built;
 use crate::config::MountKind;
@@ -22,7 +22,6 @@ use crate::scene::{
 use pinswitch_friction::{Substrate, pluralise};
 use pinswitch_solid::mesh::Point3;
 use pinswitch_solid::profile::polar;
-use pinswitch_solid::render::View;
 
 /// Distances of bodies from their places in pictures, mm.
 const SUPPORT_APART_MM: f64 = 18.0;
@@ -36,7 +35,7 @@ const SMALL_APART_MM: f64 = 8.0;
 /// Most pins whose grooves a call-out lists.
 const MOST_LISTED: usize = 6;
 /// Length of the arrow that points to a groove, and its distance from the end of the groove, mm.
-const GROOVE_ARROW_MM: f64 = 9.0;
+const GROOVE_ARROW_MM: f64 = 18.0;
 const GROOVE_END_MM: f64 = 2.0;
 
 /// The set whose assembly is described.
@@ -294,9 +293,8 @@ impl Assembly<'_> {
     fn tendon(&self) -> Step {
         let c = self.design().configuration();
         let t = &self.bill.tendon;
-        // The links of a joint hide the tendon from the side.
         let view = match c.mount.kind {
-            MountKind::Joint => View { rise_deg: 62.0, ..switch_view(self.design()) },
+            MountKind::Joint => JOINT_VIEW,
             _ => switch_view(self.design()),
         };
         let moves =

@@ -78,6 +78,9 @@ fn picture(view: View, moves: Vec<Move>) -> Illustration {
 fn top(bodies: &Bodies, name: &str) -> Option<Point3> {
     let (low, high) = bodies.find(Bench::Mould, name)?.mesh.bounds()?;
     let middle = nalgebra::center(&low, &high);
+    if name == CAST_SPRUE {
+        return Some(Point3::new(middle.x, middle.y, high.z));
+    }
     // The middle of a curved body is not on it: the point of its mesh on the middle plane nearest to it is.
     let mesh = &bodies.find(Bench::Mould, name)?.mesh;
     let upper = mesh.positions.iter().filter(|p| p.z > high.z - 1e-6);
@@ -104,10 +107,11 @@ fn split(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<Step> {
         ],
     );
     let mut closed = picture(MOULD_VIEW, Vec::new());
-    closed.notes =
-        [("mould-lid", "lid with funnel and vents"), ("mould-ring", "ring"), ("mould-core", "core")]
-            .map(|(name, label)| (name.to_owned(), label.to_owned()))
-            .to_vec();
+    // In its full colour, the lid is distinct from the ring below it.
+    closed.moves = vec![placed(of(&["mould-lid"]), "lid with funnel and vents")];
+    closed.notes = [("mould-ring", "ring"), ("mould-core", "core")]
+        .map(|(name, label)| (name.to_owned(), label.to_owned()))
+        .to_vec();
     let mut poured = picture(
         MOULD_VIEW,
         vec![
@@ -133,7 +137,13 @@ fn split(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<Step> {
     );
     let released = picture(
         MOULD_VIEW,
-        vec![moving(of(&[CAST_LAYER]), "silicone layer", Motion::FlexibleAway, outward(LAYER_APART_MM))],
+        vec![moving(
+            of(&[CAST_LAYER]),
+            "silicone layer",
+            Motion::FlexibleAway,
+            // Above the keys of the core.
+            outward(LAYER_APART_MM) + along(LAYER_APART_MM),
+        )],
     );
     let mut steps = vec![
         Step::new("Put the mould together")

@@ -29,7 +29,12 @@ pub(super) fn fit(design: &Design, manifest: &Manifest, bodies: &Bodies) -> Vec<
         .picture(still(
             Bench::Loose,
             bodies.names(Bench::Loose, CUT_PIN),
-            &format!("{} {} x {}", pluralise(number, "pin"), pins.diameter_mm, pins.length_mm),
+            &match pins.spares {
+                0 => format!("{} {} x {}", pluralise(number, "pin"), pins.diameter_mm, pins.length_mm),
+                spares => {
+                    format!("{} + {spares} spare {} x {}", pins.number, pins.diameter_mm, pins.length_mm)
+                }
+            },
         ));
     let slots = Step::new("Try the pins in the supports")
         .text(format!(

@@ -1,7 +1,7 @@
 //! Pictures of steps: their moves and views.
 
 use crate::parts::SPACER;
-use crate::scene::{Arrows, Bench, Bodies, GUIDE_PULLEY, Illustration, Motion, Move, Upright};
+use crate::scene::{Arrows, Bench, Bodies, FROM_RIGHT, GUIDE_PULLEY, Illustration, Motion, Move, Upright};
 use pinswitch_solid::mesh::Vector3;
 use pinswitch_solid::render::View;
 
@@ -9,6 +9,8 @@ use pinswitch_solid::render::View;
 pub(super) const ON_BENCH: View = View { turn_deg: 148.0, rise_deg: 30.0 };
 /// The same, from below the bench, for parts that are put in from below.
 pub(super) const FROM_BELOW: View = View { turn_deg: 148.0, rise_deg: -24.0 };
+/// Camera above a joint, whose links hide the tendon from the side.
+pub(super) const JOINT_VIEW: View = View { turn_deg: FROM_RIGHT.turn_deg, rise_deg: 62.0 };
 /// Camera of small bodies on a table.
 const ON_TABLE: View = View { turn_deg: 20.0, rise_deg: 50.0 };
 
@@ -30,6 +32,11 @@ pub(super) fn moving(bodies: Vec<String>, label: impl Into<String>, motion: Moti
 /// The same, with an arrow for each body.
 pub(super) fn each(bodies: Vec<String>, label: impl Into<String>, motion: Motion, by: Vector3) -> Move {
     Move { arrows: Arrows::Each, ..moving(bodies, label, motion, by) }
+}
+
+/// The same with the arrow on the axis of the pulley.
+pub(super) fn on_axis(bodies: Vec<String>, label: impl Into<String>, motion: Motion, by: Vector3) -> Move {
+    Move { arrows: Arrows::OnAxis, ..moving(bodies, label, motion, by) }
 }
 
 /// The same without an arrow, along with other bodies of the step.
@@ -55,6 +62,7 @@ const NAMED_PINS_MM: f64 = 24.0;
 const NAMED_TENDON_MM: f64 = 36.0;
 const NAMED_SCREWS_MM: f64 = 40.0;
 const NAMED_NUTS_MM: f64 = 26.0;
+const NAMED_AXLE_MM: f64 = 75.0;
 const NAMED_MOUNT_MM: f64 = 30.0;
 
 /// The exploded switch with the names of its parts.
@@ -82,7 +90,8 @@ pub(crate) fn named_parts(bodies: &Bodies) -> Illustration {
         at(names(&["nut"]), "nuts", along(NAMED_NUTS_MM)),
         at(names(&["base-flange", "link-proximal", "rig-plate"]), "mounting plate", along(-NAMED_MOUNT_MM)),
         at(names(&["bolt"]), "bolt", along(-NAMED_MOUNT_MM)),
-        at(names(&["axle"]), "axle", along(-NAMED_SCREWS_MM)),
+        at(names(&["axle"]), "axle", along(-NAMED_AXLE_MM)),
+        at(names(&["axle-washer", "axle-nut"]), "washers and nut of the axle", along(NAMED_AXLE_MM)),
         at(names(&["link-distal"]), "distal link", along(NAMED_SCREWS_MM)),
         at(names(&["sheath-stop"]), "sheath stop", along(-NAMED_SIDE_MM)),
         at(names(&[SPACER]), "spacer", along(-NAMED_SIDE_MM)),

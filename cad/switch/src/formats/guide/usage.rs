@@ -1,7 +1,7 @@
 //! The section of use: loads, and how to read the curve.
 
 use super::document::{Block, Step, Table};
-use super::scenes::scene;
+use super::scenes::{JOINT_VIEW, scene};
 use crate::config::MountKind;
 use crate::design::Design;
 use crate::documents::Manifest;
@@ -48,22 +48,29 @@ fn arrangement(design: &Design) -> String {
 /// Length of the arrows of load and pull, mm.
 const FORCE_MM: f64 = 12.0;
 
-/// The switch as it is used, with the load hanging down; `None` on a rig and on a joint, whose tendon is led by them.
+/// The switch as it is used: with the load hanging down, or on its joint; `None` on a rig, which leads the tendon.
 fn forces(design: &Design, bodies: &Bodies) -> Option<Illustration> {
-    if matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Joint) {
-        return None;
-    }
     let (low, high) = bodies.find(Bench::Switch, "tendon")?.mesh.bounds()?;
     let z = f64::midpoint(low.z, high.z);
-    let tips = design.tendon_tips();
     let arrow = |(tip, along): (Point2, Vector2), label: &str| {
         let at = |mm: f64| Point3::new(tip.x + mm * along.x, tip.y + mm * along.y, z);
         ToolArrow { ends: [at(1.0), at(1.0 + FORCE_MM)], label: label.to_owned() }
     };
-    // The direction of the load becomes that of gravity.
-    let (_, load) = tips[0];
-    let turned = Upright::Turned(libm::atan2(load.x, -load.y));
-    let mut picture = scene(Bench::Switch, turned, FROM_LEFT, Vec::new());
+    let (upright, view, tips) = if let Some(joint) = design.joint() {
+        let contact = joint.contact(joint.assembled_deg);
+        let (motor, load) = (joint.proximal_end(), joint.distal_end(&contact));
+        let along = |from: Point2, to: Point2| (to - from).normalize();
+        let tips = [(load, along(contact.anchor, load)), (motor, along(joint.proximal.mouth(), motor))];
+        (Upright::Grooves, JOINT_VIEW, tips)
+    } else if design.configuration().mount.kind == MountKind::Rig {
+        return None;
+    } else {
+        // The direction of the load becomes that of gravity.
+        let tips = design.tendon_tips();
+        let (_, load) = tips[0];
+        (Upright::Turned(libm::atan2(load.x, -load.y)), FROM_LEFT, tips)
+    };
+    let mut picture = scene(Bench::Switch, upright, view, Vec::new());
     picture.arrows = vec![arrow(tips[0], "load"), arrow(tips[1], "pull")];
     Some(picture)
 }

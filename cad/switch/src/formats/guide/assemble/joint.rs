@@ -1,7 +1,7 @@
 //! The distal link of a joint, and the end of its tendon.
 
 use super::super::document::Step;
-use super::super::scenes::{along, along_with, moving};
+use super::super::scenes::{along, along_with, on_axis};
 use super::{Assembly, MOUNT_APART_MM, SMALL_APART_MM};
 use crate::scene::{Bench, Motion};
 
@@ -24,10 +24,10 @@ impl Assembly<'_> {
         washers.sort_by(|a, b| height(a).total_cmp(&height(b)));
         let outer = washers.split_off(washers.len().min(1));
         let moves = vec![
-            moving(washers, "washer", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
-            moving(self.names(&["link-distal"]), "distal link", Motion::Into, along(DISTAL_APART_MM)),
+            along_with(washers, "washer", Motion::Into, along(SMALL_APART_MM + MOUNT_APART_MM)),
+            on_axis(self.names(&["link-distal"]), "distal link", Motion::Into, along(DISTAL_APART_MM)),
             along_with(outer, "", Motion::Into, along(AXLE_NUT_APART_MM)),
-            moving(self.names(&["axle-nut"]), "washer and nut", Motion::Into, along(AXLE_NUT_APART_MM)),
+            on_axis(self.names(&["axle-nut"]), "washer and nut", Motion::Into, along(AXLE_NUT_APART_MM)),
         ];
         Some(
             Step::new("Put the distal link on the axle")

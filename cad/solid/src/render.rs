@@ -291,10 +291,13 @@ fn visible_faces(bodies: &[Body], projection: &Projection) -> Vec<Face> {
         Face::new([a, b, c].map(|p| projection.place(p)), colour.map(|v| f32::from(v) * brightness), body)
     };
     let each = (0..=u16::MAX).zip(bodies.iter().zip(&seen));
-    each.flat_map(|(number, (body, positions))| {
-        body.mesh.triangles.iter().filter_map(move |t| face(positions, t, body.colour, number))
-    })
-    .collect()
+    let triangles: usize = bodies.iter().map(|body| body.mesh.triangles.len()).sum();
+    // About half of the triangles of closed bodies face the camera.
+    let mut faces = Vec::with_capacity(triangles / 2);
+    for (number, (body, positions)) in each {
+        faces.extend(body.mesh.triangles.iter().filter_map(|t| face(positions, t, body.colour, number)));
+    }
+    faces
 }
 
 /// Indices of the faces in each band of rows, ascending.
@@ -314,11 +317,13 @@ fn by_band(faces: &[Face], rows: usize) -> Vec<Vec<u32>> {
 }
 
 impl Face {
-    /// Creates a face; `None` for a triangle seen edge-on.
+    /// Creates a face; `None` for a triangle seen edge-on, or between the rows or columns of samples.
     fn new([a, b, c]: [Point3; 3], colour: [f32; 3], body: u16) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);
         let area = ab.x * ac.y - ab.y * ac.x;
-        if area == 0.0 {
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        let has_sample = |k: usize| libm::ceil(low[k] - 0.5) < high[k] - 0.5;
+        if area == 0.0 || !has_sample(0) || !has_sample(1) {
             return None;
         }
         let across = (ab.z * ac.y - ac.z * ab.y) / area;

@@ -18,7 +18,7 @@ use pinswitch_solid::profile::{Contour, Point2};
 use pinswitch_solid::render::{Body, Picture, View, render};
 use pinswitch_solid::solid::Solid;
 
-use annotated::{Annotated, Annotation, Shown};
+use annotated::{Annotated, Annotation};
 pub use bench::{Bench, Bodies, Item};
 pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
 pub use illustration::{Arrows, Illustration, Motion, Move, ToolArrow, Upright};
@@ -101,9 +101,15 @@ pub fn plate(plate: &Plate<'_>) -> Vec<Body> {
 /// Draws a plate with the names of its parts.
 pub(crate) fn labelled_plate(shown: &Plate<'_>, view: View, (width, height): (u32, u32)) -> Picture {
     let names = || shown.parts.iter().map(|(part, _)| part.part().name.clone());
-    let bodies = names().zip(plate(shown)).map(|(name, body)| Shown { name, body }).collect();
     let annotations = names().map(|name| Annotation::Named { label: name.clone(), bodies: vec![name] });
-    Annotated { bodies, annotations: annotations.collect(), arrows: Vec::new(), view }.draw(width, height)
+    Annotated {
+        bodies: plate(shown),
+        names: names().collect(),
+        annotations: annotations.collect(),
+        arrows: Vec::new(),
+        view,
+    }
+    .draw(width, height)
 }
 
 /// Returns all printed parts in print orientation. Several plates are side by side, each on its bed.

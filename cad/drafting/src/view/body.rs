@@ -70,15 +70,24 @@ impl Curve {
     }
 
     /// Shares of the length, ascending, at which the curve reverses along `axis` (0: u, 1: w), without its ends.
-    pub(super) fn turns(&self, axis: usize) -> Vec<f64> {
-        let Self::Arc(_, _, start, sweep) = *self else { return Vec::new() };
+    pub(super) fn turns(&self, axis: usize) -> impl Iterator<Item = f64> + use<> {
+        let arc = match *self {
+            Self::Line(..) => None,
+            Self::Arc(_, _, start, sweep) => Some((start, sweep)),
+        };
         let quarter = if axis == 0 { 0.0 } else { PI / 2.0 };
-        let mut all: Vec<f64> = (-4..=4)
-            .map(|k| (quarter + f64::from(k) * PI - start) / sweep)
-            .filter(|share| (1e-9..=1.0 - 1e-9).contains(share))
-            .collect();
-        all.sort_by(f64::total_cmp);
-        all
+        arc.into_iter().flat_map(move |(start, sweep)| {
+            let share = move |k: i32| (quarter + f64::from(k) * sweep.signum() * PI - start) / sweep;
+            (-4..=4).map(share).filter(|share| (1e-9..=1.0 - 1e-9).contains(share))
+        })
+    }
+
+    /// The least and the greatest coordinate along an axis; those of the whole circle for an arc.
+    fn reach(&self, axis: usize) -> [f64; 2] {
+        match *self {
+            Self::Line(a, b) => [a[axis].min(b[axis]), a[axis].max(b[axis])],
+            Self::Arc(c, r, ..) => [c[axis] - r, c[axis] + r],
+        }
     }
 
     /// The curve at a share of the way to `other`, which is of the same kind.
@@ -112,32 +121,34 @@ enum Path {
 }
 
 impl Run {
-    fn all(curves: &[Curve], axis: usize) -> Vec<Self> {
+    /// The pieces of a curve.
+    fn all(curve: Curve, axis: usize) -> impl Iterator<Item = Self> {
+        let mut from = 0.0;
+        curve.turns(axis).chain([1.0]).filter_map(move |to| {
+            let shares = [from, to];
+            from = to;
+            Self::new(&curve, axis, shares)
+        })
+    }
+
+    /// The piece between two shares of a curve; `None` if it has no extent along the axis.
+    fn new(curve: &Curve, axis: usize, [from, to]: [f64; 2]) -> Option<Self> {
         let other = 1 - axis;
-        let mut runs = Vec::new();
-        for curve in curves {
-            let mut shares = curve.turns(axis);
-            shares.insert(0, 0.0);
-            shares.push(1.0);
-            for pair in shares.windows(2) {
-                let snapped = |share: f64| curve.at(share).map(|x| (x / GRID_MM).round() * GRID_MM);
-                let (p, q) = (snapped(pair[0]), snapped(pair[1]));
-                let (a, b) = if p[axis] <= q[axis] { (p, q) } else { (q, p) };
-                if b[axis] - a[axis] <= 0.0 {
-                    continue;
-                }
-                let path = match curve {
-                    Curve::Line(..) => Path::Line(a[other], (b[other] - a[other]) / (b[axis] - a[axis])),
-                    Curve::Arc(c, r, start, sweep) => {
-                        let middle = start + sweep * f64::midpoint(pair[0], pair[1]);
-                        let side = if axis == 0 { libm::sin(middle) } else { libm::cos(middle) };
-                        Path::Arc([c[axis], c[other]], *r, side.signum())
-                    }
-                };
-                runs.push(Self { low: a[axis], high: b[axis], path });
-            }
+        let snapped = |share: f64| curve.at(share).map(|x| (x / GRID_MM).round() * GRID_MM);
+        let (p, q) = (snapped(from), snapped(to));
+        let (a, b) = if p[axis] <= q[axis] { (p, q) } else { (q, p) };
+        if b[axis] - a[axis] <= 0.0 {
+            return None;
         }
-        runs
+        let path = match curve {
+            Curve::Line(..) => Path::Line(a[other], (b[other] - a[other]) / (b[axis] - a[axis])),
+            Curve::Arc(c, r, start, sweep) => {
+                let middle = start + sweep * f64::midpoint(from, to);
+                let side = if axis == 0 { libm::sin(middle) } else { libm::cos(middle) };
+                Path::Arc([c[axis], c[other]], *r, side.signum())
+            }
+        };
+        Some(Self { low: a[axis], high: b[axis], path })
     }
 
     /// The other coordinate at `value`, which is not the lower end, so that a corner counts once.
@@ -151,11 +162,48 @@ impl Run {
     }
 }
 
+/// Runs in strips of equal width along their axis, so that a line meets few of them.
+#[derive(Clone, Debug)]
+struct Strips {
+    low: f64,
+    width: f64,
+    /// The runs that reach into each strip.
+    runs: Vec<Vec<Run>>,
+}
+
+impl Strips {
+    fn new(curves: &[Curve], axis: usize) -> Self {
+        let runs: Vec<Run> = curves.iter().flat_map(|curve| Run::all(*curve, axis)).collect();
+        let low = runs.iter().map(|run| run.low).fold(f64::INFINITY, f64::min);
+        let high = runs.iter().map(|run| run.high).fold(f64::NEG_INFINITY, f64::max);
+        let width = (high - low) / runs.len().max(1) as f64;
+        let mut strips = Self { low, width, runs: vec![Vec::new(); runs.len()] };
+        for run in runs {
+            let (Some(first), Some(last)) = (strips.index(run.low), strips.index(run.high)) else { continue };
+            strips.runs[first..=last].iter_mut().for_each(|strip| strip.push(run));
+        }
+        strips
+    }
+
+    /// The strip of a value; `None` without runs there.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    fn index(&self, value: f64) -> Option<usize> {
+        let share = (value - self.low) / self.width;
+        // The greatest value belongs to the last strip.
+        (0.0..=self.runs.len() as f64).contains(&share).then(|| (share as usize).min(self.runs.len() - 1))
+    }
+
+    fn crossings(&self, value: f64) -> impl Iterator<Item = f64> {
+        let near = self.index(value).map_or(&[][..], |index| &self.runs[index]);
+        near.iter().filter_map(move |run| run.crossing(value))
+    }
+}
+
 /// A wall between two closed curves.
 #[derive(Clone, Debug)]
 pub(super) struct Wall {
     /// The monotonic pieces along both axes of a vertical wall; `None` for a sloped one.
-    runs: Option<[Vec<Run>; 2]>,
+    strips: Option<[Strips; 2]>,
     pub(super) lower: Vec<Curve>,
     pub(super) upper: Vec<Curve>,
     pub(super) from_mm: f64,
@@ -163,10 +211,15 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// The curves at height `z`, within the wall.
-    fn curves_at(&self, z: f64) -> impl Iterator<Item = Curve> {
+    /// The curves at height `z`, within the wall, that a line at `value` may cross.
+    fn curves_at(&self, z: f64, axis: usize, value: f64) -> impl Iterator<Item = Curve> {
         let share = (z - self.from_mm) / (self.to_mm - self.from_mm);
-        self.lower.iter().zip(&self.upper).map(move |(a, b)| a.between(b, share))
+        let pairs = self.lower.iter().zip(&self.upper);
+        let may_cross = move |a: &Curve, b: &Curve| {
+            let (a, b) = (a.reach(axis), b.reach(axis));
+            a[0].min(b[0]) - GRID_MM <= value && value <= a[1].max(b[1]) + GRID_MM
+        };
+        pairs.filter(move |(a, b)| may_cross(a, b)).map(move |(a, b)| a.between(b, share))
     }
 }
 
@@ -194,7 +247,7 @@ impl Body {
                 let is_upright = rings[lower].0 == rings[upper].0;
                 let foot = curves(first);
                 Wall {
-                    runs: is_upright.then(|| [Run::all(&foot, 0), Run::all(&foot, 1)]),
+                    strips: is_upright.then(|| [Strips::new(&foot, 0), Strips::new(&foot, 1)]),
                     lower: foot,
                     upper: curves(last),
                     from_mm: height(rings[first].1),
@@ -213,11 +266,11 @@ impl Body {
     /// along `w` for `axis` 0, and the other way round for 1.
     pub(super) fn crossings(&self, axis: usize, value: f64, z: f64, ends: &mut Vec<f64>) {
         for wall in self.walls.iter().filter(|w| w.from_mm < z && z < w.to_mm) {
-            match &wall.runs {
-                Some(runs) => ends.extend(runs[axis].iter().filter_map(|r| r.crossing(value))),
+            match &wall.strips {
+                Some(strips) => ends.extend(strips[axis].crossings(value)),
                 None => {
-                    let curves: Vec<Curve> = wall.curves_at(z).collect();
-                    ends.extend(Run::all(&curves, axis).iter().filter_map(|r| r.crossing(value)));
+                    let runs = wall.curves_at(z, axis, value).flat_map(|curve| Run::all(curve, axis));
+                    ends.extend(runs.filter_map(|run| run.crossing(value)));
                 }
             }
         }

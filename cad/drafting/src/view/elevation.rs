@@ -56,13 +56,11 @@ fn edges(wall: &Wall) -> Vec<Edge> {
     let mut all = Vec::new();
     for (curves, z) in [(&wall.lower, wall.from_mm), (&wall.upper, wall.to_mm)] {
         for curve in curves {
-            let mut shares = curve.turns(0);
-            shares.insert(0, 0.0);
-            shares.push(1.0);
-            for pair in shares.windows(2) {
-                let (curve, from, to) = (*curve, pair[0], pair[1]);
+            let mut from = 0.0;
+            for to in curve.turns(0).chain([1.0]) {
+                let (curve, first) = (*curve, std::mem::replace(&mut from, to));
                 let at = move |share: f64| {
-                    let [u, w] = curve.at(from + (to - from) * share);
+                    let [u, w] = curve.at(first + (to - first) * share);
                     [u, z, w]
                 };
                 let length_mm = (at(1.0)[0] - at(0.0)[0]).abs();
@@ -78,7 +76,7 @@ fn edges(wall: &Wall) -> Vec<Edge> {
             all.push(upright(&lower, 0.0, &upper, 0.0, wall));
         }
         // Silhouettes: on a cone they are at equal shares of both curves.
-        for (a, b) in lower.turns(0).into_iter().zip(upper.turns(0)) {
+        for (a, b) in lower.turns(0).zip(upper.turns(0)) {
             all.push(upright(&lower, a, &upper, b, wall));
         }
     }

@@ -18,12 +18,6 @@ const MARK_PENALTY: usize = 14;
 /// Depth by which a body must be in front of an arrow to hide it, mm: an arrow on a surface is visible.
 const HIDING_MM: f64 = 0.5;
 
-/// A body with its name.
-pub(super) struct Shown {
-    pub(super) name: String,
-    pub(super) body: Body,
-}
-
 /// A text with a leader line.
 pub(super) enum Annotation {
     /// To the most visible of these bodies.
@@ -44,7 +38,9 @@ pub(super) enum Annotation {
 
 /// Bodies with annotations.
 pub(super) struct Annotated {
-    pub(super) bodies: Vec<Shown>,
+    pub(super) bodies: Vec<Body>,
+    /// Names of the bodies.
+    pub(super) names: Vec<String>,
     pub(super) annotations: Vec<Annotation>,
     /// First and last points of arrows.
     pub(super) arrows: Vec<[Point3; 2]>,
@@ -55,9 +51,8 @@ impl Annotated {
     /// Draws the picture.
     pub(super) fn draw(&self, width: u32, height: u32) -> Picture {
         let also: Vec<Point3> = self.arrows.iter().flatten().copied().collect();
-        let plain: Vec<Body> = self.bodies.iter().map(|s| s.body.clone()).collect();
         let frame = Frame { width, height, left: 0, right: 0 };
-        let roughly = Projection::new(&plain, &also, self.view, frame);
+        let roughly = Projection::new(&self.bodies, &also, self.view, frame);
         let mut letterings: Vec<Lettering> = self
             .annotations
             .iter()
@@ -73,10 +68,10 @@ impl Annotated {
             if widest > 0.0 { (widest + 2.0 * gap(width)).ceil() as u32 } else { 0 }
         };
         let frame = Frame { left: column(true), right: column(false), ..frame };
-        let rendering = render_in(&plain, &also, self.view, frame);
+        let rendering = render_in(&self.bodies, &also, self.view, frame);
         for (annotation, lettering) in self.annotations.iter().zip(&mut letterings) {
             lettering.anchor = match annotation {
-                Annotation::Named { bodies, .. } => anchor(&self.bodies, bodies, &rendering, width),
+                Annotation::Named { bodies, .. } => anchor(&self.names, bodies, &rendering, width),
                 Annotation::Pointed { from, .. } => Some(rendering.projection.pixel(*from)),
             };
         }
@@ -101,7 +96,8 @@ impl Annotated {
     /// The column of an annotation, before its text takes room.
     fn column(&self, annotation: &Annotation, roughly: Projection) -> f64 {
         let middle = |name: &String| {
-            let (low, high) = self.bodies.iter().find(|s| s.name == *name)?.body.mesh.bounds()?;
+            let number = self.names.iter().position(|other| other == name)?;
+            let (low, high) = self.bodies.get(number)?.mesh.bounds()?;
             Some(roughly.pixel(nalgebra::center(&low, &high))[0])
         };
         match annotation {
@@ -159,10 +155,10 @@ fn wrapped(label: &str) -> Vec<String> {
 
 /// Returns the visible pixel of one of the bodies nearest to the middle of its visible pixels, for the body with most of them,
 /// away from its edges, and on an even surface, where possible.
-fn anchor(shown: &[Shown], names: &[String], rendering: &Rendering, width: u32) -> Option<Pixel> {
+fn anchor(shown: &[String], names: &[String], rendering: &Rendering, width: u32) -> Option<Pixel> {
     let (width, around) = (width as usize, width as usize / EDGE_SHARE);
     let owners = &rendering.bodies;
-    let numbers = shown.iter().enumerate().filter(|(_, s)| names.contains(&s.name)).map(|(i, _)| i);
+    let numbers = shown.iter().enumerate().filter(|(_, name)| names.contains(name)).map(|(i, _)| i);
     let is_own = |i: usize, number: usize| {
         owners.get(i).copied().flatten().is_some_and(|owner| usize::from(owner) == number)
     };

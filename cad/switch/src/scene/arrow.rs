@@ -11,7 +11,7 @@ const BEYOND_MM: f64 = 10.0;
 const BESIDE: f64 = 0.85;
 /// Visible share of an arrow that suffices in the middle, and the number of its points that are examined.
 const VISIBLE: f64 = 0.5;
-const SAMPLES: u32 = 8;
+const SAMPLES: u32 = 5;
 /// Visible share of an arrow that an end on a body is worth.
 const MET: f64 = 0.4;
 /// Greatest distance of an arrow from the axis around which it is, mm, and the number of places up to there.
@@ -62,6 +62,10 @@ fn first_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> Optio
     targets.iter().flat_map(|target| target.hits(from, direction)).min_by(f64::total_cmp)
 }
 
+fn is_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> bool {
+    targets.iter().any(|target| target.hits(from, direction).next().is_some())
+}
+
 /// The motion of bodies.
 pub(super) struct Way {
     /// Displacement from their place to where they are shown, mm.
@@ -97,15 +101,14 @@ pub(super) fn motion_arrow(
     let ends = |contact: Contact| arrow(contact, others, way, out);
     let visible = |[from, to]: &[Point3; 2]| {
         let at = |i: u32| from + (to - from) * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
-        let is_free = |i: &u32| first_hit(&all, at(*i) + toward_camera * AIR_MM, toward_camera).is_none();
+        let is_free = |i: &u32| !is_hit(&all, at(*i) + toward_camera * AIR_MM, toward_camera);
         (0..SAMPLES).filter(is_free).count() as f64 / f64::from(SAMPLES)
     };
     // A hole around the middle, as in a nut, counts as material.
     let sideways = (toward_camera - out * toward_camera.dot(&out)).try_normalize(1e-9);
     let sideways = sideways.unwrap_or_else(|| out.yzx().cross(&out).normalize());
     let across = out.cross(&sideways);
-    let is_enclosed =
-        || [sideways, -sideways, across, -across].iter().all(|d| first_hit(moved, centre, *d).is_some());
+    let is_enclosed = || [sideways, -sideways, across, -across].iter().all(|d| is_hit(moved, centre, *d));
     if let Some(axis) = way.axis {
         // In front of what is on the axis: at the foremost face around it, as near to the camera as it reaches.
         let around = |step: u32| axis + sideways * (f64::from(step) * AROUND_MM / f64::from(STEPS));

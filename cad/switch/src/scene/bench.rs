@@ -1,9 +1,11 @@
 //! The bodies that pictures of steps show, each with its name, in its place.
 
 use crate::built::Built;
+use crate::design::Design;
 use crate::hardware::hardware;
 use crate::parts::{Role, cast};
 use pinswitch_solid::mesh::{Mesh, Vector3};
+use pinswitch_solid::profile::ChordTolerance;
 
 /// A group of bodies with a common frame. Steps of one bench build on each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,6 +41,8 @@ pub(crate) const COUPON: &str = "coupon";
 pub(crate) const GUIDE_PULLEY: &str = "guide-pulley";
 /// Begin of the names of cut pins.
 pub(crate) const CUT_PIN: &str = "cut-pin";
+/// Chord tolerance of the meshes of pictures, mm: less than the width of a pixel of the largest ones.
+const PICTURE_MM: f64 = 0.02;
 /// Distance of cut pins from each other, mm.
 const CUT_APART_MM: f64 = 5.0;
 
@@ -100,10 +104,17 @@ impl Bodies {
     }
 }
 
+/// The tolerance of the design, if that is not finer than pictures need.
+fn picture_tolerance(design: &Design) -> ChordTolerance {
+    let usual = ChordTolerance::new(PICTURE_MM).ok();
+    usual.filter(|usual| usual.mm() > design.tolerance().mm()).unwrap_or(design.tolerance())
+}
+
 fn switch(built: &Built) -> Vec<Item> {
     let design = built.design();
+    let tolerance = picture_tolerance(design);
     let made = built.assembly().filter_map(|body| {
-        let mesh = body.part.pose?.apply(body.mesh.clone());
+        let mesh = body.part.pose?.apply(body.part.solid.mesh(tolerance).ok()?);
         let role = body.part.role;
         Some(Item {
             name: body.part.name.clone(),
@@ -114,7 +125,7 @@ fn switch(built: &Built) -> Vec<Item> {
         })
     });
     let bought = hardware(design).into_iter().filter_map(|body| {
-        let mesh = body.solid.mesh(design.tolerance()).ok()?;
+        let mesh = body.solid.mesh(tolerance).ok()?;
         let colour = body.kind.colour();
         Some(Item { name: body.name, mesh, colour, is_silicone: false, from_right: body.from_right })
     });
@@ -124,24 +135,28 @@ fn switch(built: &Built) -> Vec<Item> {
 fn mould(built: &Built) -> Vec<Item> {
     let design = built.design();
     let printed = built.printed().iter().filter(|p| p.part().role == Role::Mould);
-    let parts = printed.map(|p| {
+    let tolerance = picture_tolerance(design);
+    let parts = printed.filter_map(|p| {
+        let mesh = p.part().solid.mesh(tolerance).ok()?;
         // A tray has no other parts, and is in its own frame.
-        let mesh = p.body.mesh.clone();
-        let mesh = p.part().tool_pose.map_or(mesh.clone(), |pose| pose.apply(mesh));
-        Item {
+        let mesh = match p.part().tool_pose {
+            Some(pose) => pose.apply(mesh),
+            None => mesh,
+        };
+        Some(Item {
             name: p.part().name.clone(),
             mesh,
             colour: Role::Mould.colour(),
             is_silicone: false,
             from_right: true,
-        }
+        })
     });
     let parts: Vec<Item> = parts.collect();
     if parts.is_empty() {
         return parts;
     }
     let silicone = cast(design).into_iter().filter_map(|(name, solid)| {
-        let mesh = solid.mesh(design.tolerance()).ok()?;
+        let mesh = solid.mesh(tolerance).ok()?;
         Some(Item { name, mesh, colour: SILICONE, is_silicone: true, from_right: true })
     });
     parts.into_iter().chain(silicone).collect()

@@ -1,6 +1,6 @@
 //! Pictures of steps: bodies in place, bodies in motion with arrows, and call-outs.
 
-use super::annotated::{Annotated, Annotation, Shown};
+use super::annotated::{Annotated, Annotation};
 use super::arrow::{Target, Way, motion_arrow};
 use super::bench::{Bench, Bodies};
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
@@ -118,9 +118,10 @@ impl Upright {
         }
     }
 
-    fn mesh(self, mesh: Mesh) -> Mesh {
-        let turned = mesh.positions.iter().map(|p| self.point(*p)).collect();
-        Mesh::new(turned, mesh.triangles)
+    /// A displaced mesh in this orientation.
+    fn mesh(self, mesh: &Mesh, by: Vector3) -> Mesh {
+        let turned = mesh.positions.iter().map(|p| self.point(p + by)).collect();
+        Mesh::new(turned, mesh.triangles.clone())
     }
 
     fn vector(self, v: Vector3) -> Vector3 {
@@ -131,37 +132,37 @@ impl Upright {
 impl Illustration {
     /// Draws the picture.
     pub fn draw(&self, bodies: &Bodies, width: u32, height: u32) -> Picture {
-        let shown = self.shown(bodies);
+        let (names, bodies): (Vec<String>, Vec<Body>) = self.shown(bodies).unzip();
         let tools = self.arrows.iter().map(|arrow| Annotation::Pointed {
             from: self.upright.point(arrow.ends[0]),
             label: arrow.label.clone(),
         });
         Annotated {
-            arrows: self.arrow_ends(&shown),
+            arrows: self.arrow_ends(&names, &bodies),
             annotations: self.callouts().chain(tools).collect(),
-            bodies: shown,
+            bodies,
+            names,
             view: self.view,
         }
         .draw(width, height)
     }
 
     /// Bodies of the picture in its orientation: present ones first.
-    fn shown(&self, bodies: &Bodies) -> Vec<Shown> {
+    fn shown<'a>(&'a self, bodies: &'a Bodies) -> impl Iterator<Item = (String, Body)> + 'a {
         let moved = |name: &String| self.moves.iter().any(|m| m.bodies.contains(name));
-        let present = self.present.iter().filter(|name| !moved(name)).filter_map(|name| {
+        let present = self.present.iter().filter(move |name| !moved(name)).filter_map(|name| {
             let item = bodies.find(self.bench, name)?;
             let colour = if item.is_silicone { item.colour } else { lighter(item.colour) };
-            let body = Body { mesh: self.upright.mesh(item.mesh.clone()), colour };
-            Some(Shown { name: name.clone(), body })
+            Some((name.clone(), Body { mesh: self.upright.mesh(&item.mesh, Vector3::zeros()), colour }))
         });
-        let moving = self.moves.iter().flat_map(|m| {
-            m.bodies.iter().filter_map(|name| {
+        let moving = self.moves.iter().flat_map(move |m| {
+            m.bodies.iter().filter_map(move |name| {
                 let item = bodies.find(self.bench, name)?;
-                let mesh = self.upright.mesh(item.mesh.clone().translated(m.by));
-                Some(Shown { name: name.clone(), body: Body { mesh, colour: item.colour } })
+                let mesh = self.upright.mesh(&item.mesh, m.by);
+                Some((name.clone(), Body { mesh, colour: item.colour }))
             })
         });
-        present.chain(moving).collect()
+        present.chain(moving)
     }
 
     /// Call-outs of bodies.
@@ -173,11 +174,14 @@ impl Illustration {
     }
 
     /// First and last points of all arrows, in the orientation of the picture.
-    fn arrow_ends(&self, shown: &[Shown]) -> Vec<[Point3; 2]> {
+    fn arrow_ends(&self, names: &[String], bodies: &[Body]) -> Vec<[Point3; 2]> {
         let mut all: Vec<[Point3; 2]> =
             self.arrows.iter().map(|arrow| arrow.ends.map(|p| self.upright.point(p))).collect();
-        let targets: Vec<(&String, Target<'_>)> =
-            shown.iter().filter_map(|s| Some((&s.name, Target::new(&s.body.mesh)?))).collect();
+        let targets: Vec<(&String, Target<'_>)> = names
+            .iter()
+            .zip(bodies)
+            .filter_map(|(name, body)| Some((name, Target::new(&body.mesh)?)))
+            .collect();
         let toward_camera = self.view.toward_camera();
         for m in self.moves.iter().filter(|m| m.motion != Motion::Still) {
             let by = self.upright.vector(m.by);

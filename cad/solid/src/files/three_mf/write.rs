@@ -75,12 +75,13 @@ const ATTACHMENT_TYPE: &str = "urn:pinswitch:attachment:1";
 pub fn three_mf(objects: &[Object<'_>], package: &Package) -> Result<Vec<u8>, ThreeMfError> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     // The epoch of the archive: with time stamps, every run would give other bytes.
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Deflated)
-        .last_modified_time(DateTime::default())
-        .unix_permissions(0o644);
+    let options =
+        SimpleFileOptions::default().last_modified_time(DateTime::default()).unix_permissions(0o644);
     let mut add = |name: &str, bytes: &[u8]| -> Result<(), ThreeMfError> {
-        archive.start_file(name, options)?;
+        // Pictures are compressed already.
+        let is_picture = name.ends_with(".png");
+        let method = if is_picture { CompressionMethod::Stored } else { CompressionMethod::Deflated };
+        archive.start_file(name, options.compression_method(method))?;
         archive.write_all(bytes).map_err(zip::result::ZipError::from)?;
         Ok(())
     };

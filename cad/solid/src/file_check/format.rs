@@ -183,8 +183,14 @@ fn overlaps(built: &[PlacedMesh]) -> Result<Vec<Fault>, Incomplete> {
         let detail = format!("{} and {} overlap on the plate", built[j].name, built[i].name);
         Some(Fault::new("overlap", Level::Error, 1, detail).with_place(at).with_paragraph("3MF core 3.4.3.1"))
     };
-    Ok(close.into_iter().filter_map(overlap).take(MAX_OVERLAPS).collect())
+    let mut all = close.into_iter().filter_map(overlap);
+    let mut listed: Vec<Fault> = all.by_ref().take(MAX_OVERLAPS).collect();
+    let others = all.count();
+    if let Some(last) = listed.last_mut().filter(|_| others > 0) {
+        last.detail.push_str(&format!("; {others} other pairs overlap"));
+    }
+    Ok(listed)
 }
 
-/// Most overlaps that are listed.
+/// Most overlaps that are listed one by one.
 const MAX_OVERLAPS: usize = 5;

@@ -25,7 +25,7 @@ pub struct Judgement {
 const GEOMETRY: [&str; 9] =
     ["number", "index", "triangles", "reference", "build", "transform", "unit", "overlap", "model"];
 /// Checks of printability, which no specification requires.
-const PRINTABILITY: [&str; 4] = ["thin wall", "size", "outside", "bodies"];
+const PRINTABILITY: [&str; 5] = ["thin wall", "size", "outside", "bodies", "non-manifold vertex"];
 /// Checks of meshes that the core specification of 3MF requires or recommends (4.1).
 const MESH: [&str; 9] = [
     "crack",
@@ -41,7 +41,10 @@ const MESH: [&str; 9] = [
 
 /// Checks of a package whose warnings are of what a producer must not write and every reader ignores: errors only if the
 /// file is judged by its specification.
-const MUST: [&str; 3] = ["metadata", "property", "thumbnail"];
+const MUST: [&str; 4] = ["identifier", "metadata", "property", "thumbnail"];
+
+/// A check of attributes that slicers need, and that the specification forbids.
+const SLICER: &str = "slicer attribute";
 
 impl Judgement {
     /// Sets the levels of the faults of a file as a whole, or of a part of a 3MF.
@@ -50,7 +53,11 @@ impl Judgement {
             if is_three_mf && fault.paragraph.is_none() && MESH.contains(&fault.check) {
                 fault.paragraph = Some("3MF core 4.1");
             }
-            let is_strict = self.purpose == Some(Purpose::Spec) && MUST.contains(&fault.check);
+            let is_of_spec = self.purpose == Some(Purpose::Spec);
+            if is_of_spec && fault.check == SLICER {
+                fault.level = Level::Error;
+            }
+            let is_strict = is_of_spec && MUST.contains(&fault.check);
             if is_strict && fault.paragraph.is_some() && fault.level == Level::Warning {
                 fault.level = Level::Error;
             }

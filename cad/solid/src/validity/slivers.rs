@@ -11,9 +11,11 @@ use super::facets::height_mm;
 use super::triangle_intersection::{Corners, intersect};
 use crate::mesh::{Mesh, Point3};
 
-/// Share of its size by which a facet next to a sliver is scaled down before it is compared: contact
-/// on the sliver disappears, a facet that passes through another remains.
-const SHRINKAGE: f64 = 2e-3;
+/// Distance by which the sides of a facet next to a sliver are moved inward before it is compared, in heights of the thickest
+/// sliver: contact on the sliver disappears, a facet that passes through another remains.
+const INWARD: f64 = 2.0;
+/// Most of the radius of the inscribed circle by which the sides are moved.
+const MOST_INWARD: f64 = 0.5;
 
 /// The vertices of facets without area.
 pub(super) struct Slivers {
@@ -40,13 +42,26 @@ impl Slivers {
         let is_flat = |corners: &Corners| height_mm(corners.map(|(_, p)| p)) < self.min_height_mm;
         let is_next = |corners: &Corners| corners.iter().any(|(v, _)| self.vertices[*v as usize]);
         // Without common corners: a shrunk facet has other ones.
-        let is_away = || !(is_next(s) && is_next(t)) || intersect(&shrunk(s, 0), &shrunk(t, 3));
+        let is_away = || !(is_next(s) && is_next(t)) || intersect(&self.shrunk(s, 0), &self.shrunk(t, 3));
         if is_flat(s) || is_flat(t) {
             let is_shared = s.iter().any(|(v, _)| t.iter().any(|(w, _)| v == w));
             let is_seam = is_flat(s) && is_flat(t) && are_parallel(s, t);
             return !is_shared && !is_seam && !is_collinear(s) && !is_collinear(t) && is_away();
         }
         is_away()
+    }
+
+    /// The triangle with its sides moved inward, and with other indices.
+    fn shrunk(&self, corners: &Corners, first: u32) -> Corners {
+        let [a, b, c] = corners.map(|(_, p)| p.coords);
+        let sides = [(c - b).norm(), (a - c).norm(), (b - a).norm()];
+        let around = sides.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let incentre = (a * sides[0] + b * sides[1] + c * sides[2]) / around;
+        let radius = (b - a).cross(&(c - a)).norm() / around;
+        // Scaled about the centre of the inscribed circle, all sides move by the same distance.
+        let share = (INWARD * self.min_height_mm / radius.max(f64::MIN_POSITIVE)).min(MOST_INWARD);
+        let smaller = |p| Point3::from(incentre + (p - incentre) * (1.0 - share));
+        [(first, smaller(a)), (first + 1, smaller(b)), (first + 2, smaller(c))]
     }
 }
 
@@ -74,11 +89,3 @@ fn are_parallel(s: &Corners, t: &Corners) -> bool {
 
 /// Sine of the angle up to which two slivers may be of one seam.
 const MAX_SEAM_SINE: f64 = 0.1;
-
-/// The triangle, a little smaller and with other indices.
-fn shrunk(corners: &Corners, first: u32) -> Corners {
-    let [a, b, c] = corners.map(|(_, p)| p.coords);
-    let centroid = (a + b + c) / 3.0;
-    let smaller = |p| Point3::from(centroid + (p - centroid) * (1.0 - SHRINKAGE));
-    [(first, smaller(a)), (first + 1, smaller(b)), (first + 2, smaller(c))]
-}

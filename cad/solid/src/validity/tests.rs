@@ -167,22 +167,46 @@ fn excessive_searches_are_incomplete() {
 /// A facet without area closes a T-junction: it touches its neighbours, which do not intersect.
 #[test]
 fn a_sliver_is_one_fault() {
-    let mut split = cube();
-    // The edge from corner 0 to corner 1 gets a vertex in one of its two facets only.
-    split.positions.push(Point3::new(5.0, 0.0, 0.0));
-    let with_edge = split.triangles.iter().position(|t| t.contains(&0) && t.contains(&1)).unwrap();
-    let t = split.triangles[with_edge];
-    let (a, b) = if (0..3).any(|k| t[k] == 0 && t[(k + 1) % 3] == 1) { (0, 1) } else { (1, 0) };
-    let replaced = |from: u32| t.map(|v| if v == from { 8 } else { v });
-    split.triangles[with_edge] = replaced(b);
-    split.triangles.extend([replaced(a), [a, b, 8]]);
+    let mut split = cube_with_a_sliver(1.0, [0.0; 3]);
     let examination = examine(&split, &Expectation::default());
     assert_eq!(examination.faults.iter().map(|f| f.check).collect::<Vec<_>>(), ["degenerate facet"]);
     assert!(examination.is_valid() && !examination.is_flawless());
     // A facet that passes through another next to a sliver is found.
-    let apex = t.into_iter().find(|v| ![0, 1].contains(v)).unwrap();
-    split.positions[apex as usize] = Point3::new(5.0, 5.0, 15.0);
+    let divided = split.triangles.iter().find(|t| t.contains(&8)).unwrap();
+    let apex = divided.iter().find(|v| ![0, 1, 8].contains(*v)).unwrap();
+    split.positions[*apex as usize] = Point3::new(5.0, 5.0, 15.0);
     assert!(faults(&split).contains(&"self-intersection"));
+}
+
+/// A cube with an edge that is split in one facet only, closed by a facet without area.
+fn cube_with_a_sliver(scale: f64, shift: [f64; 3]) -> Mesh {
+    let mut mesh = cube();
+    mesh.positions.push(Point3::new(5.0, 0.0, 0.0));
+    let t = mesh.triangles.iter().position(|t| t.contains(&0) && t.contains(&1)).unwrap();
+    let corners = mesh.triangles[t];
+    let (a, b) = if (0..3).any(|k| corners[k] == 0 && corners[(k + 1) % 3] == 1) { (0, 1) } else { (1, 0) };
+    let replaced = |from: u32| corners.map(|v| if v == from { 8 } else { v });
+    mesh.triangles[t] = replaced(b);
+    mesh.triangles.extend([replaced(a), [a, b, 8]]);
+    mesh.positions.iter_mut().for_each(|p| *p = *p * scale + Vector3::from(shift));
+    mesh
+}
+
+/// Slivers excuse contact, whatever the size of the facets next to them, and no overlap.
+#[test]
+fn slivers_do_not_hide_an_overlap() {
+    for scale in [0.1, 1.0, 10.0] {
+        let first = cube_with_a_sliver(scale, [0.0; 3]);
+        for (overlap_mm, is_found) in [(-0.01, false), (1e-3, true), (0.01, true)] {
+            let aside = 10.0 * scale - overlap_mm;
+            let second = cube_with_a_sliver(scale, [aside, 0.3 * scale, 0.2 * scale]);
+            let mut both = first.clone();
+            both.triangles.extend(second.triangles.iter().map(|t| t.map(|v| v + 9)));
+            both.positions.extend(second.positions);
+            let found = faults(&both).contains(&"self-intersection");
+            assert_eq!(found, is_found, "{scale}, {overlap_mm} mm");
+        }
+    }
 }
 
 /// A closed prism around the z axis from -5 to 5 mm, of `n` sides.

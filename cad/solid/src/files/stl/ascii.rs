@@ -101,6 +101,7 @@ impl Reader {
             }
         }
         words.expect_end(b"endloop", b"loop", "endloop")?;
+        words.skip_remark();
         words.expect_end(b"endfacet", b"facet", "endfacet")?;
         words.skip_remark();
         self.facets.add(normal, corners);
@@ -226,7 +227,8 @@ impl<'a> Words<'a> {
             let before = self.at;
             let Some(word) = self.next_on_line() else { return };
             let is_facet = word.eq_ignore_ascii_case(b"facet") && (before == start || self.is_facet());
-            if is_facet || word.eq_ignore_ascii_case(b"endsolid") {
+            let is_end = [b"endsolid".as_slice(), b"endfacet", b"end"];
+            if is_facet || is_end.iter().any(|end| word.eq_ignore_ascii_case(end)) {
                 self.at = before;
                 return;
             }
@@ -358,6 +360,8 @@ mod tests {
             ),
             (one_line, 2, None),
             (format!("solid a\n{}endsolid\n", ONE.replace("endfacet", "endfacet remark")), 1, None),
+            (format!("solid a\n{}endsolid\n", ONE.replace("endloop", "endloop remark")), 1, None),
+            (format!("solid a\n{}endsolid\n", ONE.replace("endloop\nend", "endloop remark end")), 1, None),
             (format!("solid facet of a thing\n{ONE}endsolid facet of a thing\n"), 1, None),
             (format!("solid my facet normal part\n{ONE}endsolid my facet normal part\n"), 1, None),
             (format!("solid solid facet tool\n{ONE}endsolid solid facet tool\n"), 1, None),

@@ -27,6 +27,8 @@ const BYTES_PER_TAG: usize = 4;
 const MAX_BYTES: u64 = 1 << 30;
 /// Bytes by which the format of a picture is recognised.
 const BEGINNING: u64 = 16;
+/// Length of the record at the end of an archive without comment (APPNOTE 4.3.16).
+const END_BYTES: usize = 22;
 /// Most entries of an archive.
 const MAX_ENTRIES: usize = 10_000;
 
@@ -39,6 +41,8 @@ pub(super) struct Archive<'a> {
     names: Vec<String>,
     /// Names that are equivalent to an earlier one.
     repeated: Vec<String>,
+    /// Whether several entries have exactly the same name; the others are not read.
+    is_repeated: bool,
     /// Bytes that may still be unpacked.
     left: u64,
     /// Bytes that may be unpacked in all.
@@ -47,6 +51,14 @@ pub(super) struct Archive<'a> {
     tags_left: usize,
     /// Tags that the texts may have in all.
     most_tags: usize,
+}
+
+/// The number of entries that the end of the archive declares, without the extension for large archives.
+fn entries(bytes: &[u8], zip: &ZipArchive<Cursor<&[u8]>>) -> Option<usize> {
+    let end = bytes.len().checked_sub(END_BYTES + zip.comment().len())?;
+    let number = bytes.get(end..)?.strip_prefix(b"PK\x05\x06")?.get(6..8)?;
+    let number = u16::from_le_bytes([number[0], number[1]]);
+    (number != u16::MAX).then_some(usize::from(number))
 }
 
 impl<'a> Archive<'a> {
@@ -75,14 +87,31 @@ impl<'a> Archive<'a> {
             }
             names.push(name.into_owned());
         }
+        // The library keeps the last of several entries of one name.
+        let is_repeated = entries(bytes, &zip).is_some_and(|entries| entries > zip.len());
         let most = MAX_BYTES.min(FREE_BYTES + BYTES_PER_BYTE * bytes.len() as u64);
         let most_tags = FREE_TAGS + bytes.len() / BYTES_PER_TAG;
-        Ok(Self { zip, parts, names, repeated, left: most, most, tags_left: most_tags, most_tags })
+        Ok(Self {
+            zip,
+            parts,
+            names,
+            repeated,
+            is_repeated,
+            left: most,
+            most,
+            tags_left: most_tags,
+            most_tags,
+        })
     }
 
     /// Names of parts that are equivalent to an earlier one.
     pub(super) fn repeated(&self) -> &[String] {
         &self.repeated
+    }
+
+    /// Whether several entries have exactly the same name.
+    pub(super) fn is_repeated(&self) -> bool {
+        self.is_repeated
     }
 
     /// Names of all parts, in the order of the archive.

@@ -100,6 +100,9 @@ pub(super) fn check_references(resources: &Element, findings: &mut Findings) {
 fn check_multiproperties(element: &Element, kinds: &HashMap<String, String>, findings: &mut Findings) {
     let ids = element.attribute("pids").unwrap_or_default().split_whitespace();
     let listed: Vec<&str> = ids.map(|id| kinds.get(&resource_id(id)).map_or("", String::as_str)).collect();
+    // Of one layer and the next; without methods, layers are mixed.
+    let methods: Vec<&str> =
+        element.attribute("blendmethods").unwrap_or_default().split_whitespace().collect();
     let count = |names: &[&str]| listed.iter().filter(|kind| names.contains(kind)).count();
     for (is_wrong, problem) in [
         (
@@ -113,5 +116,22 @@ fn check_multiproperties(element: &Element, kinds: &HashMap<String, String>, fin
         if is_wrong {
             findings.error("materials", "3MF materials 5", &format!("<multiproperties> refers to {problem}"));
         }
+    }
+    // Files of the consortium that must pass do this.
+    if count(&["texture2d"]) > 0 {
+        let detail = "<multiproperties> refers to a <texture2d>, which is no group of properties";
+        findings.warning("materials", "3MF materials 5", detail);
+    }
+    if methods.len() >= listed.len().max(1) {
+        let detail =
+            format!("<multiproperties> has {} blendmethods for {} layers", methods.len(), listed.len());
+        findings.error("materials", "3MF materials 5", &detail);
+    }
+    if let Some(unknown) = methods.iter().find(|method| !["mix", "multiply"].contains(method)) {
+        findings.error(
+            "materials",
+            "3MF materials 5",
+            &format!("{unknown} is no blend method: mix or multiply"),
+        );
     }
 }

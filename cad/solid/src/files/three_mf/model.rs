@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::archive::malformed;
 use super::core_spec::{
-    OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, is_metadata, is_supported, unit_mm,
+    OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, SLICER_CHECK, is_metadata, is_supported, unit_mm,
 };
 use super::document::{Document, Element, Namespace, RawMesh, TriangleProperties, read_document};
 use super::error::ThreeMfReadError;
@@ -96,6 +96,8 @@ pub(super) struct ModelReader {
     pub(super) thumbnails: Vec<(String, String)>,
     /// Parts of the textures of the last model.
     pub(super) textures: BTreeSet<String>,
+    /// Unique identifiers of the package, with the names of their elements.
+    uuids: HashSet<(&'static str, String)>,
 }
 
 impl ModelReader {
@@ -289,9 +291,10 @@ impl ModelReader {
     fn check_names(&mut self, document: &Document) {
         for (name, count) in &document.unknown {
             let is_usual = SLICER_ATTRIBUTES.contains(&name.as_str());
-            let level = if is_usual { Level::Note } else { Level::Error };
+            let (check, level) =
+                if is_usual { (SLICER_CHECK, Level::Note) } else { ("vocabulary", Level::Error) };
             let detail = format!("{name} is not in the core specification");
-            self.findings.add("vocabulary", level, *count, "3MF core 2.3.2", &detail);
+            self.findings.add(check, level, *count, "3MF core 2.3.2", &detail);
         }
         for (name, count) in &document.forbidden {
             let detail = format!("{name} is not allowed");
@@ -397,6 +400,13 @@ impl ModelReader {
             if count > 0 {
                 let detail = format!("{count} elements <{name}> without a UUID");
                 self.findings.add("identifier", Level::Error, count, paragraph, &detail);
+            }
+            for element in elements {
+                let Some(uuid) = element.attribute_in(PRODUCTION, "UUID") else { continue };
+                if !self.uuids.insert((name, uuid.trim().to_ascii_lowercase())) {
+                    let detail = format!("two elements <{name}> have the same UUID");
+                    self.findings.warning("identifier", paragraph, &detail);
+                }
             }
         }
     }

@@ -42,6 +42,9 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
         let detail = format!("two parts have equivalent names: {name}");
         reader.findings.error("part name", "OPC M1.12", &detail);
     }
+    if archive.is_repeated() {
+        reader.findings.error("part name", "OPC M1.12", "several entries of the archive have the same name");
+    }
     check_archive(&mut archive, &mut reader.findings);
     let types = ContentTypes::read(&mut archive, &mut reader.findings)?;
     if types.is_none() {

@@ -90,7 +90,7 @@ fn each_fault_is_named() {
     for (model, check) in [
         (model_of(r#"unit="parsec""#, "", &object(1), item), "unit"),
         (model_of(r#"colour="red""#, "", &object(1), item), "vocabulary"),
-        (model_of("", "", &object(1), r#"<item objectid="1" printable="1"/>"#), "vocabulary"),
+        (model_of("", "", &object(1), r#"<item objectid="1" printable="1"/>"#), "slicer attribute"),
         (model_of("", "<plate/>", &object(1), item), "vocabulary"),
         (model_of("", r#"<metadata name="Foo">x</metadata>"#, &object(1), item), "metadata"),
         (model_of("", &r#"<metadata name="Title">x</metadata>"#.repeat(2), &object(1), item), "metadata"),
@@ -470,13 +470,13 @@ fn usual_deviations_are_no_errors() {
     let item = r#"<item objectid="1" printable="1" transform="1 0 0 0 1 0 0 0 1 0 0 -3"/>"#;
     let metadata = r#"<metadata name="Foo">x</metadata>"#;
     let found = read(&model_of("", metadata, &object(1), item));
-    assert_eq!(checks(&found), ["vocabulary", "metadata", "outside"]);
+    assert_eq!(checks(&found), ["slicer attribute", "metadata", "outside"]);
     assert!(found.faults.iter().all(|fault| fault.level < Level::Error), "{:?}", found.faults);
     assert_eq!(found.faults[1].paragraph, Some("3MF core 3.4.1"));
     // Triangles that a person painted in a slicer.
     let painted = object(1).replacen("<triangle ", r#"<triangle paint_color="4" face_property="{}" "#, 1);
     let found = read(&model_of("", "", &painted, r#"<item objectid="1"/>"#));
-    assert_eq!(checks(&found), ["vocabulary"; 2]);
+    assert_eq!(checks(&found), ["slicer attribute"; 2]);
     assert!(found.faults.iter().all(|fault| fault.level == Level::Note), "{:?}", found.faults);
     let other = painted.replace("paint_color", "colour");
     assert!(read(&model_of("", "", &other, item)).faults.iter().any(|fault| fault.level == Level::Error));
@@ -541,11 +541,15 @@ fn resources_of_the_materials_extension_are_checked() {
     };
     let colors = r##"<m:colorgroup id="7"><m:color color="#FF0000"/></m:colorgroup>"##;
     assert_eq!(checks(&with(colors)), [""; 0]);
+    let layers = r#"<m:multiproperties id="8" pids="5 7" blendmethods="multiply"><m:multi pindices="0 0"/></m:multiproperties>"#;
+    assert_eq!(checks(&with(&format!("{BASE}{colors}{layers}"))), [""; 0]);
     for resources in [
         colors.replace(r##" color="#FF0000""##, ""),
         colors.replace("#FF0000", "red"),
         format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="7 7"><m:multi pindices="0 0"/></m:multiproperties>"#),
         format!(r#"{BASE}<m:multiproperties id="8" pids="5 5"><m:multi pindices="0 0"/></m:multiproperties>"#),
+        format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="5 7" blendmethods="mix mix"><m:multi pindices="0 0"/></m:multiproperties>"#),
+        format!(r#"{BASE}{colors}<m:multiproperties id="8" pids="5 7" blendmethods="add"><m:multi pindices="0 0"/></m:multiproperties>"#),
         r#"<m:texture2d id="9" path="/a.gif" contenttype="image/gif"/>"#.to_owned(),
         format!(r#"{colors}<m:texture2dgroup id="8" texid="7"><m:tex2coord u="0" v="0"/></m:texture2dgroup>"#),
         format!(r#"{colors}<m:compositematerials id="8" matid="7" matindices="0"><m:composite values="1"/></m:compositematerials>"#),
@@ -615,6 +619,44 @@ fn separate_parts_and_other_units_are_read() {
     assert!((found.meshes[0].mesh.volume_mm3() - 121_500.0).abs() < 1e-6);
     let missing = read_three_mf(&packed(&parts[..3])).unwrap();
     assert!(checks(&missing).contains(&"reference"));
+}
+
+/// The library reads the last of several entries with one name: another reader may read the first.
+#[test]
+fn entries_of_the_same_name_are_reported() {
+    let (relationships, model) = (relationships(), model_of("", "", &object(1), r#"<item objectid="1"/>"#));
+    let other = USUAL_MODEL.replace("3dmodel", "3dmodex");
+    let parts = [
+        (CONTENT_TYPES, TYPES),
+        (RELATIONSHIPS, relationships.as_str()),
+        (other.as_str(), model.as_str()),
+        (USUAL_MODEL, model.as_str()),
+    ];
+    let mut bytes = packed(&parts);
+    assert!(!checks(&read_three_mf(&bytes).unwrap()).contains(&"part name"));
+    for at in 0..bytes.len() - other.len() {
+        if bytes[at..].starts_with(other.as_bytes()) {
+            bytes[at..at + other.len()].copy_from_slice(USUAL_MODEL.as_bytes());
+        }
+    }
+    assert_eq!(checks(&read_three_mf(&bytes).unwrap()), ["part name"]);
+}
+
+#[test]
+fn identifiers_are_unique() {
+    let other = UUID.replace("01cbb956", "01cbb957");
+    let model = |second: &str| {
+        let items = format!(r#"<item objectid="1" {UUID}/><item objectid="1" {second}/>"#);
+        let object = object(1).replace("<object ", &format!("<object {UUID} "));
+        model_of(r#"requiredextensions="p""#, "", &object, &items)
+            .replace("<build>", &format!("<build {UUID}>"))
+    };
+    let identifiers = |second: &str| {
+        let found = read(&model(second));
+        found.faults.iter().filter(|fault| fault.check == "identifier").map(|f| f.level).collect::<Vec<_>>()
+    };
+    assert_eq!(identifiers(&other), []);
+    assert_eq!(identifiers(UUID), [Level::Warning]);
 }
 
 #[test]

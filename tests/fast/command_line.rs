@@ -37,7 +37,7 @@ fn first_command_makes_a_valid_set() {
     ] {
         assert!(written.contains_key(name), "{name} is missing");
     }
-    assert_eq!(written.len(), 34, "{:?}", written.keys());
+    assert_eq!(written.len(), 35, "{:?}", written.keys());
 
     let manifest: Value = serde_json::from_slice(&written["manifest.json"]).unwrap();
     let listed = manifest["files"].as_array().unwrap();

@@ -43,8 +43,8 @@ const MESH: [&str; 9] = [
 /// file is judged by its specification.
 const MUST: [&str; 4] = ["identifier", "metadata", "property", "thumbnail"];
 
-/// A check of attributes that slicers need, and that the specification forbids.
-const SLICER: &str = "slicer attribute";
+/// The check of names outside of the specification; for attributes that slicers need, it is otherwise a note.
+const VOCABULARY: &str = "vocabulary";
 
 impl Judgement {
     /// Sets the levels of the faults of a file as a whole, or of a part of a 3MF.
@@ -54,7 +54,7 @@ impl Judgement {
                 fault.paragraph = Some("3MF core 4.1");
             }
             let is_of_spec = self.purpose == Some(Purpose::Spec);
-            if is_of_spec && fault.check == SLICER {
+            if is_of_spec && fault.check == VOCABULARY {
                 fault.level = Level::Error;
             }
             let is_strict = is_of_spec && MUST.contains(&fault.check);

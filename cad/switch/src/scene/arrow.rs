@@ -76,6 +76,7 @@ pub(super) struct Way {
 }
 
 /// Where the arrow of bodies meets them: a point of their surface, and the half of their thickness there, mm.
+#[derive(Clone, Copy)]
 struct Contact {
     point: Point3,
     half_mm: f64,
@@ -91,87 +92,139 @@ pub(super) fn motion_arrow(
     way: &Way,
     toward_camera: Vector3,
 ) -> Option<[Point3; 2]> {
-    let out = way.by.try_normalize(1e-9)?;
-    let bounds = moved.iter().map(|target| (target.low, target.high));
-    let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))?;
-    let (centre, size) = (nalgebra::center(&low, &high), high - low);
-    let extent = |direction: Vector3| size.dot(&direction.abs()) / 2.0;
-    let front = centre - out * extent(out);
-    let all: Vec<&Target<'_>> = moved.iter().chain(others).copied().collect();
-    let ends = |contact: Contact| arrow(contact, others, way, out);
-    let visible = |[from, to]: &[Point3; 2]| {
-        let at = |i: u32| from + (to - from) * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
-        let is_free = |i: &u32| !is_hit(&all, at(*i) + toward_camera * AIR_MM, toward_camera);
-        (0..SAMPLES).filter(is_free).count() as f64 / f64::from(SAMPLES)
-    };
-    // A hole around the middle, as in a nut, counts as material.
-    let sideways = (toward_camera - out * toward_camera.dot(&out)).try_normalize(1e-9);
-    let sideways = sideways.unwrap_or_else(|| out.yzx().cross(&out).normalize());
-    let across = out.cross(&sideways);
-    let is_enclosed = || [sideways, -sideways, across, -across].iter().all(|d| is_hit(moved, centre, *d));
+    let group = Group::new(moved, others, way, toward_camera)?;
     if let Some(axis) = way.axis {
-        // In front of what is on the axis: at the foremost face around it, as near to the camera as it reaches.
-        let around = |step: u32| axis + sideways * (f64::from(step) * AROUND_MM / f64::from(STEPS));
-        let contacts =
-            (1..=STEPS).filter_map(|step| contact(moved, around(step) + out * (front - axis).dot(&out), out));
-        let height = |c: &Contact| c.point.coords.dot(&out);
-        let foremost = contacts
-            .reduce(|best, other| if height(&other) <= height(&best) + SAME_MM { other } else { best });
-        return foremost.map(ends);
+        return group.around(axis).map(|contact| group.arrow(contact));
     }
-    let hole = || is_enclosed().then(|| Contact { point: front, half_mm: extent(out) });
-    let middle = contact(moved, front, out).or_else(hole);
-    let is_met =
-        |contact: &Contact| first_hit(others, contact.point, -out).is_some_and(|free| free <= way.by.norm());
-    let beside = [sideways, across, -across, -sideways].into_iter().flat_map(|direction| {
-        [0.5, 1.0].map(|share| front + direction * (share * BESIDE * extent(direction)))
-    });
-    let beside: Vec<Contact> = beside.filter_map(|place| contact(moved, place, out)).collect();
-    let some_are_met = beside.iter().any(is_met);
-    let is_middle_met = middle.as_ref().is_some_and(is_met) || !some_are_met;
-    let middle = middle.map(&ends);
-    if let Some(middle) = middle.filter(|middle| is_middle_met && visible(middle) >= VISIBLE) {
-        return Some(middle);
+    let middle = group.contact(group.front).or_else(|| group.hole());
+    let visible = |contact: &Contact| group.visible(group.arrow(*contact));
+    if let Some(middle) = middle.filter(|middle| group.is_met(middle) && visible(middle) >= VISIBLE) {
+        return Some(group.arrow(middle));
     }
-    // The first of the most visible ones, among those that end on a body.
-    let middle = middle.map(|arrow| (is_middle_met, arrow));
-    let beside = beside.into_iter().map(|contact| (is_met(&contact), ends(contact)));
-    let merit =
-        |(is_met, arrow): (bool, [Point3; 2])| (visible(&arrow) + f64::from(u8::from(is_met)) * MET, arrow);
-    let best = middle.into_iter().chain(beside).map(merit);
-    let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
-    if !way.motion.stays() && best.is_some_and(|(_, arrow)| visible(&arrow) < VISIBLE) {
-        // The body hides the way behind it: the arrow goes on in front.
-        let foremost = contact(moved, front, out)
-            .or_else(|| contact(moved, front + sideways * (0.5 * BESIDE * extent(sideways)), out));
-        return foremost.map(|contact| beyond(&contact, out));
+    let beside = group.beside();
+    if let Some(middle) =
+        middle.filter(|middle| !beside.iter().any(|c| group.is_met(c)) && visible(middle) >= VISIBLE)
+    {
+        return Some(group.arrow(middle));
     }
-    Some(best.map_or_else(|| ends(Contact { point: front, half_mm: extent(out) }), |(_, arrow)| arrow))
+    // The first of the most visible ones, with a preference for those that end on a body.
+    let merit = |contact: &Contact| visible(contact) + f64::from(u8::from(group.is_met(contact))) * MET;
+    let best = middle.into_iter().chain(beside).map(|contact| (merit(&contact), contact));
+    let best =
+        best.reduce(|best, other| if other.0 > best.0 { other } else { best }).map(|(_, contact)| contact);
+    let best = best.unwrap_or(group.in_air());
+    if !way.motion.stays() && visible(&best) < VISIBLE {
+        // The bodies hide the way behind them: the arrow goes on in front.
+        return Some(beyond(&middle.unwrap_or(best), group.out));
+    }
+    Some(group.arrow(best))
 }
 
-/// The contact on a line in the direction `out`; `None` where it misses the bodies.
-fn contact(moved: &[&Target<'_>], place: Point3, out: Vector3) -> Option<Contact> {
-    let from = place - out;
-    let distances = || moved.iter().flat_map(|target| target.hits(from, out));
-    let (first, last) = (distances().min_by(f64::total_cmp)?, distances().max_by(f64::total_cmp)?);
-    Some(Contact { point: from + out * first, half_mm: (last - first) / 2.0 })
-}
-
-fn arrow(
-    Contact { point, half_mm }: Contact,
-    others: &[&Target<'_>],
-    &Way { by, motion, .. }: &Way,
+/// Bodies that move together, and what is around them.
+struct Group<'a> {
+    moved: &'a [&'a Target<'a>],
+    others: &'a [&'a Target<'a>],
+    way: &'a Way,
+    toward_camera: Vector3,
+    /// Direction of the displacement.
     out: Vector3,
-) -> [Point3; 2] {
-    // To the middle of the place: the tips of long bodies end far behind what receives them.
-    let way_mm = by.norm() - half_mm;
-    let length_mm = if way_mm > LEAST_MM { way_mm } else { by.norm() };
-    let free_mm = first_hit(others, point, -out).filter(|free| *free > LEAST_MM);
-    let end = point - out * free_mm.map_or(length_mm, |free| free.min(length_mm));
-    match motion.stays() {
-        true => [point, end],
-        false if (point - end).norm() > LEAST_MM => [end, point],
-        false => beyond(&Contact { point, half_mm }, out),
+    /// Directions across it: toward the camera, and to the side.
+    across: [Vector3; 2],
+    /// Middle of the box of the bodies, and that of its face toward their place.
+    centre: Point3,
+    front: Point3,
+    size: Vector3,
+}
+
+impl<'a> Group<'a> {
+    fn new(
+        moved: &'a [&'a Target<'a>],
+        others: &'a [&'a Target<'a>],
+        way: &'a Way,
+        toward_camera: Vector3,
+    ) -> Option<Self> {
+        let out = way.by.try_normalize(1e-9)?;
+        let bounds = moved.iter().map(|target| (target.low, target.high));
+        let (low, high) = bounds.reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))?;
+        let sideways = (toward_camera - out * toward_camera.dot(&out)).try_normalize(1e-9);
+        let sideways = sideways.unwrap_or_else(|| out.yzx().cross(&out).normalize());
+        let (centre, size) = (nalgebra::center(&low, &high), high - low);
+        let front = centre - out * (size.dot(&out.abs()) / 2.0);
+        let across = [sideways, out.cross(&sideways)];
+        Some(Self { moved, others, way, toward_camera, out, across, centre, front, size })
+    }
+
+    /// Half of the size of the box in a direction, mm.
+    fn extent(&self, direction: Vector3) -> f64 {
+        self.size.dot(&direction.abs()) / 2.0
+    }
+
+    /// The contact on the line through `place` along the displacement; `None` where it misses the bodies.
+    fn contact(&self, place: Point3) -> Option<Contact> {
+        let from = place - self.out;
+        let distances = || self.moved.iter().flat_map(|target| target.hits(from, self.out));
+        let (first, last) = (distances().min_by(f64::total_cmp)?, distances().max_by(f64::total_cmp)?);
+        Some(Contact { point: from + self.out * first, half_mm: (last - first) / 2.0 })
+    }
+
+    /// The middle, as if it were material.
+    fn in_air(&self) -> Contact {
+        Contact { point: self.front, half_mm: self.extent(self.out) }
+    }
+
+    /// The middle of a hole, as in a nut; `None` if the middle is open to a side.
+    fn hole(&self) -> Option<Contact> {
+        let [sideways, across] = self.across;
+        let sides = [sideways, -sideways, across, -across];
+        sides.iter().all(|side| is_hit(self.moved, self.centre, *side)).then(|| self.in_air())
+    }
+
+    /// Contacts beside the middle, those toward the camera first.
+    fn beside(&self) -> Vec<Contact> {
+        let [sideways, across] = self.across;
+        let places = [sideways, across, -across, -sideways].into_iter().flat_map(|direction| {
+            [0.5, 1.0].map(|share| self.front + direction * (share * BESIDE * self.extent(direction)))
+        });
+        places.filter_map(|place| self.contact(place)).collect()
+    }
+
+    /// The contact in front of what is on an axis: at the foremost face around it, as near to the camera as it reaches.
+    fn around(&self, axis: Point3) -> Option<Contact> {
+        let level = self.out * (self.front - axis).dot(&self.out);
+        let place =
+            |step: u32| axis + level + self.across[0] * (f64::from(step) * AROUND_MM / f64::from(STEPS));
+        let contacts = (1..=STEPS).filter_map(|step| self.contact(place(step)));
+        let height = |c: &Contact| c.point.coords.dot(&self.out);
+        contacts.reduce(|best, other| if height(&other) <= height(&best) + SAME_MM { other } else { best })
+    }
+
+    /// Returns whether the way from a contact meets a body.
+    fn is_met(&self, contact: &Contact) -> bool {
+        first_hit(self.others, contact.point, -self.out).is_some_and(|free| free <= self.way.by.norm())
+    }
+
+    /// The visible share of an arrow.
+    fn visible(&self, [from, to]: [Point3; 2]) -> f64 {
+        let at = |i: u32| from + (to - from) * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
+        let is_hidden = |place: Point3| {
+            let place = place + self.toward_camera * AIR_MM;
+            [self.moved, self.others].iter().any(|targets| is_hit(targets, place, self.toward_camera))
+        };
+        (0..SAMPLES).filter(|i| !is_hidden(at(*i))).count() as f64 / f64::from(SAMPLES)
+    }
+
+    fn arrow(&self, contact: Contact) -> [Point3; 2] {
+        let Contact { point, half_mm } = contact;
+        // To the middle of the place: the tips of long bodies end far behind what receives them.
+        let by_mm = self.way.by.norm();
+        let length_mm = if by_mm - half_mm > LEAST_MM { by_mm - half_mm } else { by_mm };
+        let free_mm = first_hit(self.others, point, -self.out).filter(|free| *free > LEAST_MM);
+        let end = point - self.out * free_mm.map_or(length_mm, |free| free.min(length_mm));
+        match self.way.motion.stays() {
+            true => [point, end],
+            false if (point - end).norm() > LEAST_MM => [end, point],
+            false => beyond(&contact, self.out),
+        }
     }
 }
 

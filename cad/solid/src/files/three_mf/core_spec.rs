@@ -40,9 +40,6 @@ pub(super) const SLICER_ATTRIBUTES: [&str; 6] = [
     "face_property of <triangle>",
 ];
 
-/// The check that reports them.
-pub(super) const SLICER_CHECK: &str = "slicer attribute";
-
 /// Elements of the core namespace with their attributes.
 const ELEMENTS: [(&str, &[&str]); 16] = [
     ("model", &["unit", "requiredextensions", "recommendedextensions"]),

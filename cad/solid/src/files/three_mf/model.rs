@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::archive::malformed;
 use super::core_spec::{
-    OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, SLICER_CHECK, is_metadata, is_supported, unit_mm,
+    OBJECT_TYPES, OWN, PRODUCTION, SLICER_ATTRIBUTES, is_metadata, is_supported, unit_mm,
 };
 use super::document::{Document, Element, Namespace, RawMesh, TriangleProperties, read_document};
 use super::error::ThreeMfReadError;
@@ -291,10 +291,9 @@ impl ModelReader {
     fn check_names(&mut self, document: &Document) {
         for (name, count) in &document.unknown {
             let is_usual = SLICER_ATTRIBUTES.contains(&name.as_str());
-            let (check, level) =
-                if is_usual { (SLICER_CHECK, Level::Note) } else { ("vocabulary", Level::Error) };
+            let level = if is_usual { Level::Note } else { Level::Error };
             let detail = format!("{name} is not in the core specification");
-            self.findings.add(check, level, *count, "3MF core 2.3.2", &detail);
+            self.findings.add("vocabulary", level, *count, "3MF core 2.3.2", &detail);
         }
         for (name, count) in &document.forbidden {
             let detail = format!("{name} is not allowed");

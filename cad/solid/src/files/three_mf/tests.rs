@@ -90,7 +90,7 @@ fn each_fault_is_named() {
     for (model, check) in [
         (model_of(r#"unit="parsec""#, "", &object(1), item), "unit"),
         (model_of(r#"colour="red""#, "", &object(1), item), "vocabulary"),
-        (model_of("", "", &object(1), r#"<item objectid="1" printable="1"/>"#), "slicer attribute"),
+        (model_of("", "", &object(1), r#"<item objectid="1" printable="1"/>"#), "vocabulary"),
         (model_of("", "<plate/>", &object(1), item), "vocabulary"),
         (model_of("", r#"<metadata name="Foo">x</metadata>"#, &object(1), item), "metadata"),
         (model_of("", &r#"<metadata name="Title">x</metadata>"#.repeat(2), &object(1), item), "metadata"),
@@ -470,13 +470,13 @@ fn usual_deviations_are_no_errors() {
     let item = r#"<item objectid="1" printable="1" transform="1 0 0 0 1 0 0 0 1 0 0 -3"/>"#;
     let metadata = r#"<metadata name="Foo">x</metadata>"#;
     let found = read(&model_of("", metadata, &object(1), item));
-    assert_eq!(checks(&found), ["slicer attribute", "metadata", "outside"]);
+    assert_eq!(checks(&found), ["vocabulary", "metadata", "outside"]);
     assert!(found.faults.iter().all(|fault| fault.level < Level::Error), "{:?}", found.faults);
     assert_eq!(found.faults[1].paragraph, Some("3MF core 3.4.1"));
     // Triangles that a person painted in a slicer.
     let painted = object(1).replacen("<triangle ", r#"<triangle paint_color="4" face_property="{}" "#, 1);
     let found = read(&model_of("", "", &painted, r#"<item objectid="1"/>"#));
-    assert_eq!(checks(&found), ["slicer attribute"; 2]);
+    assert_eq!(checks(&found), ["vocabulary"; 2]);
     assert!(found.faults.iter().all(|fault| fault.level == Level::Note), "{:?}", found.faults);
     let other = painted.replace("paint_color", "colour");
     assert!(read(&model_of("", "", &other, item)).faults.iter().any(|fault| fault.level == Level::Error));

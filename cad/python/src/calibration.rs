@@ -98,7 +98,7 @@ impl Model {
     }
 
     /// Returns (name, unit, value) of the constants of a draw; zeros give the fitted ones.
-    fn constants(&self, py: Python<'_>, z: Vec<f64>) -> PyResult<Vec<(String, &'static str, f64)>> {
+    fn constants(&self, py: Python<'_>, z: Vec<f64>) -> PyResult<Vec<(String, String, f64)>> {
         self.file.drawn_constants(&z, &self.name).or_raise(py)
     }
 }

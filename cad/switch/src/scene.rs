@@ -19,6 +19,7 @@ use pinswitch_solid::render::{Body, Picture, View, render};
 use pinswitch_solid::solid::Solid;
 
 use annotated::{Annotated, Annotation};
+pub(crate) use arrow::distance_to_mesh;
 pub use bench::{Bench, Bodies, Item};
 pub(crate) use bench::{COUPON, CUT_PIN, GUIDE_PULLEY};
 pub use illustration::{Arrows, Illustration, Motion, Move, ToolArrow, Upright};

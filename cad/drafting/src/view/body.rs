@@ -131,7 +131,7 @@ impl Run {
         })
     }
 
-    /// The piece between two shares of a curve; `None` if it has no extent along the axis.
+    /// The piece between two shares of a curve; `None` if it lacks an extent along the axis.
     fn new(curve: &Curve, axis: usize, [from, to]: [f64; 2]) -> Option<Self> {
         let other = 1 - axis;
         let snapped = |share: f64| curve.at(share).map(|x| (x / GRID_MM).round() * GRID_MM);
@@ -306,6 +306,39 @@ fn seen_contour(contour: &Contour, flipped: bool, side: Side) -> Vec<Curve> {
 mod tests {
     use super::*;
     use pinswitch_solid::profile::Point2;
+
+    /// A line crosses the same pieces in strips, and after those out of its reach are left out, as among all.
+    #[test]
+    fn lines_cross_the_same_pieces_in_strips() {
+        let teeth = (0..40).map(|i| {
+            let (angle, radius) = (f64::from(i) / 40.0 * TAU, if i % 2 == 0 { 20.0 } else { 17.5 });
+            Point2::new(radius * libm::cos(angle), radius * libm::sin(angle))
+        });
+        let outline = Contour::polygon(teeth.collect());
+        let disc = Contour::circle(Point2::new(3.0, 1.0), 2.0).reversed();
+        let upright = Solid::prism(&outline, &[disc], 0.0, 4.0, 0.0).unwrap();
+        let sloped = Solid::prism(&Contour::circle(Point2::origin(), 9.0), &[], 0.0, 4.0, 0.1).unwrap();
+        for (solid, is_sloped) in [(upright, false), (sloped, true)] {
+            let body = Body::new(&solid, Pose::upright(0.0), Side::Above);
+            assert_eq!(body.walls.iter().any(|wall| wall.strips.is_none()), is_sloped);
+            for (axis, step) in (0..2).flat_map(|axis| (-2300..2300).map(move |step| (axis, step))) {
+                let (value, z) = (f64::from(step) * 0.01, 1.7);
+                let mut found = Vec::new();
+                body.crossings(axis, value, z, &mut found);
+                let walls = body.walls.iter().filter(|wall| wall.from_mm < z && z < wall.to_mm);
+                let all = walls.flat_map(|wall| {
+                    let share = (z - wall.from_mm) / (wall.to_mm - wall.from_mm);
+                    let curves = wall.lower.iter().zip(&wall.upper).map(move |(a, b)| a.between(b, share));
+                    curves.flat_map(|curve| Run::all(curve, axis)).filter_map(|run| run.crossing(value))
+                });
+                let mut all: Vec<f64> = all.collect();
+                found.sort_by(f64::total_cmp);
+                all.sort_by(f64::total_cmp);
+                assert_eq!(found.len(), all.len(), "{axis}, {value}: {found:?} and {all:?}");
+                assert!(found.iter().zip(&all).all(|(a, b)| (a - b).abs() < 1e-9));
+            }
+        }
+    }
 
     #[test]
     fn crossings_are_the_ends_of_material() {

@@ -44,8 +44,17 @@ impl Dimensions {
         })
     }
 
-    /// Returns the tips of the ends in pictures, each with the direction of its pull: on the load side, and the other.
+    /// Returns the tips of the ends in pictures, each with the direction of its pull: on the load side, and the other. On a
+    /// joint, they are beyond anchor and proximal link.
     pub(crate) fn tendon_tips(&self) -> [(Point2, Vector2); 2] {
+        if let Some(joint) = self.joint() {
+            let contact = joint.contact(joint.assembled_deg);
+            let ways = [
+                [contact.anchor, joint.distal_end(&contact)],
+                [joint.proximal.mouth(), joint.proximal_end()],
+            ];
+            return ways.map(|[from, tip]| (tip, (tip - from).normalize()));
+        }
         let (ends, lengths) = (self.tendon_ends(), self.shown_ends_mm());
         [0, 1].map(|i| (ends[i].start + ends[i].along * lengths[i], ends[i].along))
     }

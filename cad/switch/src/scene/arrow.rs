@@ -62,6 +62,11 @@ fn first_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> Optio
     targets.iter().flat_map(|target| target.hits(from, direction)).min_by(f64::total_cmp)
 }
 
+/// Returns the distance along a ray to a mesh, mm; `None` if the ray misses it. `direction` is a unit vector.
+pub(crate) fn distance_to_mesh(mesh: &Mesh, from: Point3, direction: Vector3) -> Option<f64> {
+    first_hit(&[&Target::new(mesh)?], from, direction)
+}
+
 fn is_hit(targets: &[&Target<'_>], from: Point3, direction: Vector3) -> bool {
     targets.iter().any(|target| target.hits(from, direction).next().is_some())
 }

@@ -27,8 +27,10 @@ const BYTES_PER_TAG: usize = 4;
 const MAX_BYTES: u64 = 1 << 30;
 /// Bytes by which the format of a picture is recognised.
 const BEGINNING: u64 = 16;
-/// Length of the record at the end of an archive without comment (APPNOTE 4.3.16).
-const END_BYTES: usize = 22;
+/// Length of the header of an entry in the central directory without name, extra field and comment, and the place of the lengths
+/// of these three in it (APPNOTE 4.3.12).
+const HEADER_BYTES: usize = 46;
+const LENGTHS: std::ops::Range<usize> = 28..34;
 /// Most entries of an archive.
 const MAX_ENTRIES: usize = 10_000;
 
@@ -53,12 +55,18 @@ pub(super) struct Archive<'a> {
     most_tags: usize,
 }
 
-/// The number of entries that the end of the archive declares, without the extension for large archives.
-fn entries(bytes: &[u8], zip: &ZipArchive<Cursor<&[u8]>>) -> Option<usize> {
-    let end = bytes.len().checked_sub(END_BYTES + zip.comment().len())?;
-    let number = bytes.get(end..)?.strip_prefix(b"PK\x05\x06")?.get(6..8)?;
-    let number = u16::from_le_bytes([number[0], number[1]]);
-    (number != u16::MAX).then_some(usize::from(number))
+/// The number of headers in the central directory, at most one more than `most`.
+fn headers(bytes: &[u8], zip: &ZipArchive<Cursor<&[u8]>>, most: usize) -> usize {
+    let start = usize::try_from(zip.central_directory_start()).unwrap_or(usize::MAX);
+    let mut rest = bytes.get(start..).unwrap_or_default();
+    let mut number = 0;
+    while number <= most && rest.starts_with(b"PK\x01\x02") {
+        number += 1;
+        let lengths = rest.get(LENGTHS).unwrap_or_default().chunks_exact(2);
+        let variable: usize = lengths.map(|pair| usize::from(u16::from_le_bytes([pair[0], pair[1]]))).sum();
+        rest = rest.get(HEADER_BYTES + variable..).unwrap_or_default();
+    }
+    number
 }
 
 impl<'a> Archive<'a> {
@@ -88,7 +96,7 @@ impl<'a> Archive<'a> {
             names.push(name.into_owned());
         }
         // The library keeps the last of several entries of one name.
-        let is_repeated = entries(bytes, &zip).is_some_and(|entries| entries > zip.len());
+        let is_repeated = headers(bytes, &zip, zip.len()) > zip.len();
         let most = MAX_BYTES.min(FREE_BYTES + BYTES_PER_BYTE * bytes.len() as u64);
         let most_tags = FREE_TAGS + bytes.len() / BYTES_PER_TAG;
         Ok(Self {

@@ -119,7 +119,7 @@ fn check_multiproperties(element: &Element, kinds: &HashMap<String, String>, fin
     }
     // Files of the consortium that must pass do this.
     if count(&["texture2d"]) > 0 {
-        let detail = "<multiproperties> refers to a <texture2d>, which is no group of properties";
+        let detail = "<multiproperties> refers to a <texture2d>, which is not a group of properties";
         findings.warning("materials", "3MF materials 5", detail);
     }
     if methods.len() >= listed.len().max(1) {
@@ -131,7 +131,7 @@ fn check_multiproperties(element: &Element, kinds: &HashMap<String, String>, fin
         findings.error(
             "materials",
             "3MF materials 5",
-            &format!("{unknown} is no blend method: mix or multiply"),
+            &format!("{unknown} is not a blend method: mix or multiply"),
         );
     }
 }

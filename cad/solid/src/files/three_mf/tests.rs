@@ -640,6 +640,10 @@ fn entries_of_the_same_name_are_reported() {
         }
     }
     assert_eq!(checks(&read_three_mf(&bytes).unwrap()), ["part name"]);
+    // Bytes before or after the archive hide nothing.
+    let others = [[b"junk".as_slice(), &bytes].concat(), [&bytes, b"junk".as_slice()].concat()];
+    let read: Vec<_> = others.iter().filter_map(|bytes| read_three_mf(bytes).ok()).collect();
+    assert!(!read.is_empty() && read.iter().all(|found| checks(found).contains(&"part name")));
 }
 
 #[test]

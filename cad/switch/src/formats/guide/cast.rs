@@ -8,9 +8,9 @@ use crate::design::Design;
 use crate::documents::Manifest;
 use crate::parts::{CAST_LAYER, CAST_OVERFILL, CAST_SPRUE, CAST_VENT};
 use crate::process::instructions;
-use crate::scene::{Bench, Bodies, Illustration, Motion, Move, ToolArrow, Upright};
+use crate::scene::{Bench, Bodies, Illustration, Motion, Move, ToolArrow, Upright, distance_to_mesh};
 use pinswitch_friction::Substrate;
-use pinswitch_solid::mesh::Point3;
+use pinswitch_solid::mesh::{Point3, Vector3};
 use pinswitch_solid::render::View;
 
 /// Cameras of the mould: with the ribs toward the camera, and with the end of the parting line.
@@ -24,6 +24,9 @@ const LID_APART_MM: f64 = 40.0;
 const CUT_MM: f64 = 3.0;
 /// Distance of the layer from the mould, mm.
 const LAYER_APART_MM: f64 = 12.0;
+/// Height above a body from which its top is searched, and difference of heights of the same face, mm.
+const ABOVE_MM: f64 = 1.0;
+const SAME_MM: f64 = 1e-6;
 /// Length of the arrow of the stream and of the blade, mm.
 const STREAM_MM: f64 = 16.0;
 
@@ -76,14 +79,16 @@ fn picture(view: View, moves: Vec<Move>) -> Illustration {
 
 /// The middle of the top of a body.
 fn top(bodies: &Bodies, name: &str) -> Option<Point3> {
-    let (low, high) = bodies.find(Bench::Mould, name)?.mesh.bounds()?;
-    let middle = nalgebra::center(&low, &high);
-    if name == CAST_SPRUE {
-        return Some(Point3::new(middle.x, middle.y, high.z));
-    }
-    // The middle of a curved body is not on it: the point of its mesh on the middle plane nearest to it is.
     let mesh = &bodies.find(Bench::Mould, name)?.mesh;
-    let upper = mesh.positions.iter().filter(|p| p.z > high.z - 1e-6);
+    let (low, high) = mesh.bounds()?;
+    let middle = nalgebra::center(&low, &high);
+    let above = Point3::new(middle.x, middle.y, high.z + ABOVE_MM);
+    let is_on_top = |distance_mm: f64| distance_mm < ABOVE_MM + SAME_MM;
+    if distance_to_mesh(mesh, above, -Vector3::z()).is_some_and(is_on_top) {
+        return Some(above - along(ABOVE_MM));
+    }
+    // The middle of a curved body is beside it: the nearest vertex of its top is not.
+    let upper = mesh.positions.iter().filter(|p| p.z > high.z - SAME_MM);
     upper.min_by(|a, b| (*a - middle).norm().total_cmp(&(*b - middle).norm())).copied()
 }
 

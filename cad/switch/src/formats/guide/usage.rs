@@ -56,22 +56,15 @@ fn forces(design: &Design, bodies: &Bodies) -> Option<Illustration> {
         let at = |mm: f64| Point3::new(tip.x + mm * along.x, tip.y + mm * along.y, z);
         ToolArrow { ends: [at(1.0), at(1.0 + FORCE_MM)], label: label.to_owned() }
     };
-    let (upright, view, tips) = if let Some(joint) = design.joint() {
-        let contact = joint.contact(joint.assembled_deg);
-        let (motor, load) = (joint.proximal_end(), joint.distal_end(&contact));
-        let along = |from: Point2, to: Point2| (to - from).normalize();
-        let tips = [(load, along(contact.anchor, load)), (motor, along(joint.proximal.mouth(), motor))];
-        (Upright::Grooves, JOINT_VIEW, tips)
-    } else if design.configuration().mount.kind == MountKind::Rig {
-        return None;
-    } else {
+    let [load, pull] = design.tendon_tips();
+    let (upright, view) = match design.configuration().mount.kind {
+        MountKind::Rig => return None,
+        MountKind::Joint => (Upright::Grooves, JOINT_VIEW),
         // The direction of the load becomes that of gravity.
-        let tips = design.tendon_tips();
-        let (_, load) = tips[0];
-        (Upright::Turned(libm::atan2(load.x, -load.y)), FROM_LEFT, tips)
+        MountKind::None | MountKind::Flange => (Upright::Turned(libm::atan2(load.1.x, -load.1.y)), FROM_LEFT),
     };
     let mut picture = scene(Bench::Switch, upright, view, Vec::new());
-    picture.arrows = vec![arrow(tips[0], "load"), arrow(tips[1], "pull")];
+    picture.arrows = vec![arrow(load, "load"), arrow(pull, "pull")];
     Some(picture)
 }
 

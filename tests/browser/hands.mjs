@@ -38,12 +38,11 @@ export async function phone(_, site, { findings }) {
     await touch(visit, [box.x + 0.8 * box.width, box.y + box.height / 2], [0, 0], 1);
   }
   await pause(400);
-  findings.check('swipes and taps over sliders change nothing', before === await hashOf(visit), await hashOf(visit));
+  await visit.check('swipes and taps over sliders change nothing', (hash) => decodeURIComponent(location.hash) === hash, before);
   await sliders[1].evaluate((e) => e.scrollIntoView({ block: 'center' }));
   const box = await sliders[1].boundingBox();
   await touch(visit, [box.x + 0.4 * box.width, box.y + box.height / 2], [60, 2]);
-  await pause(400);
-  findings.check('a drag along a slider changes it', before !== await hashOf(visit));
+  await visit.check('a drag along a slider changes it', (hash) => decodeURIComponent(location.hash) !== hash, before);
   await visit.check('the sheet still shows how to close it', () => { const r = document.querySelector('#sheet-close').getBoundingClientRect(); return document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2)?.id === 'sheet-close'; });
   await visit.check('what the design does is in view', () => document.querySelector('#strip').checkVisibility() && /switches at|does not switch/.test(document.querySelector('#strip').textContent));
   await visit.click('#sheet-close');
@@ -84,7 +83,9 @@ export async function numbers(visit, site, { findings }) {
     await visit.type(input, text);
     await visit.check(`${text} is refused aloud`, () => document.querySelector('#f-silicone-thickness_mm-error').checkVisibility());
     await visit.page.keyboard.press('Tab');
-    findings.check(`${text} changes nothing`, before === await hashOf(visit), await hashOf(visit));
+    // The address is written a moment after the design: it may still have the number that the text began with.
+    await pause(400);
+    await visit.check(`${text} changes nothing`, (hash) => decodeURIComponent(location.hash) === hash, before);
   }
   await visit.type(input, '2');
   await visit.page.keyboard.press('ArrowUp');

@@ -220,11 +220,13 @@ impl<'a> Group<'a> {
 
     fn arrow(&self, contact: Contact) -> [Point3; 2] {
         let Contact { point, half_mm } = contact;
-        // To the middle of the place: the tips of long bodies end far behind what receives them.
+        // To the body that they meet; otherwise to the middle of the place: the tips of long bodies, such as screws, end far
+        // behind what receives them.
         let by_mm = self.way.by.norm();
         let length_mm = if by_mm - half_mm > LEAST_MM { by_mm - half_mm } else { by_mm };
-        let free_mm = first_hit(self.others, point, -self.out).filter(|free| *free > LEAST_MM);
-        let end = point - self.out * free_mm.map_or(length_mm, |free| free.min(length_mm));
+        let free_mm = first_hit(self.others, point, -self.out);
+        let free_mm = free_mm.filter(|free| (LEAST_MM..=by_mm + SAME_MM).contains(free));
+        let end = point - self.out * free_mm.unwrap_or(length_mm);
         match self.way.motion.stays() {
             true => [point, end],
             false if (point - end).norm() > LEAST_MM => [end, point],
@@ -292,7 +294,9 @@ mod tests {
         let heights = |base_top: f64, motion| {
             arrow_of(&lid, &[&plate(0.0, base_top)], UP, motion).map(|ends| ends.map(|p| p.z))
         };
-        assert_eq!(heights(5.0, Motion::Into), Some([15.0, 6.0]));
+        assert_eq!(heights(5.0, Motion::Into), Some([15.0, 5.0]));
+        // Nothing is below: to the middle of the place.
+        assert_eq!(heights(4.0, Motion::Into), Some([15.0, 6.0]));
         assert_eq!(heights(8.0, Motion::Into), Some([15.0, 8.0]));
         assert_eq!(heights(8.0, Motion::Away), Some([8.0, 15.0]));
     }

@@ -9,47 +9,39 @@
 use std::borrow::Cow;
 
 use pinswitch::calibration::effects::{
-    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, Effect, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use pinswitch::calibration::evidence::Evidence;
 use pinswitch::calibration::model::Term;
-use pinswitch::calibration::table::{Condition, Frame, PlateauRow, Point};
+use pinswitch::calibration::table::{Frame, PlateauRow};
 use pinswitch::simulation::{Plan, simulate};
 
-#[derive(Debug)]
-struct Creep;
-
-static CREEP: Description<'static> = Description {
-    id: "cell_creep",
-    side: Side::Rig,
-    covariate: Covariate::Dwell,
-    stage: Stage::CellScale,
-    formula: "reading (1 + k ln(dwell / 3 s))",
-    written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
-    parameters: &[Parameter::free("k", "1")],
-    one_sided: true,
-    bends: true,
-    scales: true,
-    on_plain: true,
-    confused_with: &[Cow::Borrowed("dwell_relaxation")],
-    experiment: "dead weights with two pauses",
-    invisible_because: "the dwell time never varies",
-    study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
-};
-
-impl Effect for Creep {
-    fn description(&self) -> Description<'_> {
-        CREEP
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.02]]
-    }
-
-    fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
-        reading_n * (1.0 + k[0] * point.log_dwell)
-    }
-}
+static CREEP: FormulaEffect = FormulaEffect::new(
+    Description {
+        id: "cell_creep",
+        side: Side::Rig,
+        covariate: Covariate::Dwell,
+        stage: Stage::CellScale,
+        formula: "reading (1 + k ln(dwell / 3 s))",
+        written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
+        parameters: &[Parameter::free("k", "1")],
+        one_sided: true,
+        bends: true,
+        scales: true,
+        on_plain: true,
+        confused_with: &[Cow::Borrowed("dwell_relaxation")],
+        experiment: "dead weights with two pauses",
+        invisible_because: "the dwell time never varies",
+        study: StudyRange {
+            size: Some((0.01, 0.05)),
+            signed: false,
+            shapes: &[],
+            paper: PaperProtocol::Hidden,
+        },
+    },
+    &[&[0.02]],
+);
 
 /// Returns the root mean square of the differences of readings from predictions, in newtons.
 fn rms(rows: &[PlateauRow], predicted_n: &[f64]) -> f64 {
@@ -63,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frame = Frame::new(&rows);
     let points = frame.points(&rows).ok_or("unknown condition")?;
     for (row, point) in rows.iter_mut().zip(&points) {
-        row.force_n = Creep.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], row.force_n);
+        row.force_n = CREEP.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], row.force_n);
     }
 
     let mut best = (f64::INFINITY, 0.0);
@@ -71,13 +63,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // Readings without an effect of this size, to which the paper's model is fitted.
         let mut without = rows.clone();
         for (row, point) in without.iter_mut().zip(&points) {
-            row.force_n /= Creep.on_reading(&[size], point, &frame.conditions[point.condition], 1.0);
+            row.force_n /= CREEP.on_reading(&[size], point, &frame.conditions[point.condition], 1.0);
         }
         let evidence = Evidence::baseline(&without, 1)?;
         let fitted = evidence.fitted(&evidence.posterior().baseline).ok_or("not finite")?;
-        let model = fitted.model.with_term(Term::named(&Creep), &[size]);
+        let model = fitted.model.with_term(Term::named(&CREEP), &[size]);
         let residual_n = rms(&rows, &model.predict(&points));
-        println!("{} = {size:.2}: residual RMS {residual_n:.3} N", Creep.id());
+        println!("{} = {size:.2}: residual RMS {residual_n:.3} N", CREEP.id());
         if residual_n < best.0 {
             best = (residual_n, size);
         }

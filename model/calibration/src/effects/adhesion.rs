@@ -9,10 +9,10 @@ use crate::table::{Condition, Frame, Point};
 
 /// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
-struct Adhesion;
+pub(super) struct Adhesion;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &Adhesion;
+pub(super) static EFFECT: Adhesion = Adhesion;
 
 static DESCRIPTION: Description<'static> = Description {
     id: "adhesion",

@@ -9,10 +9,10 @@ use crate::table::{Condition, Frame, Point};
 
 /// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
-struct CoatingPloughing;
+pub(super) struct CoatingPloughing;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &CoatingPloughing;
+pub(super) static EFFECT: CoatingPloughing = CoatingPloughing;
 
 static DESCRIPTION: Description<'static> = Description {
     id: "coating_ploughing",

@@ -3,19 +3,14 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
-    Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct CoatingStiffening;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &CoatingStiffening;
+pub(super) static EFFECT: FormulaEffect =
+    FormulaEffect::new(DESCRIPTION, &[&[0.4, 1.05], &[0.4, 1.5], &[0.4, 1.95]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "coating_stiffening",
     side: Side::Switch,
     covariate: Covariate::Load,
@@ -38,17 +33,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Shown,
     },
 };
-
-impl Effect for CoatingStiffening {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.4, 1.05], vec![0.4, 1.5], vec![0.4, 1.95]]
-    }
-
-    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
-        state.mu_pins *= (1.0 + k[0] * libm::pow(state.load_n / REFERENCE_LOAD_N, k[1])).max(0.0);
-    }
-}

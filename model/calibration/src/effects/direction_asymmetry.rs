@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct DirectionAsymmetry;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &DirectionAsymmetry;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.05]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "direction_asymmetry",
     side: Side::Switch,
     covariate: Covariate::Direction,
@@ -32,17 +26,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.05, 0.2)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for DirectionAsymmetry {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.05]]
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        state.exponent_factor *= (1.0 + point.sign * k[0] / 2.0).max(0.0);
-    }
-}

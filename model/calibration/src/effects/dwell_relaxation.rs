@@ -1,19 +1,13 @@
 //! `dwell_relaxation`: friction of the silicone depends on the pause before the reading.
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct DwellRelaxation;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &DwellRelaxation;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.05]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "dwell_relaxation",
     side: Side::Switch,
     covariate: Covariate::Dwell,
@@ -30,17 +24,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "the dwell never varies, or there is no silicone",
     study: StudyRange { size: Some((0.04, 0.12)), signed: true, shapes: &[], paper: PaperProtocol::Hidden },
 };
-
-impl Effect for DwellRelaxation {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.05]]
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        state.mu_silicone *= (1.0 + k[0] * point.log_dwell).max(0.0);
-    }
-}

@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
-    Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct FixtureCompliance;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &FixtureCompliance;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.05]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "fixture_compliance",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -37,17 +31,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Confounded,
     },
 };
-
-impl Effect for FixtureCompliance {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.05]]
-    }
-
-    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
-        state.exponent_factor *= (1.0 + k[0] * state.load_n / REFERENCE_LOAD_N).max(0.0);
-    }
-}

@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct GuideDrag;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &GuideDrag;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.2]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "guide_drag",
     side: Side::Rig,
     covariate: Covariate::Direction,
@@ -33,17 +27,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.1, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for GuideDrag {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.2]]
-    }
-
-    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
-        state.drag_n += k[0];
-    }
-}

@@ -9,10 +9,10 @@ use crate::table::{Condition, Frame, Point};
 
 /// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
-struct HookOmitted;
+pub(super) struct HookOmitted;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &HookOmitted;
+pub(super) static EFFECT: HookOmitted = HookOmitted;
 
 static DESCRIPTION: Description<'static> = Description {
     id: "hook_omitted",

@@ -3,18 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct LoadCellGain;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &LoadCellGain;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.02]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "load_cell_gain",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -31,17 +26,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "only one direction",
     study: StudyRange { size: Some((0.01, 0.06)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for LoadCellGain {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.02]]
-    }
-
-    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
-        reading_n * (1.0 + k[0])
-    }
-}

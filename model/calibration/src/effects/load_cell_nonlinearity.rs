@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
-    StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct LoadCellNonlinearity;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &LoadCellNonlinearity;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.4]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "load_cell_nonlinearity",
     side: Side::Rig,
     covariate: Covariate::Load,
@@ -32,17 +26,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "only one direction, or one load",
     study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for LoadCellNonlinearity {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.4]]
-    }
-
-    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
-        reading_n + k[0] * (reading_n / REFERENCE_LOAD_N).powi(2)
-    }
-}

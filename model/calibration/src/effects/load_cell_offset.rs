@@ -3,18 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct LoadCellOffset;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &LoadCellOffset;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.3]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "load_cell_offset",
     side: Side::Rig,
     covariate: Covariate::Direction,
@@ -31,17 +26,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "too few loads",
     study: StudyRange { size: Some((0.2, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for LoadCellOffset {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.3]]
-    }
-
-    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
-        reading_n + k[0]
-    }
-}

@@ -7,10 +7,10 @@ use crate::table::{Condition, Frame, Point};
 
 /// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
-struct LoadCellSaturation;
+pub(super) struct LoadCellSaturation;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &LoadCellSaturation;
+pub(super) static EFFECT: LoadCellSaturation = LoadCellSaturation;
 
 static DESCRIPTION: Description<'static> = Description {
     id: "load_cell_saturation",

@@ -10,15 +10,16 @@ use crate::table::{Condition, Frame, Point};
 mod contact_state;
 mod covariate;
 mod description;
+mod formula;
 mod own;
 mod shared;
 mod structure;
 mod vocabulary;
-mod written;
 
 pub use contact_state::{ContactState, REFERENCE_LOAD_N};
 pub use covariate::Covariate;
 pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
+pub use formula::{ActsOn, AppliedFormula, Combine, FormulaEffect, Written};
 pub(crate) use own::effects_of_model;
 pub use own::effects_schema;
 pub use own::{
@@ -28,7 +29,6 @@ pub use own::{
 pub use shared::SharedEffect;
 pub use structure::{Abscissa, Channel, Shape, Structure, UNATTRIBUTED};
 pub use vocabulary::Vocabulary;
-pub use written::{ActsOn, Combine, Written};
 
 /// Declares the files of the effects and the catalogue of their entries.
 macro_rules! effects {
@@ -36,7 +36,7 @@ macro_rules! effects {
         $(mod $file;)*
 
         /// The built-in effects, in the order of the effect catalogue.
-        pub static CATALOGUE: &[&dyn Effect] = &[$($file::EFFECT),*];
+        pub static CATALOGUE: &[&dyn Effect] = &[$(&$file::EFFECT),*];
     };
 }
 
@@ -78,52 +78,39 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// An effect: its description, the start values of its fit, and its place in the forward model.
+/// An effect: its description, the start values of a fit, and its place in the forward model. A [`FormulaEffect`] has a
+/// formula, which places it; other effects implement the methods of their stage.
 ///
 /// ```
 /// use std::borrow::Cow;
 ///
 /// use pinswitch_calibration::effects::{
-///     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+///     ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 /// };
 /// use pinswitch_calibration::model::{Model, Term};
-/// use pinswitch_calibration::table::{Condition, Frame, PlateauTable, Point};
+/// use pinswitch_calibration::table::{Frame, PlateauTable};
 ///
 /// /// The cell reads too much after a long pause.
-/// #[derive(Debug)]
-/// struct Creep;
-///
-/// static CREEP: Description<'static> = Description {
-///     id: "cell_creep",
-///     side: Side::Rig,
-///     covariate: Covariate::Dwell,
-///     stage: Stage::CellScale,
-///     formula: "reading (1 + k ln(dwell / 3 s))",
-///     written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
-///     parameters: &[Parameter::free("k", "1")],
-///     one_sided: true,
-///     bends: true,
-///     scales: true,
-///     on_plain: true,
-///     confused_with: &[Cow::Borrowed("dwell_relaxation")],
-///     experiment: "dead weights with two pauses",
-///     invisible_because: "the dwell time never varies",
-///     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
-/// };
-///
-/// impl Effect for Creep {
-///     fn description(&self) -> Description<'_> {
-///         CREEP
-///     }
-///
-///     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-///         vec![vec![0.02]]
-///     }
-///
-///     fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
-///         reading_n * (1.0 + k[0] * point.log_dwell)
-///     }
-/// }
+/// static CREEP: FormulaEffect = FormulaEffect::new(
+///     Description {
+///         id: "cell_creep",
+///         side: Side::Rig,
+///         covariate: Covariate::Dwell,
+///         stage: Stage::CellScale,
+///         formula: "reading (1 + k ln(dwell / 3 s))",
+///         written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
+///         parameters: &[Parameter::free("k", "1")],
+///         one_sided: true,
+///         bends: true,
+///         scales: true,
+///         on_plain: true,
+///         confused_with: &[Cow::Borrowed("dwell_relaxation")],
+///         experiment: "dead weights with two pauses",
+///         invisible_because: "the dwell time never varies",
+///         study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
+///     },
+///     &[&[0.02]],
+/// );
 ///
 /// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
 /// a,silicone,,up,0,20,50,30,concentric,1,12.7,4.5,0
@@ -131,7 +118,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// let rows = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?.rows;
 /// let model = Model::baseline(Frame::new(&rows));
 /// let points = model.frame.points(&rows).ok_or("a condition is new")?;
-/// let with = model.with_term(Term::named(&Creep), &[0.02]).predict(&points)[0];
+/// let with = model.with_term(Term::named(&CREEP), &[0.02]).predict(&points)[0];
 /// assert!((with / model.predict(&points)[0] - (1.0 + 0.02 * 10f64.ln())).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -142,18 +129,27 @@ pub trait Effect: Debug + Send + Sync {
     /// Returns the start values of a fit: sizes typical of this rig, one entry per shape.
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
 
+    /// Returns its compiled formula, if it has one. The next three methods apply it.
+    fn formula(&self) -> Option<&AppliedFormula> {
+        None
+    }
+
     /// Changes the contact; `k` are the constants.
-    fn on_contact(&self, _k: &[f64], _point: &Point, _condition: &Condition, _state: &mut ContactState) {}
+    fn on_contact(&self, k: &[f64], point: &Point, condition: &Condition, state: &mut ContactState) {
+        if let Some(formula) = self.formula() {
+            formula.on_contact(k, point, condition, state);
+        }
+    }
 
     /// Changes the tension in newtons after the contact and before the load cell; `k` are the
     /// constants.
-    fn on_tension(&self, _k: &[f64], _point: &Point, _condition: &Condition, tension_n: f64) -> f64 {
-        tension_n
+    fn on_tension(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
+        self.formula().map_or(tension_n, |formula| formula.on_tension(k, point, condition, tension_n))
     }
 
     /// Changes the reading in newtons; `k` are the constants.
-    fn on_reading(&self, _k: &[f64], _point: &Point, _condition: &Condition, reading_n: f64) -> f64 {
-        reading_n
+    fn on_reading(&self, k: &[f64], point: &Point, condition: &Condition, reading_n: f64) -> f64 {
+        self.formula().map_or(reading_n, |formula| formula.on_reading(k, point, condition, reading_n))
     }
 
     /// Returns whether it may vary within a series: with the repetition, the position or the time.
@@ -189,6 +185,53 @@ mod tests {
     use super::*;
     use pinswitch_friction::Substrate;
 
+    fn device() -> Condition {
+        Condition {
+            substrate: Some(Substrate::Silicone),
+            pins: vec![5, 8, 11],
+            device: Some(0),
+            wrap_rad: 1.115,
+            weight: 0.1,
+            turn_rad: 0.37,
+            ploughing: 0.7,
+        }
+    }
+
+    fn point() -> Point {
+        Point {
+            condition: 0,
+            load_n: 49.0,
+            sign: 1.0,
+            descending: 1.0,
+            speed_pct: 60.0,
+            log_speed: 0.2,
+            dwell_s: 5.0,
+            log_dwell: 0.5,
+            repetition: 2.0,
+            position: 0.8,
+            time: 0.7,
+            travel: 0.6,
+            previous_load_n: 20.0,
+            ..Point::default()
+        }
+    }
+
+    fn state() -> ContactState {
+        ContactState {
+            load_n: 49.0,
+            wrap_rad: 1.115,
+            mu_pins: 0.05,
+            mu_silicone: 0.24,
+            extra_exponent_pins: 0.0,
+            exponent_factor: 1.0,
+            half_load_n: 40.0,
+            steepness: 4.6,
+            local_tension: false,
+            adhesion_n: 0.0,
+            drag_n: 0.0,
+        }
+    }
+
     #[test]
     fn ids_are_unique_and_rivals_exist() {
         for (i, effect) in CATALOGUE.iter().enumerate() {
@@ -205,6 +248,20 @@ mod tests {
         }
     }
 
+    /// A factor on the whole friction scales ploughing; a factor on the pins' coefficient does not.
+    #[test]
+    fn ploughing_is_friction_but_no_coefficient() {
+        let scaled = |id: &str, k: &[f64]| {
+            let mut state = ContactState { mu_pins: 0.05, extra_exponent_pins: 0.02, ..state() };
+            effect_named(id).unwrap().on_contact(k, &point(), &device(), &mut state);
+            (state.mu_pins / 0.05, state.extra_exponent_pins / 0.02)
+        };
+        let (mu, ploughing) = scaled("coating_stiffening", &[0.5, 1.5]);
+        assert!(mu > 1.4 && ploughing == 1.0, "{mu} {ploughing}");
+        let (mu, ploughing) = scaled("rate_dependence", &[0.5]);
+        assert!(mu > 1.05 && (mu - ploughing).abs() < 1e-12, "{mu} {ploughing}");
+    }
+
     /// Each effect changes some reading of a rig that varies every covariate, and each start has
     /// all constants.
     #[test]
@@ -218,49 +275,18 @@ mod tests {
             load_range_n: (3.0, 50.0),
             ..Frame::default()
         };
-        let condition = Condition {
-            substrate: Some(Substrate::Silicone),
-            pins: vec![5, 8, 11],
-            device: Some(0),
-            wrap_rad: 1.115,
-            weight: 0.1,
-            turn_rad: 0.37,
-            ploughing: 0.7,
-        };
-        let point = Point {
-            condition: 0,
-            load_n: 49.0,
-            sign: 1.0,
-            descending: 1.0,
-            log_speed: 0.2,
-            log_dwell: 0.5,
-            repetition: 2.0,
-            position: 0.8,
-            time: 0.7,
-            travel: 0.6,
-            previous_load_n: 20.0,
-            ..Point::default()
-        };
+        let (condition, point) = (device(), point());
         for effect in CATALOGUE {
             let read = |k: Option<&[f64]>| {
-                let mut state = ContactState {
-                    load_n: point.load_n,
-                    wrap_rad: condition.wrap_rad,
-                    mu_pins: 0.05,
-                    mu_silicone: 0.24,
-                    extra_exponent_pins: 0.0,
-                    exponent_factor: 1.0,
-                    half_load_n: 40.0,
-                    steepness: 4.6,
-                    local_tension: false,
-                    adhesion_n: 0.0,
-                    drag_n: 0.0,
-                };
+                let mut state = state();
                 if let Some(k) = k {
                     effect.on_contact(k, &point, &condition, &mut state);
                 }
                 let tension = state.tension_n(&condition, &point);
-                k.map_or(tension, |k| effect.on_reading(k, &point, &condition, tension))
+                k.map_or(tension, |k| {
+                    let tension = effect.on_tension(k, &point, &condition, tension);
+                    effect.on_reading(k, &point, &condition, tension)
+                })
             };
             let changed = effect.starts(&frame).iter().any(|k| {
                 assert_eq!(k.len(), effect.parameters().len(), "{}", effect.id());

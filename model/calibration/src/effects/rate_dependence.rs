@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct RateDependence;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &RateDependence;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.1]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "rate_dependence",
     side: Side::Switch,
     covariate: Covariate::Speed,
@@ -37,20 +31,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Confounded,
     },
 };
-
-impl Effect for RateDependence {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.1]]
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        let factor = (1.0 + k[0] * point.log_speed).max(0.0);
-        state.mu_pins *= factor;
-        state.mu_silicone *= factor;
-        state.extra_exponent_pins *= factor;
-    }
-}

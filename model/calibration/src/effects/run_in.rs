@@ -3,19 +3,25 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct RunIn;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &RunIn;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(
+    DESCRIPTION,
+    &[
+        &[0.1, 1.0, 1.0],
+        &[0.1, 1.0, 0.0],
+        &[0.1, 2.5, 1.0],
+        &[0.1, 2.5, 0.0],
+        &[0.1, 5.0, 1.0],
+        &[0.1, 5.0, 0.0],
+        &[0.1, 9.0, 1.0],
+        &[0.1, 9.0, 0.0],
+    ],
+);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "run_in",
     side: Side::Switch,
     covariate: Covariate::Repetition,
@@ -45,18 +51,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Shown,
     },
 };
-
-impl Effect for RunIn {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        [1.0, 2.5, 5.0, 9.0].iter().flat_map(|r0| [1.0, 0.0].map(|c| vec![0.1, *r0, c])).collect()
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        let share = if point.sign > 0.0 { k[2] } else { 1.0 };
-        state.mu_silicone *= (1.0 + share * k[0] * libm::exp(-(point.repetition - 1.0) / k[1])).max(0.0);
-    }
-}

@@ -3,19 +3,14 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
-    Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct SubstrateSaturation;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &SubstrateSaturation;
+pub(super) static EFFECT: FormulaEffect =
+    FormulaEffect::new(DESCRIPTION, &[&[0.15, 0.05], &[0.15, 0.5], &[0.15, 0.95]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "substrate_saturation",
     side: Side::Switch,
     covariate: Covariate::Load,
@@ -41,21 +36,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Shown,
     },
 };
-
-impl Effect for SubstrateSaturation {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.15, 0.05], vec![0.15, 0.5], vec![0.15, 0.95]]
-    }
-
-    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
-        let f = (state.load_n / REFERENCE_LOAD_N).max(1e-3);
-        // h = 0: the power law with n = 1 - k; h = 1: the hyperbola. In between, the exponents add.
-        let power = libm::pow(f, -k[0] * (1.0 - k[1]));
-        let hyperbola = 1.0 / (1.0 + k[0] * k[1] * f).max(0.05);
-        state.mu_silicone *= power * hyperbola;
-    }
-}

@@ -7,10 +7,10 @@ use crate::table::{Condition, Frame, Point};
 
 /// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
-struct SwitchLocalTension;
+pub(super) struct SwitchLocalTension;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &SwitchLocalTension;
+pub(super) static EFFECT: SwitchLocalTension = SwitchLocalTension;
 
 static DESCRIPTION: Description<'static> = Description {
     id: "switch_local_tension",

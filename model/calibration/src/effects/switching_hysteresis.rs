@@ -3,19 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct SwitchingHysteresis;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &SwitchingHysteresis;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[4.0], &[1.0]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "switching_hysteresis",
     side: Side::Switch,
     covariate: Covariate::Sweep,
@@ -33,17 +27,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "no device, or loads never descend",
     study: StudyRange { size: Some((3.0, 10.0)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
 };
-
-impl Effect for SwitchingHysteresis {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![4.0], vec![1.0]]
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        state.half_load_n = (state.half_load_n - k[0] * point.descending).max(1.0);
-    }
-}

@@ -3,18 +3,13 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct ThermalDrift;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &ThermalDrift;
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.3]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "thermal_drift",
     side: Side::Rig,
     covariate: Covariate::Time,
@@ -31,17 +26,3 @@ static DESCRIPTION: Description<'static> = Description {
     invisible_because: "the session is too short to drift",
     study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
 };
-
-impl Effect for ThermalDrift {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.3]]
-    }
-
-    fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
-        reading_n + k[0] * point.time
-    }
-}

@@ -3,19 +3,14 @@
 use std::borrow::Cow;
 
 use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
-    Written,
+    ActsOn, Covariate, Description, FormulaEffect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use crate::table::{Condition, Frame, Point};
-
-/// Marker type; see [`DESCRIPTION`].
-#[derive(Debug)]
-struct WearDrift;
 
 /// Entry in the catalogue.
-pub(super) const EFFECT: &dyn Effect = &WearDrift;
+pub(super) static EFFECT: FormulaEffect =
+    FormulaEffect::new(DESCRIPTION, &[&[0.1, 0.15], &[0.1, 0.4], &[0.1, 2.0]]);
 
-static DESCRIPTION: Description<'static> = Description {
+const DESCRIPTION: Description<'static> = Description {
     id: "wear_drift",
     side: Side::Switch,
     covariate: Covariate::Time,
@@ -37,21 +32,3 @@ static DESCRIPTION: Description<'static> = Description {
         paper: PaperProtocol::Shown,
     },
 };
-
-impl Effect for WearDrift {
-    fn description(&self) -> Description<'_> {
-        DESCRIPTION
-    }
-
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.1, 0.15], vec![0.1, 0.4], vec![0.1, 2.0]]
-    }
-
-    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        let settled = -libm::expm1(-1.0 / k[1]);
-        let factor = (1.0 + k[0] * -libm::expm1(-point.travel / k[1]) / settled).max(0.0);
-        state.mu_pins *= factor;
-        state.mu_silicone *= factor;
-        state.extra_exponent_pins *= factor;
-    }
-}

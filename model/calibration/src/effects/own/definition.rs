@@ -6,11 +6,11 @@ use std::ops::Range;
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_formula::{FormulaError, is_reserved};
 
-use super::expression::EffectFormula;
 use super::probe::probes;
 use super::unit::Unit;
 use super::unit_check::{check_units, located};
-use super::variable::{VARIABLES, variable};
+use crate::effects::formula::EffectFormula;
+use crate::effects::formula::{VARIABLES, variable};
 use crate::effects::{
     ActsOn, Combine, Covariate, Effect, Parameter, Side, UNATTRIBUTED, Written, effect_named,
 };

@@ -4,8 +4,8 @@
 use nalgebra::DMatrix;
 
 use super::definition::OwnParameter;
-use super::expression::EffectFormula;
 use super::probe::spread_probes;
+use crate::effects::formula::EffectFormula;
 
 /// Smallest singular value of the sensitivities, as a share of the largest, below which a
 /// combination of constants changes nothing. Finite differences of equal formulas agree to 1e-8.

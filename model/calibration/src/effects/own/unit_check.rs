@@ -11,8 +11,8 @@ use std::ops::Range;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_formula::{FormulaError, Function, Kind, Operator};
 
-use super::expression::Symbol;
 use super::unit::Unit;
+use crate::effects::formula::Symbol;
 
 type Node = pinswitch_formula::Node<Symbol>;
 
@@ -232,7 +232,7 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::own::expression::EffectFormula;
+    use crate::effects::formula::EffectFormula;
 
     /// Checks a formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
     fn check(text: &str, needed: &str) -> Result<(), FormulaError> {

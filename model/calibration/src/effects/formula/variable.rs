@@ -5,30 +5,30 @@ use pinswitch_friction::Substrate;
 
 /// Values of one row for a formula.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment<'a> {
+pub(in crate::effects) struct Moment<'a> {
     /// The row.
-    pub(super) point: &'a Point,
+    pub(in crate::effects) point: &'a Point,
     /// Condition of the row.
-    pub(super) condition: &'a Condition,
+    pub(in crate::effects) condition: &'a Condition,
     /// Load in newtons, after effects on the load.
-    pub(super) load_n: f64,
+    pub(in crate::effects) load_n: f64,
     /// Tension or reading in newtons, where it is known.
-    pub(super) tension_n: f64,
+    pub(in crate::effects) tension_n: f64,
 }
 
 /// A variable: one line of [`VARIABLES`].
 #[derive(Debug)]
-pub(super) struct Variable {
+pub(in crate::effects) struct Variable {
     /// Name in formulas.
-    pub(super) name: &'static str,
+    pub(in crate::effects) name: &'static str,
     /// Unit.
-    pub(super) unit: &'static str,
+    pub(in crate::effects) unit: &'static str,
     /// Whether it may vary between the rows of one setting.
-    pub(super) moves: bool,
+    pub(in crate::effects) moves: bool,
     /// Description.
-    pub(super) meaning: &'static str,
+    pub(in crate::effects) meaning: &'static str,
     /// Returns the value in a row.
-    pub(super) of: fn(&Moment<'_>) -> f64,
+    pub(in crate::effects) of: fn(&Moment<'_>) -> f64,
 }
 
 impl PartialEq for Variable {
@@ -56,10 +56,10 @@ const fn moving(
 }
 
 /// The variable that is known only after the contact.
-pub(super) const TENSION: &str = "tension_n";
+pub(in crate::effects) const TENSION: &str = "tension_n";
 
 /// All variables.
-pub(super) static VARIABLES: [Variable; 23] = [
+pub(in crate::effects) static VARIABLES: [Variable; 23] = [
     fixed("load_n", "N", "load, including effects on the load", |m| m.load_n),
     fixed(TENSION, "N", "tension or reading before the effect; only for acts_on tension or reading", |m| {
         m.tension_n
@@ -107,6 +107,6 @@ pub(super) static VARIABLES: [Variable; 23] = [
 ];
 
 /// Returns the variable of a name.
-pub(super) fn variable(name: &str) -> Option<&'static Variable> {
+pub(in crate::effects) fn variable(name: &str) -> Option<&'static Variable> {
     VARIABLES.iter().find(|v| v.name == name)
 }

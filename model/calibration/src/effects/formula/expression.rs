@@ -1,4 +1,4 @@
-//! Formulas of user-defined effects: what their names mean, and their values in a row.
+//! Formulas of effects: what their names mean, and their values in a row.
 
 use pinswitch_formula::{Formula, FormulaError, Kind, NameError, Node};
 
@@ -6,22 +6,26 @@ use super::variable::{Moment, TENSION, VARIABLES, Variable, variable};
 
 /// What a name in a formula means.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Symbol {
+pub(in crate::effects) enum Symbol {
     Variable(&'static Variable),
     /// A constant of the effect, by its index.
     Constant(usize),
 }
 
-/// The formula of a user-defined effect, parsed once and evaluated for each row.
+/// The formula of an effect, parsed once and evaluated for each row.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct EffectFormula(Formula<Symbol>);
+pub(in crate::effects) struct EffectFormula(Formula<Symbol>);
 
 impl EffectFormula {
     /// Parses a formula whose constants have these names. `knows_tension` allows the variable `tension_n`.
     ///
     /// # Errors
     /// The first [`FormulaError`].
-    pub(super) fn parse(text: &str, constants: &[&str], knows_tension: bool) -> Result<Self, FormulaError> {
+    pub(in crate::effects) fn parse(
+        text: &str,
+        constants: &[&str],
+        knows_tension: bool,
+    ) -> Result<Self, FormulaError> {
         let resolve = |name: &str| {
             if let Some(index) = constants.iter().position(|constant| *constant == name) {
                 return Ok(Symbol::Constant(index));
@@ -37,7 +41,7 @@ impl EffectFormula {
     }
 
     /// Returns its value in a row with these constants.
-    pub(super) fn value(&self, constants: &[f64], moment: &Moment<'_>) -> f64 {
+    pub(in crate::effects) fn value(&self, constants: &[f64], moment: &Moment<'_>) -> f64 {
         self.0.value(|symbol| match symbol {
             Symbol::Variable(variable) => (variable.of)(moment),
             Symbol::Constant(index) => constants.get(*index).copied().unwrap_or(f64::NAN),
@@ -45,17 +49,17 @@ impl EffectFormula {
     }
 
     /// Returns its syntax tree.
-    pub(super) fn root(&self) -> &Node<Symbol> {
+    pub(in crate::effects) fn root(&self) -> &Node<Symbol> {
         self.0.root()
     }
 
     /// Returns whether it uses the constant with this index.
-    pub(super) fn has_constant(&self, index: usize) -> bool {
+    pub(in crate::effects) fn has_constant(&self, index: usize) -> bool {
         self.root().any(&|node| *node.kind() == Kind::Name(Symbol::Constant(index)))
     }
 
     /// Returns whether it reads a variable that meets the condition.
-    pub(super) fn reads(&self, condition: impl Fn(&Variable) -> bool) -> bool {
+    pub(in crate::effects) fn reads(&self, condition: impl Fn(&Variable) -> bool) -> bool {
         self.root()
             .any(&|node| matches!(node.kind(), Kind::Name(Symbol::Variable(variable)) if condition(variable)))
     }

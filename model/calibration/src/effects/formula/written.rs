@@ -1,14 +1,14 @@
 //! Quantity that an effect's formula changes, and how: the part of an effect that the formula
 //! language can express.
 
-use super::{ContactState, Stage};
+use crate::effects::{ContactState, Stage};
 
 /// Quantity that a formula changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActsOn {
-    /// Friction on pins and silicone.
+    /// Friction on pins and silicone; a factor also changes ploughing.
     Mu,
-    /// Friction on the pins.
+    /// Friction coefficient on the pins.
     MuPins,
     /// Friction on the silicone; the free exponent for `plain`.
     MuSilicone,
@@ -122,7 +122,7 @@ impl<'a> Written<'a> {
 }
 
 /// Returns the stage at which a formula acts.
-pub(super) fn stage(acts_on: ActsOn, combine: Combine) -> Stage {
+pub(in crate::effects) fn stage(acts_on: ActsOn, combine: Combine) -> Stage {
     match (acts_on, combine) {
         (ActsOn::Load, _) => Stage::Load,
         (ActsOn::Mu | ActsOn::MuPins | ActsOn::MuSilicone, Combine::Sum) => Stage::AddedFriction,
@@ -139,8 +139,7 @@ pub(super) fn stage(acts_on: ActsOn, combine: Combine) -> Stage {
 /// Smallest threshold of a device in newtons.
 const LEAST_THRESHOLD_N: f64 = 1.0;
 
-/// Applies the value `f` of a formula to the contact. Friction, wrap and load remain non-negative,
-/// as with the built-in effects; NaN is passed on.
+/// Applies the value `f` of a formula to the contact. Friction, wrap and load remain non-negative; NaN is passed on.
 pub(super) fn on_contact(acts_on: ActsOn, combine: Combine, f: f64, state: &mut ContactState) {
     let changed = |value: f64, least: f64| {
         let value = combine.applied(value, f);
@@ -148,11 +147,11 @@ pub(super) fn on_contact(acts_on: ActsOn, combine: Combine, f: f64, state: &mut 
     };
     if matches!(acts_on, ActsOn::Mu | ActsOn::MuPins) {
         state.mu_pins = changed(state.mu_pins, 0.0);
-        // Ploughing is friction of the pins, too. It is scaled by a factor, but not changed by an
-        // added coefficient.
-        if combine == Combine::Factor {
-            state.extra_exponent_pins = changed(state.extra_exponent_pins, 0.0);
-        }
+    }
+    // Ploughing is friction, too, but no coefficient: a factor on the whole friction scales it, a change of a coefficient
+    // does not.
+    if acts_on == ActsOn::Mu && combine == Combine::Factor {
+        state.extra_exponent_pins = changed(state.extra_exponent_pins, 0.0);
     }
     match acts_on {
         ActsOn::Mu | ActsOn::MuSilicone => state.mu_silicone = changed(state.mu_silicone, 0.0),

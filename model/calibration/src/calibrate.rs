@@ -274,8 +274,14 @@ mod tests {
         assert!(named(&report(&first, plain.clone())), "a hypothesis is found");
         let told: Vec<String> = crate::table::readings_by_session(&first).into_values().collect();
         let drawn = || vocabulary(file(0.5, &format!("drawn_from = [\"{}\"]\n", told[0])));
-        // The readings that it was derived from, and parts of them.
-        for rows in [&first[..], &first[20..], &first[..first.len() / 2]] {
+        // The readings that it was derived from, parts of them, and near copies.
+        let near = |nth: usize, by_n: f64| -> Vec<PlateauRow> {
+            let mut rows: Vec<PlateauRow> = first.iter().step_by(nth).cloned().collect();
+            rows.iter_mut().step_by(2).for_each(|row| row.force_n += by_n);
+            rows
+        };
+        let parts = [first[20..].to_vec(), first[..first.len() / 2].to_vec(), near(1, 0.01), near(2, -0.02)];
+        for rows in std::iter::once(&first).chain(&parts) {
             let report = report(rows, drawn());
             assert!(
                 !named(&report) && report.trials[0].outcome == TrialOutcome::Drawn,

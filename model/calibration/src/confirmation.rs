@@ -55,7 +55,7 @@ pub(crate) fn trial_of_unseen(
     }
     let unseen: Vec<PlateauRow> = rows.iter().filter(|row| !is_seen(row)).cloned().collect();
     let drawn = || {
-        let note = "derived from these readings; other data can confirm it".to_owned();
+        let note = "derived from these readings, or from ones that cannot be told from them; other data can confirm it".to_owned();
         untested(definition, TrialOutcome::Drawn, Some(note))
     };
     if unseen.len() < LEAST_ROWS {

@@ -1,7 +1,11 @@
-//! Fingerprints of the readings of a session: independent of file name and order of rows, and
-//! robust to rounding and to rows left out.
+//! Fingerprints of the readings of a session: independent of file name and order of rows, and robust to rounding, to rows left
+//! out, and to changes within the noise.
+//!
+//! A fingerprint keeps some readings with a hash of their settings. The readings of another session at these settings differ
+//! by noise of their own. The same readings do not, even if they are rounded or changed by less than the noise.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 use super::row::PlateauRow;
 use super::substrate_word::substrate_word;
@@ -9,88 +13,192 @@ use super::substrate_word::substrate_word;
 /// Offset basis and prime of the FNV-1a hash of 32 bits (Fowler, Noll, Vo).
 const BASIS: u32 = 0x811c_9dc5;
 const PRIME: u32 = 0x0100_0193;
-/// Number of hashes kept of a session: the smallest, so that any part of the session contains its
-/// share of them (bottom-k sketch; Broder 1997).
-const SKETCH: usize = 32;
-/// Hexadecimal digits of a hash.
+/// Number of readings kept of a session: those with the smallest hashes, so that any part of the session contains its share
+/// of them (bottom-k sketch; Broder 1997).
+const SKETCH: usize = 64;
+/// Begin of a fingerprint. Earlier versions wrote hashes only, without it.
+const MARK: &str = "readings:";
+/// Hexadecimal digits of a hash, and of a reading.
 const DIGITS: usize = 8;
-/// Share of common hashes above which readings belong to the session or a part of it. Sessions at
-/// the same settings share some by chance, where two consecutive readings agree to 0.01 N.
-const SAME: f64 = 0.2;
+/// Most digits of a fingerprint of an earlier version.
+const EARLIER_DIGITS: usize = 256;
+/// Unit of the readings that are kept, in newtons.
+const UNIT_N: f64 = 0.001;
+/// Probability of readings that agree as well by chance, below which they are the same.
+const CHANCE: f64 = 1e-4;
+/// Share of equal readings above which they cannot be told from the same readings, whatever their noise.
+const EQUAL: f64 = 0.9;
+/// Fewest readings at equal settings for this.
+const LEAST_EQUAL: usize = 3;
 
-/// Returns the fingerprint of each session by its name (empty where the table names none), in
-/// hexadecimal digits. It detects a table that was seen before, or a part of it; it does not
-/// protect against forgery.
+/// Returns the fingerprint of each session by its name (empty where the table names none). It detects a table that was seen
+/// before, or a part of it; it does not protect against forgery.
 pub fn readings_by_session(rows: &[PlateauRow]) -> BTreeMap<String, String> {
-    let written =
-        |hashes: BTreeSet<u32>| hashes.iter().take(SKETCH).map(|hash| format!("{hash:08x}")).collect();
-    hashes_by_session(rows).into_iter().map(|(session, hashes)| (session, written(hashes))).collect()
-}
-
-/// Returns whether a text can be a fingerprint written by [`readings_by_session`].
-pub fn is_fingerprint(text: &str) -> bool {
-    !text.is_empty()
-        && text.len().is_multiple_of(DIGITS)
-        && text.len() <= SKETCH * DIGITS
-        && text.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b))
-}
-
-/// Returns the names of the sessions that match one of the fingerprints, at least in part.
-pub fn matching_sessions(rows: &[PlateauRow], fingerprints: &[String]) -> BTreeSet<String> {
-    let is_one = |hashes: &BTreeSet<u32>| {
-        fingerprints.iter().any(|fingerprint| {
-            let of: Vec<u32> = (0..fingerprint.len() / DIGITS)
-                .filter_map(|i| u32::from_str_radix(fingerprint.get(DIGITS * i..DIGITS * (i + 1))?, 16).ok())
-                .collect();
-            let known = of.iter().filter(|hash| hashes.contains(hash)).count();
-            known > 0 && known as f64 >= SAME * of.len() as f64
+    let written = |session: &Session<'_>| {
+        session.by_setting.iter().take(SKETCH).fold(MARK.to_owned(), |mut text, (hash, readings_n)| {
+            let kept = readings_n.first().map_or(0, |reading_n| thousandths(*reading_n));
+            let _ = write!(text, "{hash:08x}{kept:08x}");
+            text
         })
     };
-    hashes_by_session(rows)
-        .into_iter()
-        .filter(|(_, hashes)| is_one(hashes))
-        .map(|(session, _)| session)
-        .collect()
+    sessions(rows).iter().map(|(name, session)| ((*name).to_owned(), written(session))).collect()
 }
 
-/// Returns, by session, hashes of pairs of readings that are consecutive by load and time on one
-/// condition and in one direction.
-fn hashes_by_session(rows: &[PlateauRow]) -> BTreeMap<String, BTreeSet<u32>> {
-    let mut order: Vec<&PlateauRow> = rows.iter().collect();
-    let key = |row: &PlateauRow| (hundredths(row.load_n), hundredths(row.time_s), row.repetition);
-    let course = |row: &PlateauRow| (substrate_word(row.substrate), row.direction.sign() > 0.0);
-    order.sort_by(|a, b| {
-        let session = a.labels.session.cmp(&b.labels.session);
-        session.then(course(a).cmp(&course(b))).then(a.pins.cmp(&b.pins)).then(key(a).cmp(&key(b)))
-    });
-    let mut found: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+/// Returns whether a text can be a fingerprint of [`readings_by_session`], of this or an earlier version.
+pub fn is_fingerprint(text: &str) -> bool {
+    let are_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
+    let (digits, each, most) = match text.strip_prefix(MARK) {
+        Some(digits) => (digits, 2 * DIGITS, SKETCH * 2 * DIGITS),
+        None => (text, DIGITS, EARLIER_DIGITS),
+    };
+    !digits.is_empty() && digits.len().is_multiple_of(each) && digits.len() <= most && are_digits(digits)
+}
+
+/// Returns the names of the sessions that match one of the fingerprints, at least in part. A fingerprint of an earlier version
+/// excludes no session.
+pub fn matching_sessions(rows: &[PlateauRow], fingerprints: &[String]) -> BTreeSet<String> {
+    let all = sessions(rows);
+    let is_one = |session: &Session<'_>| {
+        fingerprints.iter().any(|text| kept_readings(text).is_none_or(|kept| session.agrees_with(&kept)))
+    };
+    all.iter().filter(|(_, session)| is_one(session)).map(|(name, _)| (*name).to_owned()).collect()
+}
+
+/// Returns the hashes and readings of a fingerprint, in newtons; `None` for one of an earlier version.
+fn kept_readings(fingerprint: &str) -> Option<Vec<(u32, f64)>> {
+    let digits = fingerprint.strip_prefix(MARK)?;
+    let number = |at: usize| u32::from_str_radix(digits.get(at..at + DIGITS)?, 16).ok();
+    let places = (0..digits.len() / (2 * DIGITS)).map(|i| 2 * DIGITS * i);
+    Some(
+        places
+            .filter_map(|at| Some((number(at)?, UNIT_N * f64::from(number(at + DIGITS)?.cast_signed()))))
+            .collect(),
+    )
+}
+
+/// The readings of one session.
+#[derive(Default)]
+struct Session<'a> {
+    rows: Vec<&'a PlateauRow>,
+    /// Readings in newtons in the order of time, by the hash of their setting and repetition.
+    by_setting: BTreeMap<u32, Vec<f64>>,
+}
+
+fn sessions(rows: &[PlateauRow]) -> BTreeMap<&str, Session<'_>> {
+    let mut found: BTreeMap<&str, Session<'_>> = BTreeMap::new();
     for row in rows {
-        found.entry(row.labels.session.clone()).or_default();
+        found.entry(row.labels.session.as_str()).or_default().rows.push(row);
     }
-    for pair in order.windows(2) {
-        let [a, b] = [pair[0], pair[1]];
-        if a.labels.session == b.labels.session && course(a) == course(b) && a.pins == b.pins {
-            found.entry(a.labels.session.clone()).or_default().insert(hash_of(a, b));
+    for session in found.values_mut() {
+        session.rows.sort_by(|a, b| a.time_s.total_cmp(&b.time_s).then(a.repetition.cmp(&b.repetition)));
+        for row in &session.rows {
+            session.by_setting.entry(hash_of(row)).or_default().push(row.force_n);
         }
     }
     found
 }
 
-fn hash_of(a: &PlateauRow, b: &PlateauRow) -> u32 {
-    let numbers = [a.load_n, a.force_n, b.force_n].map(hundredths);
-    let course = format!("{}{:?}{}", substrate_word(a.substrate), a.pins, a.direction.as_str());
-    let bytes = course.into_bytes().into_iter().chain(numbers.into_iter().flat_map(i64::to_le_bytes));
-    bytes.fold(BASIS, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(PRIME))
+impl Session<'_> {
+    /// Returns whether kept readings agree with those of the session better than readings with noise of their own.
+    ///
+    /// Of `m` readings `x` at the setting of a kept reading `v`, with noise of standard deviation `s`, the nearest one is
+    /// within `g` of it by chance with probability `1 - (1 - erf(g/(2 s)))^m`. Fisher's method joins these probabilities.
+    fn agrees_with(&self, kept: &[(u32, f64)]) -> bool {
+        let step_n = self.step_n();
+        let gaps_n: Vec<(f64, usize)> = kept
+            .iter()
+            .filter_map(|(hash, reading_n)| {
+                let own = self.by_setting.get(hash)?;
+                let gap_n = own.iter().map(|own| (own - reading_n).abs()).fold(f64::INFINITY, f64::min);
+                Some((gap_n, own.len()))
+            })
+            .collect();
+        let equal = gaps_n.iter().filter(|(gap_n, _)| *gap_n <= step_n / 2.0).count();
+        if gaps_n.len() >= LEAST_EQUAL && equal as f64 >= EQUAL * gaps_n.len() as f64 {
+            return true;
+        }
+        let Some(noise_n) = self.noise_n() else { return false };
+        let log_chance = |(gap_n, count): &(f64, usize)| {
+            let within = libm::erf((gap_n + step_n / 2.0) / (2.0 * noise_n));
+            let count = f64::from(u32::try_from(*count).unwrap_or(u32::MAX));
+            // 1 - (1 - p)^m, also for a small p.
+            libm::log(-libm::expm1(count * libm::log1p(-within)))
+        };
+        fisher(&gaps_n.iter().map(log_chance).collect::<Vec<f64>>()) < CHANCE
+    }
+
+    /// Returns the smallest difference of two readings in newtons, at least that of a fingerprint.
+    fn step_n(&self) -> f64 {
+        let mut sorted: Vec<i64> = self.rows.iter().map(|row| i64::from(thousandths(row.force_n))).collect();
+        sorted.sort_unstable();
+        let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0);
+        UNIT_N * steps.min().unwrap_or(1) as f64
+    }
+
+    /// Returns the standard deviation of the noise in newtons, from differences of consecutive readings at one setting, and of
+    /// those with one between them: neither a slow change nor an alternation is noise. `None` without repeated readings,
+    /// and where most are equal.
+    fn noise_n(&self) -> Option<f64> {
+        let mut settings: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+        for row in &self.rows {
+            settings.entry(setting(row)).or_default().push(row.force_n);
+        }
+        let of_lag = |lag: usize| {
+            let apart = settings.values().flat_map(|x| x.iter().zip(x.iter().skip(lag)));
+            median(apart.map(|(a, b)| (a - b).abs()).collect())
+        };
+        // The median of |x| is 0.6745 standard deviations of x; a difference has the variance of two readings.
+        [1, 2]
+            .into_iter()
+            .filter_map(of_lag)
+            .reduce(f64::min)
+            .map(|m| m / 0.6745 / 2f64.sqrt())
+            .filter(|s| *s > 0.0)
+    }
 }
 
-/// Rounds to hundredths, since tables are often rounded.
+/// Returns the probability of logarithms of probabilities that are jointly as small by chance: their sum times -2 has the
+/// chi-square distribution with two degrees of freedom for each (Fisher 1925).
+fn fisher(logs: &[f64]) -> f64 {
+    let half: f64 = -logs.iter().sum::<f64>();
+    let mut term = libm::exp(-half);
+    let mut sum = 0.0;
+    for k in 1..=logs.len() {
+        sum += term;
+        term *= half / k as f64;
+    }
+    if logs.is_empty() { 1.0 } else { sum }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Condition, direction and load.
+type Setting<'a> = (&'static str, &'a [usize], bool, i32);
+
+fn setting(row: &PlateauRow) -> Setting<'_> {
+    let load = thousandths(row.load_n / 10.0);
+    (substrate_word(row.substrate), &row.pins, row.direction.sign() > 0.0, load)
+}
+
+fn hash_of(row: &PlateauRow) -> u32 {
+    let (substrate, pins, is_concentric, load) = setting(row);
+    let text = format!("{substrate}{pins:?}{is_concentric} {load} {}", row.repetition);
+    text.bytes().fold(BASIS, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(PRIME))
+}
+
 #[expect(clippy::cast_possible_truncation, reason = "tables bound their numbers far below")]
-fn hundredths(value: f64) -> i64 {
-    (100.0 * value).round() as i64
+fn thousandths(value: f64) -> i32 {
+    (value / UNIT_N).round() as i32
 }
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
     use crate::test_session::session;
 
@@ -98,6 +206,16 @@ mod tests {
         let fingerprints: Vec<String> = readings_by_session(of).into_values().collect();
         assert!(fingerprints.iter().all(|text| is_fingerprint(text)), "{fingerprints:?}");
         !matching_sessions(rows, &fingerprints).is_empty()
+    }
+
+    fn changed(rows: &[PlateauRow], change: impl FnMut(&mut PlateauRow)) -> Vec<PlateauRow> {
+        let mut rows = rows.to_vec();
+        rows.iter_mut().for_each(change);
+        rows
+    }
+
+    fn rounded(rows: &[PlateauRow], step_n: f64) -> Vec<PlateauRow> {
+        changed(rows, |row| row.force_n = (row.force_n / step_n).round() * step_n)
     }
 
     #[test]
@@ -111,12 +229,13 @@ mod tests {
             r.time_s += 86_400.0;
         });
         assert!(is_recognised(&reordered, &rows) && is_recognised(&rows, &reordered));
-        for seed in 2..12 {
+        for seed in 2..40 {
             assert!(!is_recognised(&session(seed), &rows), "{seed}");
         }
         let both = readings_by_session(&[rows.clone(), reordered].concat());
         assert_eq!(both.keys().map(String::as_str).collect::<Vec<_>>(), ["", "b"]);
         assert!(!is_fingerprint("x") && !is_fingerprint("") && !is_fingerprint("1234567"));
+        assert!(!is_fingerprint("readings:") && !is_fingerprint("readings:12345678"));
     }
 
     #[test]
@@ -128,8 +247,65 @@ mod tests {
         assert!(is_recognised(&rows[1..], &rows) && is_recognised(&rows[..rows.len() / 2], &rows));
         assert!(is_recognised(&part(&|_, r| r.repetition > 1), &rows));
         assert!(is_recognised(&part(&|i, _| i % 40 > 10), &rows));
-        let mut rounded = rows.clone();
-        rounded.iter_mut().for_each(|r| r.force_n = (100.0 * r.force_n).round() / 100.0);
-        assert!(is_recognised(&rounded, &rows));
+        for nth in [2, 3, 5] {
+            assert!(is_recognised(&part(&|i, _| i % nth == 0), &rows), "every {nth}th row");
+        }
+        assert!(is_recognised(&rounded(&rows, 0.01), &rows));
+    }
+
+    /// The noise of these sessions is 0.05 N.
+    #[test]
+    fn readings_within_their_noise_are_recognised() {
+        let rows = session(1);
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        for by_n in [0.002, 0.01, 0.03] {
+            let near = changed(&rows, |row| row.force_n += random.random_range(-by_n..by_n));
+            assert!(is_recognised(&near, &rows), "{by_n}");
+            let some: Vec<PlateauRow> = near.into_iter().step_by(2).collect();
+            assert!(is_recognised(&some, &rows), "half of them by {by_n}");
+        }
+    }
+
+    /// A coarse cell repeats readings by chance, an exact one does not; alternation is no noise.
+    #[test]
+    fn coarse_and_alternating_readings_are_no_copies() {
+        let first = session(1);
+        for step_n in [0.02, 0.05, 0.1] {
+            assert!(is_recognised(&rounded(&first, step_n), &rounded(&first, step_n)), "{step_n}");
+            for seed in 2..12 {
+                let other = rounded(&session(seed), step_n);
+                assert!(!is_recognised(&other, &rounded(&first, step_n)), "{step_n} {seed}");
+            }
+        }
+        let swings = |seed| {
+            changed(&session(seed), |row| row.force_n += if row.repetition % 2 == 0 { 0.5 } else { -0.5 })
+        };
+        assert!(!is_recognised(&swings(3), &swings(1)));
+    }
+
+    /// Without repetitions the noise is unknown: equal readings are the same.
+    #[test]
+    fn single_readings_are_recognised_by_equality() {
+        let single = |seed| -> Vec<PlateauRow> {
+            let firsts = session(seed).into_iter().filter(|row| row.repetition == 1);
+            let mut known = BTreeSet::new();
+            firsts.filter(|row| known.insert(hash_of(row))).collect()
+        };
+        assert!(is_recognised(&single(1), &single(1)) && !is_recognised(&single(2), &single(1)));
+    }
+
+    #[test]
+    fn fingerprints_of_earlier_versions_exclude_no_session() {
+        let earlier = "0123abcd89abcdef";
+        assert!(is_fingerprint(earlier));
+        assert_eq!(matching_sessions(&session(1), &[earlier.to_owned()]).len(), 1);
+    }
+
+    /// Sum of two exponentials: (1 + x) exp(-x).
+    #[test]
+    fn probabilities_are_joined() {
+        let p = fisher(&[libm::log(0.1), libm::log(0.2)]);
+        assert!((p - 0.02 * (1.0 - libm::log(0.02))).abs() < 1e-12, "{p}");
+        assert!((fisher(&[]) - 1.0).abs() < 1e-12);
     }
 }

@@ -145,18 +145,21 @@ pub fn calibrate(
     let mut searched = vocabulary.retaining(|own| !is_barred(&own.definition().id));
     let mut evidence = Evidence::new(rows, &searched, seed).map_err(unfit)?;
     let trials = trials(vocabulary, &evidence, unseen);
-    // A derived effect is attributed only if these readings confirm it.
+    // A derived effect is part of the model only if these readings confirm it.
     let is_refuted = |id: &str| {
         let of = trials.iter().find(|trial| trial.id == id && trial.was_drawn);
         of.is_some_and(|trial| trial.outcome != TrialOutcome::Confirmed)
     };
-    let is_reported = |name: &str| {
-        evidence.posterior().reported.iter().any(|reported| evidence.name(reported.member) == name)
+    let is_in_model = |name: &str| {
+        let posterior = evidence.posterior();
+        let best = posterior.window.iter().take(1).flat_map(|fit| fit.hypothesis.members());
+        best.chain(posterior.reported.iter().map(|reported| reported.member))
+            .any(|m| evidence.name(m) == name)
     };
     let refuted: Vec<String> = searched
         .own()
         .map(|own| own.definition().id.clone())
-        .filter(|id| is_refuted(id) && is_reported(id))
+        .filter(|id| is_refuted(id) && is_in_model(id))
         .collect();
     if !refuted.is_empty() {
         searched = searched.retaining(|own| !refuted.contains(&own.definition().id));

@@ -10,7 +10,7 @@ pub(crate) fn check_finite_effects(baseline: &Model, rows: &[PlateauRow]) -> Res
     let vocabulary = &baseline.vocabulary;
     let points = baseline.frame.points(rows).unwrap_or_default();
     for effect in vocabulary.own().filter_map(|own| vocabulary.named(&own.definition().id)) {
-        for start in effect.starts(&baseline.frame) {
+        for start in effect.typical(&baseline.frame) {
             let predicted = baseline.with_term(Term::Named(effect.clone()), &start).predict(&points);
             if let Some(row) = predicted.iter().position(|n| !n.is_finite()) {
                 let PlateauRow { load_n, speed_pct, dwell_s, repetition, time_s, .. } = &rows[row];

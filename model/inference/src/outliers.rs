@@ -14,7 +14,7 @@ use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, student_tail};
 use crate::score::variance_gain;
 
-/// Prior probability that a series and direction has a gross error.
+/// Prior probability that a series has a gross error, in one direction or both.
 const SERIES_PROBABILITY: f64 = 0.01;
 /// Scale of the half-Cauchy prior of the offset of such a series, in repetition noise.
 const SERIES_SCALE: f64 = 10.0;

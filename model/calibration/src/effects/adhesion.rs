@@ -38,8 +38,8 @@ impl Effect for Adhesion {
         DESCRIPTION
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.2]]
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.3]]
     }
 
     fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {

@@ -38,8 +38,8 @@ impl Effect for CoatingPloughing {
         DESCRIPTION
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.024]]
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.02]]
     }
 
     fn on_contact(&self, k: &[f64], _: &Point, condition: &Condition, state: &mut ContactState) {

@@ -7,8 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect =
-    FormulaEffect::new(DESCRIPTION, &[&[0.4, 1.05], &[0.4, 1.5], &[0.4, 1.95]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.5, 1.0], &[0.5, 2.0]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "coating_stiffening",

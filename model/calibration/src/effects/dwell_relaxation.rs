@@ -5,7 +5,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.05]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.08]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "dwell_relaxation",

@@ -7,7 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.2]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.3]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "guide_drag",

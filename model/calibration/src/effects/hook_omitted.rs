@@ -37,7 +37,7 @@ impl Effect for HookOmitted {
         DESCRIPTION
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![]]
     }
 

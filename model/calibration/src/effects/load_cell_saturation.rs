@@ -35,7 +35,7 @@ impl Effect for LoadCellSaturation {
         DESCRIPTION
     }
 
-    fn starts(&self, frame: &Frame) -> Vec<Vec<f64>> {
+    fn typical(&self, frame: &Frame) -> Vec<Vec<f64>> {
         let highest = frame.load_range_n.1 * 1.35;
         (0..14).map(|i| vec![highest * (1.0 - 0.025 * f64::from(i))]).collect()
     }

@@ -78,7 +78,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// An effect: its description, the start values of a fit, and its place in the forward model. A [`FormulaEffect`] has a
+/// An effect: its description, its typical constants, and its place in the forward model. A [`FormulaEffect`] has a
 /// formula, which places it; other effects implement the methods of their stage.
 ///
 /// ```
@@ -126,8 +126,9 @@ pub trait Effect: Debug + Send + Sync {
     /// Returns its description.
     fn description(&self) -> Description<'_>;
 
-    /// Returns the start values of a fit: sizes typical of this rig, one entry per shape.
-    fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
+    /// Returns typical constants of this rig, one entry per discrete shape: plus and minus the size are the quartiles of the
+    /// prior, and a fit begins at each shape.
+    fn typical(&self, frame: &Frame) -> Vec<Vec<f64>>;
 
     /// Returns its compiled formula, if it has one. The next three methods apply it.
     fn formula(&self) -> Option<&AppliedFormula> {
@@ -288,7 +289,7 @@ mod tests {
                     effect.on_reading(k, &point, &condition, tension)
                 })
             };
-            let changed = effect.starts(&frame).iter().any(|k| {
+            let changed = effect.typical(&frame).iter().any(|k| {
                 assert_eq!(k.len(), effect.parameters().len(), "{}", effect.id());
                 (read(Some(k)) - read(None)).abs() > 1e-3
             });

@@ -7,7 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.5]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.6]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "polygon_bending",

@@ -7,7 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.1]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.25]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "rate_dependence",

@@ -9,16 +9,7 @@ use super::{
 /// Entry in the catalogue.
 pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(
     DESCRIPTION,
-    &[
-        &[0.1, 1.0, 1.0],
-        &[0.1, 1.0, 0.0],
-        &[0.1, 2.5, 1.0],
-        &[0.1, 2.5, 0.0],
-        &[0.1, 5.0, 1.0],
-        &[0.1, 5.0, 0.0],
-        &[0.1, 9.0, 1.0],
-        &[0.1, 9.0, 0.0],
-    ],
+    &[&[0.2, 1.0, 1.0], &[0.2, 2.5, 1.0], &[0.2, 6.0, 1.0], &[0.2, 2.5, 0.0]],
 );
 
 const DESCRIPTION: Description<'static> = Description {

@@ -170,7 +170,7 @@ pub enum Shape {
         /// Half width in newtons.
         half_width: f64,
     },
-    /// A power of `F/F_max`.
+    /// A power of `F/F0`.
     LoadPower {
         /// Exponent.
         power: i32,
@@ -201,7 +201,7 @@ pub enum Shape {
         /// `r0`.
         r0: f64,
     },
-    /// Remaining influence of the previous load: `(F_before - F)/F_max exp(-r/r0)` after `r`
+    /// Remaining influence of the previous load: `(F_before - F)/F0 exp(-r/r0)` after `r`
     /// repetitions of the series.
     Memory {
         /// Number of repetitions after which a share `1/e` remains.

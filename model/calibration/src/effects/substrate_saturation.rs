@@ -7,8 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect =
-    FormulaEffect::new(DESCRIPTION, &[&[0.15, 0.05], &[0.15, 0.5], &[0.15, 0.95]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.2, 0.0], &[0.2, 1.0]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "substrate_saturation",

@@ -35,7 +35,7 @@ impl Effect for SwitchLocalTension {
         DESCRIPTION
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![]]
     }
 

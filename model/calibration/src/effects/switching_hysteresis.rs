@@ -7,7 +7,7 @@ use super::{
 };
 
 /// Entry in the catalogue.
-pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[4.0], &[1.0]]);
+pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[5.0]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "switching_hysteresis",

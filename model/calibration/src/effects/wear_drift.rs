@@ -8,7 +8,7 @@ use super::{
 
 /// Entry in the catalogue.
 pub(super) static EFFECT: FormulaEffect =
-    FormulaEffect::new(DESCRIPTION, &[&[0.1, 0.15], &[0.1, 0.4], &[0.1, 2.0]]);
+    FormulaEffect::new(DESCRIPTION, &[&[0.15, 0.15], &[0.15, 0.5], &[0.15, 3.0]]);
 
 const DESCRIPTION: Description<'static> = Description {
     id: "wear_drift",

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use pinswitch_inference::{Effect as EffectSpace, MOST_SHAPE_CONSTANTS, SizedEffect};
 
-use crate::effects::{Covariate, Effect, SharedEffect, Vocabulary, effect_named};
+use crate::effects::{Covariate, Effect, SharedEffect, Stage, Vocabulary, effect_named};
 use crate::table::{Frame, Unknown};
 
 /// Prior probability of the effects that most rigs have.
@@ -28,42 +28,6 @@ const SHIFT_SHARE: f64 = 0.25;
 /// The same in logarithms, for a constant whose bounds have at least this ratio.
 const LOG_SHIFT_SHARE: f64 = 1.0 / 6.0;
 const LOG_RANGE: f64 = 5.0;
-
-/// Typical size of a built-in effect in its unit, and its discrete shapes.
-struct Typical {
-    id: &'static str,
-    size: f64,
-    /// Whether the size is a force, which is larger for heavier loads.
-    is_force: bool,
-    shapes: &'static [&'static [f64]],
-}
-
-/// Returns an entry of [`TYPICAL`].
-const fn typical(id: &'static str, size: f64, is_force: bool, shapes: &'static [&'static [f64]]) -> Typical {
-    Typical { id, size, is_force, shapes }
-}
-
-/// Typical sizes of the built-in effects: quartiles of a Cauchy prior.
-static TYPICAL: [Typical; 18] = [
-    typical("guide_drag", 0.3, true, &[]),
-    typical("load_cell_offset", 0.4, true, &[]),
-    typical("load_cell_gain", 0.02, false, &[]),
-    typical("coating_stiffening", 0.5, false, &[&[1.0], &[2.0]]),
-    typical("coating_ploughing", 0.02, false, &[]),
-    typical("polygon_bending", 0.6, false, &[]),
-    typical("substrate_saturation", 0.2, false, &[&[0.0], &[1.0]]),
-    typical("adhesion", 0.3, true, &[]),
-    typical("dwell_relaxation", 0.08, false, &[]),
-    typical("run_in", 0.2, false, &[&[1.0, 1.0], &[2.5, 1.0], &[6.0, 1.0], &[2.5, 0.0]]),
-    typical("wear_drift", 0.15, false, &[&[0.15], &[0.5], &[3.0]]),
-    typical("rate_dependence", 0.25, false, &[]),
-    typical("fixture_compliance", 0.12, false, &[]),
-    typical("stroke_position", 0.1, false, &[]),
-    typical("direction_asymmetry", 0.1, false, &[]),
-    typical("switching_hysteresis", 5.0, false, &[]),
-    typical("load_cell_nonlinearity", 0.5, true, &[]),
-    typical("thermal_drift", 0.5, true, &[]),
-];
 
 /// Typical distance in newtons of the limit of a load cell below the highest reading, and its starts.
 const LIMIT_SIZE_N: f64 = 4.0;
@@ -113,15 +77,8 @@ impl EffectPrior {
                 if effect.parameters().is_empty() {
                     return Self { effect, typical_size: None, shapes: vec![vec![]], limit_from_n: None };
                 }
-                let known = TYPICAL.iter().find(|typical| typical.id == effect.id());
-                let (size, shapes) = known.map_or_else(
-                    || starts(&*effect, frame),
-                    |t| {
-                        let size = t.size * if t.is_force { force_unit } else { 1.0 };
-                        (size, t.shapes.iter().map(|shape| shape.to_vec()).collect())
-                    },
-                );
-                let mut shapes = if shapes.is_empty() { vec![vec![]] } else { shapes };
+                let (size, mut shapes) = size_and_shapes(&*effect, frame);
+                let size = size * if is_force(&*effect) { force_unit } else { 1.0 };
                 if forms.contains(effect.id()) {
                     shapes.truncate(1);
                 }
@@ -226,11 +183,19 @@ fn shifted(start: f64, bounds: Option<(f64, f64)>, shift: f64) -> f64 {
     value.clamp(low, high)
 }
 
-/// Returns size and shapes of a user-defined effect: those of its starts.
-fn starts(effect: &dyn Effect, frame: &Frame) -> (f64, Vec<Vec<f64>>) {
-    let starts = effect.starts(frame);
-    let size = starts.iter().filter_map(|k| k.first()).map(|size| size.abs()).fold(0.0, f64::max);
-    let mut shapes: Vec<Vec<f64>> = starts.iter().map(|k| k.get(1..).unwrap_or_default().to_vec()).collect();
+/// Returns whether the typical size is a force of the paper's rig, which is larger on a rig for heavier loads. That of a
+/// user-defined effect is for its rig.
+fn is_force(effect: &dyn Effect) -> bool {
+    let stage = effect.description().stage;
+    let is_newtons = effect.parameters().first().is_some_and(|size| size.unit == "N");
+    effect_named(effect.id()).is_some() && is_newtons && stage != Stage::Switch
+}
+
+/// Returns the typical size of an effect, and its discrete shapes.
+fn size_and_shapes(effect: &dyn Effect, frame: &Frame) -> (f64, Vec<Vec<f64>>) {
+    let typical = effect.typical(frame);
+    let size = typical.iter().filter_map(|k| k.first()).map(|size| size.abs()).fold(0.0, f64::max);
+    let mut shapes: Vec<Vec<f64>> = typical.iter().map(|k| k.get(1..).unwrap_or_default().to_vec()).collect();
     shapes.dedup();
     (if size > 0.0 { size } else { 1.0 }, shapes)
 }

@@ -467,7 +467,7 @@ fn without_term_of(effect: &dyn Effect, model: &Model, columns: &[usize]) -> Vec
 /// Returns the start values of an effect; with a limit, its typical size and the shape for which it
 /// was reported.
 fn typical(effect: &dyn Effect, limit: Option<&LimitReport>, model: &Model) -> Option<Vec<f64>> {
-    let mut values = effect.starts(&model.frame).into_iter().next()?;
+    let mut values = effect.typical(&model.frame).into_iter().next()?;
     if let Some(limit) = limit {
         for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
             *value = limit.shape.get(&*parameter.name).copied().unwrap_or(*value);

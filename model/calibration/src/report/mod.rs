@@ -44,7 +44,7 @@ pub struct DataSummary {
 /// A fitted model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelReport {
-    /// In-sample RMSE in newtons, without gross errors; predictions do not contain mount effects.
+    /// In-sample RMSE in newtons, without gross errors; predictions contain the effects of their mounts.
     #[serde(rename = "rmse_N")]
     pub rmse_n: f64,
     /// Held-out RMSE in newtons, over series and loads.

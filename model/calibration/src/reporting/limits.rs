@@ -119,7 +119,7 @@ fn acts(evidence: &Evidence, effect: &SharedEffect, baseline: &Fitted) -> bool {
     let points: Vec<_> = evidence.rows().map(|(.., point)| *point).collect();
     let model = &baseline.model;
     let before = model.predict(&points);
-    effect.starts(&model.frame).iter().any(|start| {
+    effect.typical(&model.frame).iter().any(|start| {
         let after = model.with_term(Term::Named(effect.clone()), start).predict(&points);
         after.iter().zip(&before).any(|(a, b)| (a - b).abs() > NO_CHANGE_N)
     })

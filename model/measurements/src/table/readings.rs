@@ -1,8 +1,8 @@
 //! Fingerprints of the readings of a session: independent of file name and order of rows, and robust to rounding, to rows left
-//! out, and to changes within the noise.
+//! out, and to changes that are small against the noise.
 //!
 //! A fingerprint keeps some readings with a hash of their settings. The readings of another session at these settings differ
-//! by noise of their own. The same readings do not, even if they are rounded or changed by less than the noise.
+//! by noise of their own. The same readings do not, even if they are rounded or changed by a fraction of the noise.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ const BASIS: u32 = 0x811c_9dc5;
 const PRIME: u32 = 0x0100_0193;
 /// Number of readings kept of a session: those with the smallest hashes, so that any part of the session contains its share
 /// of them (bottom-k sketch; Broder 1997).
-const SKETCH: usize = 64;
+const SKETCH: usize = 128;
 /// Begin of a fingerprint. Earlier versions wrote hashes only, without it.
 const MARK: &str = "readings:";
 /// Hexadecimal digits of a hash, and of a reading.
@@ -35,9 +35,15 @@ const LEAST_EQUAL: usize = 3;
 /// before, or a part of it; it does not protect against forgery.
 pub fn readings_by_session(rows: &[PlateauRow]) -> BTreeMap<String, String> {
     let written = |session: &Session<'_>| {
-        session.by_setting.iter().take(SKETCH).fold(MARK.to_owned(), |mut text, (hash, readings_n)| {
-            let kept = readings_n.first().map_or(0, |reading_n| thousandths(*reading_n));
-            let _ = write!(text, "{hash:08x}{kept:08x}");
+        let readings = session.by_setting.iter().flat_map(|(hash, readings_n)| {
+            // Mounts and sweeps may repeat a setting: each of its readings has its own chance to be kept.
+            let place = |rank: usize| hashed(*hash, rank.to_string().as_bytes());
+            readings_n.iter().enumerate().map(move |(rank, reading_n)| (place(rank), *hash, *reading_n))
+        });
+        let mut readings: Vec<(u32, u32, f64)> = readings.collect();
+        readings.sort_by_key(|(place, ..)| *place);
+        readings.iter().take(SKETCH).fold(MARK.to_owned(), |mut text, (_, hash, reading_n)| {
+            let _ = write!(text, "{hash:08x}{:08x}", thousandths(*reading_n));
             text
         })
     };
@@ -54,8 +60,8 @@ pub fn is_fingerprint(text: &str) -> bool {
     !digits.is_empty() && digits.len().is_multiple_of(each) && digits.len() <= most && are_digits(digits)
 }
 
-/// Returns the names of the sessions that match one of the fingerprints, at least in part. A fingerprint of an earlier version
-/// excludes no session.
+/// Returns the names of the sessions that match one of the fingerprints, at least in part. Every session matches a fingerprint
+/// of an earlier version: it does not exclude any.
 pub fn matching_sessions(rows: &[PlateauRow], fingerprints: &[String]) -> BTreeSet<String> {
     let all = sessions(rows);
     let is_one = |session: &Session<'_>| {
@@ -135,26 +141,42 @@ impl Session<'_> {
         UNIT_N * steps.min().unwrap_or(1) as f64
     }
 
-    /// Returns the standard deviation of the noise in newtons, from differences of consecutive readings at one setting, and of
-    /// those with one between them: neither a slow change nor an alternation is noise. `None` without repeated readings,
-    /// and where most are equal.
+    /// Returns the standard deviation of the noise in newtons; `None` without repeated readings, and where most are equal.
+    ///
+    /// It is the least of several estimates, from the median difference of consecutive readings at one setting. Structure that
+    /// every session of the rig has is no noise: a slow change does not enter these differences, an alternation not those of
+    /// every second reading, and a pattern over the stroke not those of two loads, added to both or in proportion to them.
     fn noise_n(&self) -> Option<f64> {
-        let mut settings: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+        let mut settings: BTreeMap<Setting<'_>, (f64, Vec<f64>)> = BTreeMap::new();
         for row in &self.rows {
-            settings.entry(setting(row)).or_default().push(row.force_n);
+            settings.entry(setting(row)).or_insert((row.load_n, Vec::new())).1.push(row.force_n);
         }
-        let of_lag = |lag: usize| {
-            let apart = settings.values().flat_map(|x| x.iter().zip(x.iter().skip(lag)));
-            median(apart.map(|(a, b)| (a - b).abs()).collect())
+        let settings: Vec<_> = settings.into_iter().collect();
+        let single: Vec<Vec<f64>> = settings.iter().map(|(_, (_, readings))| readings.clone()).collect();
+        let of_two = |factor: &dyn Fn(f64, f64) -> f64| -> Vec<Vec<f64>> {
+            let pairs = settings.windows(2).filter(|pair| pair[0].0.0 == pair[1].0.0);
+            let difference = |pair: &[(Setting<'_>, (f64, Vec<f64>))]| {
+                let [(lower, a), (upper, b)] = [&pair[0].1, &pair[1].1];
+                let by = factor(*lower, *upper);
+                // With the noise of one reading.
+                let scale = (1.0 + by * by).sqrt();
+                b.iter().zip(a).map(|(b, a)| (b - by * a) / scale).collect()
+            };
+            pairs.map(difference).collect()
         };
-        // The median of |x| is 0.6745 standard deviations of x; a difference has the variance of two readings.
-        [1, 2]
-            .into_iter()
-            .filter_map(of_lag)
-            .reduce(f64::min)
-            .map(|m| m / 0.6745 / 2f64.sqrt())
-            .filter(|s| *s > 0.0)
+        let added = of_two(&|_, _| 1.0);
+        let proportional = of_two(&|lower, upper| if lower > 0.0 { upper / lower } else { 1.0 });
+        let estimates = [single, added, proportional];
+        let noise = estimates.iter().flat_map(|courses| [1, 2].map(|lag| noise_of(courses, lag))).flatten();
+        noise.reduce(f64::min).filter(|noise_n| *noise_n > 0.0)
     }
+}
+
+/// Returns the standard deviation of noise from the differences of readings with a lag, in each of several courses.
+fn noise_of(courses: &[Vec<f64>], lag: usize) -> Option<f64> {
+    let apart = courses.iter().flat_map(|x| x.iter().zip(x.iter().skip(lag)));
+    // The median of |x| is 0.6745 standard deviations of x; a difference has the variance of two readings.
+    median(apart.map(|(a, b)| (a - b).abs()).collect()).map(|median| median / 0.6745 / 2f64.sqrt())
 }
 
 /// Returns the probability of logarithms of probabilities that are jointly as small by chance: their sum times -2 has the
@@ -175,18 +197,22 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Condition, direction and load.
-type Setting<'a> = (&'static str, &'a [usize], bool, i32);
+/// Condition with direction, and load.
+type Setting<'a> = ((&'static str, &'a [usize], bool), i32);
 
 fn setting(row: &PlateauRow) -> Setting<'_> {
     let load = thousandths(row.load_n / 10.0);
-    (substrate_word(row.substrate), &row.pins, row.direction.sign() > 0.0, load)
+    ((substrate_word(row.substrate), &row.pins, row.direction.sign() > 0.0), load)
 }
 
 fn hash_of(row: &PlateauRow) -> u32 {
-    let (substrate, pins, is_concentric, load) = setting(row);
+    let ((substrate, pins, is_concentric), load) = setting(row);
     let text = format!("{substrate}{pins:?}{is_concentric} {load} {}", row.repetition);
-    text.bytes().fold(BASIS, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(PRIME))
+    hashed(BASIS, text.as_bytes())
+}
+
+fn hashed(basis: u32, bytes: &[u8]) -> u32 {
+    bytes.iter().fold(basis, |hash, byte| (hash ^ u32::from(*byte)).wrapping_mul(PRIME))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "tables bound their numbers far below")]
@@ -253,9 +279,23 @@ mod tests {
         assert!(is_recognised(&rounded(&rows, 0.01), &rows));
     }
 
+    /// Later mounts at the settings of earlier ones are recognised, too.
+    #[test]
+    fn parts_with_repeated_settings_are_recognised() {
+        let mounts = |seeds: std::ops::Range<u64>| -> Vec<PlateauRow> {
+            let of = |seed| changed(&session(seed), |row| row.time_s += 1e5 * seed as f64);
+            seeds.flat_map(of).collect()
+        };
+        let rows = mounts(1..4);
+        for part in [mounts(1..2), mounts(2..4), rows[rows.len() / 2..].to_vec()] {
+            assert!(is_recognised(&part, &rows));
+        }
+        assert!(!is_recognised(&mounts(4..7), &rows));
+    }
+
     /// The noise of these sessions is 0.05 N.
     #[test]
-    fn readings_within_their_noise_are_recognised() {
+    fn readings_changed_by_less_than_their_noise_are_recognised() {
         let rows = session(1);
         let mut random = ChaCha8Rng::seed_from_u64(7);
         for by_n in [0.002, 0.01, 0.03] {
@@ -266,9 +306,9 @@ mod tests {
         }
     }
 
-    /// A coarse cell repeats readings by chance, an exact one does not; alternation is no noise.
+    /// A coarse cell repeats readings by chance, an exact one does not; structure is no noise.
     #[test]
-    fn coarse_and_alternating_readings_are_no_copies() {
+    fn coarse_readings_and_structure_are_no_copies() {
         let first = session(1);
         for step_n in [0.02, 0.05, 0.1] {
             assert!(is_recognised(&rounded(&first, step_n), &rounded(&first, step_n)), "{step_n}");
@@ -277,10 +317,19 @@ mod tests {
                 assert!(!is_recognised(&other, &rounded(&first, step_n)), "{step_n} {seed}");
             }
         }
-        let swings = |seed| {
-            changed(&session(seed), |row| row.force_n += if row.repetition % 2 == 0 { 0.5 } else { -0.5 })
-        };
-        assert!(!is_recognised(&swings(3), &swings(1)));
+        let bump = |row: &PlateauRow| libm::exp(-((row.position_mm / 152.4 - 0.5) / 0.1).powi(2));
+        let structures: [&dyn Fn(&PlateauRow) -> f64; 4] = [
+            &|row| if row.repetition % 2 == 0 { 0.5 } else { -0.5 },
+            &|row| 0.5 * bump(row),
+            &|row| 0.02 * row.load_n * bump(row),
+            &|row| 0.3 * libm::sin(0.15 * row.position_mm),
+        ];
+        for (i, structure) in structures.iter().enumerate() {
+            let with = |seed| changed(&session(seed), |row| row.force_n += structure(row));
+            for seed in 2..12 {
+                assert!(!is_recognised(&with(seed), &with(1)), "structure {i}, {seed}");
+            }
+        }
     }
 
     /// Without repetitions the noise is unknown: equal readings are the same.
@@ -295,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn fingerprints_of_earlier_versions_exclude_no_session() {
+    fn every_session_matches_a_fingerprint_of_an_earlier_version() {
         let earlier = "0123abcd89abcdef";
         assert!(is_fingerprint(earlier));
         assert_eq!(matching_sessions(&session(1), &[earlier.to_owned()]).len(), 1);

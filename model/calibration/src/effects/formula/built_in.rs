@@ -14,14 +14,14 @@ use crate::table::Frame;
 #[derive(Debug)]
 pub struct FormulaEffect {
     description: Description<'static>,
-    starts: &'static [&'static [f64]],
+    typical: &'static [&'static [f64]],
     formula: OnceLock<Option<AppliedFormula>>,
 }
 
 impl FormulaEffect {
-    /// Returns the effect of a description. `starts` are the start values of a fit, see [`Effect::starts`].
-    pub const fn new(description: Description<'static>, starts: &'static [&'static [f64]]) -> Self {
-        Self { description, starts, formula: OnceLock::new() }
+    /// Returns the effect of a description. `typical` are its typical constants, see [`Effect::typical`].
+    pub const fn new(description: Description<'static>, typical: &'static [&'static [f64]]) -> Self {
+        Self { description, typical, formula: OnceLock::new() }
     }
 
     fn compiled(&self) -> Option<AppliedFormula> {
@@ -38,8 +38,8 @@ impl Effect for FormulaEffect {
         self.description
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        self.starts.iter().map(|start| start.to_vec()).collect()
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        self.typical.iter().map(|constants| constants.to_vec()).collect()
     }
 
     fn formula(&self) -> Option<&AppliedFormula> {

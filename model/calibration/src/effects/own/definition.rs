@@ -128,7 +128,7 @@ impl EffectDefinition {
             Written::As { acts_on, combine, formula } => (acts_on, combine, formula.to_owned()),
             Written::No(reason) => return Err(reason),
         };
-        let start = effect.starts(&Frame::new(&[])).into_iter().next().unwrap_or_default();
+        let start = effect.typical(&Frame::new(&[])).into_iter().next().unwrap_or_default();
         let parameter = |(p, start): (&Parameter, f64)| OwnParameter {
             name: p.name.to_string(),
             unit: p.unit.to_string(),

@@ -220,7 +220,7 @@ impl Effect for OwnEffect {
         &self.described.parameters
     }
 
-    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+    fn typical(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         self.shape_starts()
     }
 

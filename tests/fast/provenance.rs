@@ -152,3 +152,39 @@ fn commands_share_the_manifest_of_a_folder() {
     );
     assert_eq!(std::fs::read(&manifest).unwrap(), b"{\"entity\": {}}");
 }
+
+/// The descriptor of a calibration lists every other result with its size and hash, each table with its columns, and the
+/// table that it was made from.
+#[test]
+fn a_calibration_is_a_data_package() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    simulated(path);
+    done(path, &["-q", "calibrate", "rig/plateaus.csv", "--out", "calibration"]);
+    let calibration = path.join("calibration");
+    let package = document(&calibration.join("datapackage.json"));
+    let resources = package["resources"].as_array().unwrap();
+    for entry in std::fs::read_dir(&calibration).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let listed = resources.iter().find(|resource| resource["path"] == name.as_str());
+        if ["datapackage.json", "provenance.json"].contains(&name.as_str()) {
+            assert!(listed.is_none(), "{name}");
+            continue;
+        }
+        let listed = listed.unwrap_or_else(|| panic!("{name} is not listed"));
+        let bytes = std::fs::read(calibration.join(&name)).unwrap();
+        assert_eq!(listed["bytes"], bytes.len(), "{name}");
+        assert_eq!(listed["hash"], format!("sha256:{}", sha256(&bytes)), "{name}");
+    }
+    let residuals = resources.iter().find(|resource| resource["path"] == "residuals.csv").unwrap();
+    let fields = residuals["schema"]["fields"].as_array().unwrap();
+    let names: Vec<&str> = fields.iter().map(|field| field["name"].as_str().unwrap()).collect();
+    let text = std::fs::read_to_string(calibration.join("residuals.csv")).unwrap();
+    assert_eq!(names.join(","), text.lines().next().unwrap());
+    let of = |name: &str| fields.iter().find(|field| field["name"] == name).unwrap();
+    assert_eq!((&of("force_N")["type"], &of("force_N")["unit"]), (&"number".into(), &"N".into()));
+    assert_eq!((&of("repetition")["type"], &of("substrate")["type"]), (&"integer".into(), &"any".into()));
+    assert_eq!(package["sources"][0]["title"], "plateaus.csv");
+    let table = std::fs::read(path.join("rig/plateaus.csv")).unwrap();
+    assert_eq!(package["sources"][0]["hash"], format!("sha256:{}", sha256(&table)));
+}

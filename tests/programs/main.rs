@@ -8,6 +8,7 @@ mod harness;
 
 mod bucket;
 mod configurator;
+mod data_package;
 mod gltf;
 mod hardware;
 mod judges;

@@ -18,6 +18,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, calibration_files, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
 
+use super::data_package::data_package;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, SEED, print_text};
@@ -42,7 +43,8 @@ pub(super) struct Arguments {
     /// drift and mounts.
     #[arg(required_unless_present = "published", value_name = "TABLE")]
     tables: Vec<PathBuf>,
-    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml, provenance.json and the plots.
+    /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml, provenance.json,
+    /// datapackage.json and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Calibrate on the seven maxima of the paper instead of a table.
@@ -124,17 +126,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
     let mut files = files(&table, &calibration, &name)?;
-    match &calibration.form {
+    let stale = match &calibration.form {
         Some(form) => {
             let text = format!("{FORM_HEADER}{}", own_effects_text([&form.definition]));
             files.insert(0, OutputFile { name: FORM_FILE.to_owned(), bytes: text.into_bytes() });
-            out.replace_listed(&files, COMMAND, &[])?;
+            &[]
         }
         None => {
             check_stale_form(&arguments.out)?;
-            out.replace_listed(&files, COMMAND, stale_form(&out)?)?;
+            stale_form(&out)?
         }
-    }
+    };
+    files.insert(0, data_package(&title_of(&name), &files_read(), &files)?);
+    out.replace_listed(&files, COMMAND, stale)?;
     print_text(&summary(&calibration.report))
 }
 
@@ -232,10 +236,14 @@ fn published(out: &Path) -> Result<(), Failure> {
     print_text(&text)
 }
 
+/// Returns the name of a table without its folder.
+fn title_of(name: &str) -> String {
+    Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
+
 /// Makes every file in memory, before the first one is written.
 fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<Vec<OutputFile>, Failure> {
-    let title = Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let files = calibration_files(&title, table, calibration).map_err(Failure::failed)?;
+    let files = calibration_files(&title_of(name), table, calibration).map_err(Failure::failed)?;
     let mut files: Vec<OutputFile> =
         files.into_iter().map(|(name, bytes)| OutputFile { name, bytes }).collect();
     files.push(OutputFile { name: "report.json".to_owned(), bytes: to_json(&calibration.report)? });

@@ -15,6 +15,7 @@ use clap_verbosity_flag::{InfoLevel, Verbosity};
 
 mod as_measured;
 mod calibrated_curve;
+mod data_package;
 mod failure;
 mod finger_text;
 mod input;

@@ -27,3 +27,18 @@ pub(super) const LABELS: [&str; 4] = ["session", "mount", "operator", "specimen"
 pub(super) fn column_name(index: usize) -> &'static str {
     COLUMNS.get(index).copied().unwrap_or(WRAP_ANGLE)
 }
+
+/// Returns the unit of a numeric column of a plateau table, `1` for a pure number; `None` for a column of texts, and for any
+/// other column.
+pub fn column_unit(name: &str) -> Option<&'static str> {
+    match name {
+        "load_mass_g" => Some("g"),
+        "load_N" | "force_N" => Some("N"),
+        "speed_pct" => Some("%"),
+        "dwell_s" | "time_s" => Some("s"),
+        "repetition" => Some("1"),
+        "position_mm" => Some("mm"),
+        WRAP_ANGLE => Some("deg"),
+        _ => None,
+    }
+}

@@ -17,6 +17,7 @@ mod units;
 mod unknown;
 mod whole_series;
 
+pub use columns::column_unit;
 pub use csv_line::push_line;
 pub use plateau_table::PlateauTable;
 pub use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};

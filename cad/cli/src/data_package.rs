@@ -1,0 +1,161 @@
+//! `datapackage.json`: the files of a calibration as a Data Package (<https://datapackage.org>, version 2), by which
+//! repositories of research data list and check them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use pinswitch_calibration::table::column_unit;
+use pinswitch_switch::output::OutputFile;
+use serde::Serialize;
+
+use crate::Failure;
+use crate::input::InputFile;
+use crate::provenance::sha256;
+use crate::terminal::to_json;
+
+/// Name of the file.
+const DATA_PACKAGE: &str = "datapackage.json";
+/// Profile of the standard.
+const PROFILE: &str = "https://datapackage.org/profiles/2.0/datapackage.json";
+/// Profile of a resource with a table.
+const TABLE_PROFILE: &str = "https://datapackage.org/profiles/2.0/dataresource.json";
+/// Columns that a calibration adds to those of the plateau table, in newtons or without a unit.
+const ADDED: [(&str, &str); 5] = [
+    ("baseline_N", "N"),
+    ("residual_baseline_N", "N"),
+    ("model_N", "N"),
+    ("residual_model_N", "N"),
+    ("weight", "1"),
+];
+
+#[derive(Serialize)]
+struct DataPackage {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    name: &'static str,
+    title: String,
+    description: &'static str,
+    sources: Vec<Source>,
+    resources: Vec<Resource>,
+}
+
+#[derive(Serialize)]
+struct Source {
+    title: String,
+    hash: String,
+}
+
+#[derive(Serialize)]
+struct Resource {
+    #[serde(rename = "$schema")]
+    profile: &'static str,
+    name: String,
+    path: String,
+    #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
+    kind: Option<&'static str>,
+    description: &'static str,
+    format: &'static str,
+    mediatype: &'static str,
+    encoding: &'static str,
+    bytes: usize,
+    hash: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    schema: Option<Schema>,
+}
+
+#[derive(Serialize)]
+struct Schema {
+    fields: Vec<Field>,
+}
+
+#[derive(Serialize)]
+struct Field {
+    name: String,
+    #[serde(rename = "type")]
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
+}
+
+/// Returns the descriptor of the files of a calibration of `title`, made from the files that were read.
+///
+/// # Errors
+/// [`Failure`] if it cannot be written as JSON.
+pub(crate) fn data_package(
+    title: &str,
+    read: &BTreeMap<PathBuf, InputFile>,
+    files: &[OutputFile],
+) -> Result<OutputFile, Failure> {
+    let sources: BTreeSet<(String, &str)> = read
+        .iter()
+        .filter_map(|(path, input)| {
+            Some((path.file_name()?.to_string_lossy().into_owned(), input.sha256.as_str()))
+        })
+        .collect();
+    let package = DataPackage {
+        schema: PROFILE,
+        name: "calibration",
+        title: format!("Calibration of {title}"),
+        description: "Friction of a switch on a test rig: fitted models, residuals of each reading, and the report. \
+                      Written by pinswitch.",
+        sources: sources
+            .into_iter()
+            .map(|(title, sha256)| Source { title, hash: format!("sha256:{sha256}") })
+            .collect(),
+        resources: files.iter().map(resource).collect(),
+    };
+    Ok(OutputFile { name: DATA_PACKAGE.to_owned(), bytes: to_json(&package)? })
+}
+
+fn resource(file: &OutputFile) -> Resource {
+    let format = file.name.rsplit('.').next().unwrap_or_default();
+    let (format, mediatype) = match format {
+        "csv" => ("csv", "text/csv"),
+        "html" => ("html", "text/html"),
+        "json" => ("json", "application/json"),
+        "svg" => ("svg", "image/svg+xml"),
+        _ => ("toml", "application/toml"),
+    };
+    let is_table = format == "csv";
+    Resource {
+        profile: TABLE_PROFILE,
+        name: file.name.to_lowercase(),
+        path: file.name.clone(),
+        kind: is_table.then_some("table"),
+        description: description(&file.name),
+        format,
+        mediatype,
+        encoding: "utf-8",
+        bytes: file.bytes.len(),
+        hash: format!("sha256:{}", sha256(&file.bytes)),
+        schema: is_table.then(|| table_schema(&file.bytes)),
+    }
+}
+
+fn description(name: &str) -> &'static str {
+    match name {
+        "report.json" => "The results: verdict, effects with probabilities and intervals, errors",
+        "report.html" => "The results as a page",
+        "residuals.csv" => "The plateau table with predictions and residuals of both models",
+        "baseline.toml" => "The paper's model, fitted",
+        "model.toml" => "The best model, for predictions",
+        "discovered.toml" => "A formula for structure without a name",
+        _ => "A plot of the report",
+    }
+}
+
+/// Returns the fields of a table from its header. Columns of a laboratory's own may have any type.
+fn table_schema(bytes: &[u8]) -> Schema {
+    let field = |name: &str| {
+        let added = || ADDED.iter().find(|(added, _)| *added == name).map(|(_, unit)| *unit);
+        let unit = column_unit(name).or_else(added);
+        let kind = match (unit, name) {
+            (Some(_), "repetition") => "integer",
+            (Some(_), _) => "number",
+            (None, _) => "any",
+        };
+        Field { name: name.to_owned(), kind, unit: unit.filter(|unit| *unit != "1") }
+    };
+    let mut reader = csv::Reader::from_reader(bytes);
+    Schema { fields: reader.headers().map_or_else(|_| Vec::new(), |names| names.iter().map(field).collect()) }
+}

@@ -100,6 +100,8 @@ pub(crate) struct SessionView {
     prediction: Vec<f64>,
     /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
     pub(crate) deviation: Vec<f64>,
+    /// Mean square by which sessions differed from the one before.
+    steps: Vec<f64>,
 }
 
 impl SessionView {
@@ -112,8 +114,8 @@ impl SessionView {
         let (design, mean) = (&linearised.design, &linearised.point.solution.mean);
         for (i, role) in design.roles.iter().enumerate() {
             let is_lasting = match role {
-                Role::Constant(_) | Role::Size(_) | Role::Shape(..) => false,
-                Role::Discrepancy(_) => true,
+                // Zero at a mode. On a ridge it is not: constants that compensate each other are predicted together.
+                Role::Constant(_) | Role::Size(_) | Role::Shape(..) | Role::Discrepancy(_) => true,
                 Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
                 Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
             };
@@ -122,25 +124,40 @@ impl SessionView {
                 prediction.iter_mut().zip(column.iter()).for_each(|(p, x)| *p += x * mean[i]);
             }
         }
+        let mut steps = vec![0.0; problem.len()];
         for (kernel, _) in fit.hypothesis.kernels() {
-            if !problem.space.kernels[kernel].is_session_bound {
+            let of = &problem.space.kernels[kernel];
+            if !of.is_session_bound && !of.is_level_of_session {
                 continue;
             }
-            let channel = &design.channels[problem.space.kernels[kernel].channel];
+            let channel = &design.channels[of.channel];
             let curve =
                 kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
+            if of.is_level_of_session {
+                let square = mean_square_step(&curve);
+                steps.iter_mut().zip(channel.iter()).for_each(|(sum, x)| *sum += square * x * x);
+                continue;
+            }
             let level = curve.iter().sum::<f64>() / curve.len() as f64;
             for (row, value) in curve.iter().enumerate() {
                 prediction[row] += channel[row] * level;
                 deviation[row] += channel[row] * (value - level);
             }
         }
-        Self { prediction, deviation }
+        Self { prediction, deviation, steps }
     }
 }
 
-/// Returns the mean square of what a session draws again, and of the difference between hypotheses
-/// in the prediction of a new session.
+/// Returns the mean square of the steps of a curve that is constant in each session: the next session may differ from the last
+/// one as the sessions differed from the ones before.
+fn mean_square_step(curve: &[f64]) -> f64 {
+    let steps = curve.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| *square > 0.0);
+    let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// Returns the mean square of what a session draws again, of the steps between sessions, and of the difference between
+/// hypotheses in the prediction of a new session.
 fn session_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f64 {
     let total: f64 = views.iter().map(|(p, _)| p).sum();
     let average = |value: &dyn Fn(&SessionView) -> f64| -> f64 {
@@ -148,7 +165,9 @@ fn session_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f64 {
     };
     let of_row = |row: &usize| {
         let mean = average(&|view| view.prediction[*row]);
-        average(&|view| view.deviation[*row].powi(2) + (view.prediction[*row] - mean).powi(2))
+        average(&|view| {
+            view.deviation[*row].powi(2) + view.steps[*row] + (view.prediction[*row] - mean).powi(2)
+        })
     };
     sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
 }

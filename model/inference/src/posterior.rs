@@ -192,7 +192,8 @@ fn reported(problem: &Problem, window: &[Fit], probabilities: &[f64]) -> Vec<Rep
         if explained < least {
             continue;
         }
-        let probability = hypotheses.iter().filter(|(h, _)| h.contains(member)).map(|(_, p)| p).sum();
+        let inside = hypotheses.iter().filter(|(h, _)| h.contains(member)).map(|(_, p)| p);
+        let probability = inside.sum::<f64>().min(1.0);
         let mut rivals: Vec<(Member, f64)> = places.into_iter().collect();
         rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
         reported.push(Reported { member, probability, rivals });
@@ -212,7 +213,8 @@ impl Posterior {
 
     /// Returns the probability of a member.
     pub fn probability(&self, member: Member) -> f64 {
-        self.containing(member).map(|(_, probability)| probability).sum()
+        // A sum of rounded probabilities may exceed 1.
+        self.containing(member).map(|(_, probability)| probability).sum::<f64>().min(1.0)
     }
 
     fn containing(&self, member: Member) -> impl Iterator<Item = (&Fit, f64)> {

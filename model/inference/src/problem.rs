@@ -56,6 +56,8 @@ pub struct Kernel {
     pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
+    /// Whether its levels are those of the sessions: a new session has the last one, and may differ from it.
+    pub is_level_of_session: bool,
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
     pub noise_probability: Option<f64>,
@@ -68,7 +70,7 @@ pub struct RandomEffect {
     pub name: String,
     /// Index of the channel through which it acts.
     pub channel: usize,
-    /// Scale of the half-normal prior of its standard deviation, in the unit of the channel.
+    /// Scale of the half-Student prior of its standard deviation, in the unit of the channel.
     pub scale: f64,
     /// Number of levels.
     pub levels: usize,

@@ -27,18 +27,13 @@ impl Mixture {
         Self::new(nodes, log_weights)
     }
 
-    /// Returns a half-Cauchy distribution over standard deviations.
-    pub(crate) fn half_cauchy(scale: f64) -> Self {
+    /// Returns the distribution of the absolute value of Student's t over standard deviations: half-Cauchy with one degree of
+    /// freedom.
+    pub(crate) fn half_student(scale: f64, freedom: f64) -> Self {
         let nodes = geometric(libm::exp(-3.5), libm::exp(3.5), 15);
+        let log_density = |x: f64| -0.5 * (freedom + 1.0) * libm::log1p(x * x / freedom);
         // On a geometric grid the width of a cell is proportional to its node.
-        let log_weights = nodes.iter().map(|x| libm::log(x / (1.0 + x * x))).collect();
-        Self::new(nodes.iter().map(|x| x * scale).collect(), log_weights)
-    }
-
-    /// Returns a half-normal distribution over standard deviations.
-    pub(crate) fn half_normal(scale: f64) -> Self {
-        let nodes: Vec<f64> = (0..12).map(|i| 0.02 + f64::from(i) * (3.5 - 0.02) / 11.0).collect();
-        let log_weights = nodes.iter().map(|x| -0.5 * x * x).collect();
+        let log_weights = nodes.iter().map(|x| libm::log(*x) + log_density(*x)).collect();
         Self::new(nodes.iter().map(|x| x * scale).collect(), log_weights)
     }
 }
@@ -126,6 +121,20 @@ mod tests {
             let exact = 1.0 / (PI * (1.0 + x * x));
             assert!((density / exact - 1.0).abs() < 0.03, "{x}: {density} for {exact}");
         }
+    }
+
+    /// Moments of the half-Student distribution with 4 degrees of freedom: the mean is 1, by integration, and the share above 4 is
+    /// that of the table.
+    #[test]
+    fn half_student_has_the_tail_of_the_table() {
+        let prior = Mixture::half_student(1.0, 4.0);
+        let weights: Vec<f64> = prior.log_weights.iter().map(|w| libm::exp(*w)).collect();
+        let mean: f64 = prior.nodes.iter().zip(&weights).map(|(x, w)| x * w).sum();
+        assert!((mean - 1.0).abs() < 0.05, "{mean}");
+        let above: f64 = prior.nodes.iter().zip(&weights).filter(|(x, _)| **x > 4.0).map(|(_, w)| w).sum();
+        assert!((above / 0.016_1 - 1.0).abs() < 0.3, "{above}");
+        // Nodes are at most a factor of 1.7 apart, so that a well known scale lies between close ones.
+        assert!(prior.nodes.windows(2).all(|pair| pair[1] < 1.7 * pair[0]));
     }
 
     #[test]

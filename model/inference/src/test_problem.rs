@@ -68,6 +68,7 @@ fn space() -> Space {
             scale: 0.3,
             variants: vec![1.0],
             is_session_bound: false,
+            is_level_of_session: false,
             noise_probability: None,
         }],
         random_effects: vec![RandomEffect {

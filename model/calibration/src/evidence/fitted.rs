@@ -151,9 +151,16 @@ impl Evidence {
                 vec![(of(Shape::Table { over, at, value, is_factor: false }), 1.0, relative)]
             }
             Record::Memory => {
-                let form = Shape::Memory { r0: MEMORY_REPETITIONS, unit_n: REFERENCE_LOAD_N };
-                let size = slope(curve, &self.points, |p| form.value(p));
-                vec![(of(form), size, relative * size * size)]
+                // The curve is in proportion to one of the forms.
+                let fitted = MEMORY_REPETITIONS.map(|r0| {
+                    let form = Shape::Memory { r0, unit_n: REFERENCE_LOAD_N };
+                    let size = slope(curve, &self.points, |p| form.value(p));
+                    let left =
+                        curve.iter().zip(&self.points).map(|(y, p)| (y - size * form.value(p)).powi(2));
+                    (left.sum::<f64>(), form, size)
+                });
+                let best = fitted.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+                best.map(|(_, form, size)| (of(form), size, relative * size * size)).into_iter().collect()
             }
             Record::Table(over, is_factor) => {
                 let (at, value) = table(&self.points, curve, |p| over.value(p), is_factor);

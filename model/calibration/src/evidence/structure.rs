@@ -43,7 +43,7 @@ const LEAST_WANDERING_SERIES: usize = 24;
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
 /// Repetitions after which the memory of the previous load has decayed to 1/e.
-pub(super) const MEMORY_REPETITIONS: f64 = 20.0;
+pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
 const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
 
@@ -100,6 +100,7 @@ impl Structure {
             scale: self.scale,
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
+            is_level_of_session: self.record == Record::Table(Abscissa::Session, true),
             noise_probability: (self.covariate == NOISE).then_some(WANDERING_PROBABILITY),
         }
     }
@@ -338,17 +339,19 @@ impl Collector<'_> {
     }
 
     fn previous_load(&mut self) {
-        let memory = |p: &Point| {
-            let decay = libm::exp(-p.through / MEMORY_REPETITIONS);
-            (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
-        };
-        let memory: Basis = Box::new(move |rows| kernel::single(&rows.column(memory)));
+        let memories = MEMORY_REPETITIONS.map(|repetitions| -> Basis {
+            let memory = move |p: &Point| {
+                let decay = libm::exp(-p.through / repetitions);
+                (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
+            };
+            Box::new(move |rows| kernel::single(&rows.column(memory)))
+        });
         self.add(
             "previous load",
             "load",
             Record::Memory,
-            &[Channel::Silicone, Channel::Friction],
-            vec![memory],
+            &[Channel::Silicone, Channel::Friction, Channel::Reading],
+            memories.into(),
         );
     }
 
@@ -409,8 +412,8 @@ impl Collector<'_> {
             );
         }
         // The mount effect on friction is in every hypothesis.
-        let forces = &[Channel::Reading, Channel::Drag];
-        self.levels("mount", "mount", Record::Nothing, forces, |_, label| label.mount.clone());
+        let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
+        self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
         let switches =
             &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
         self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {

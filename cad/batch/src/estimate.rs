@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::content::MeshMaker;
@@ -21,7 +22,7 @@ const WARM_UP_VARIANTS: usize = 8;
 const MEASURED_VARIANTS: usize = 24;
 
 /// Refusals of the same kind.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct RefusalGroup {
     /// [`Refusal::kind`]: the field or the constraint.
     pub kind: String,
@@ -34,7 +35,7 @@ pub struct RefusalGroup {
 }
 
 /// Measurements of a few variants.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Measured {
     /// Number of measured variants.
     pub variants: usize,
@@ -47,7 +48,7 @@ pub struct Measured {
 }
 
 /// The estimate of a dry run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Estimate {
     /// Number of variants of the shard.
     pub variants: u64,

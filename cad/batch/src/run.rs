@@ -8,6 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use pinswitch_diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checksum::with_checksum;
@@ -165,7 +166,7 @@ impl From<ProductError> for RunError {
 }
 
 /// The content of `shard.json`, the record of a finished shard.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ShardStamp {
     /// [`SweepSource::digest`].
     pub sweep_sha256: String,

@@ -4,21 +4,24 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use pinswitch_diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::diagnostics::diagnostic_error;
 
 /// Shard `number` of `of`, counted from 1: a contiguous block of the sweep, since adjacent variants
 /// share parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "UncheckedShard")]
 pub struct Shard {
+    /// Number of the shard, from 1.
     number: u64,
+    /// Number of shards.
     of: u64,
 }
 
 /// A shard as a file contains it, not yet checked.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 struct UncheckedShard {
     number: u64,
     of: u64,

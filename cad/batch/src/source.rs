@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use pinswitch_diagnostic::{Diagnostic, Location};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml_edit::{Document, Item, TomlError};
@@ -24,7 +25,7 @@ const MAX_SWEEP_BYTES: u64 = 1 << 20;
 const MAX_ROWS_BYTES: u64 = 256 << 20;
 
 /// The texts of a sweep.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SweepSource {
     /// Name of the sweep: as given, or the stem of its file.
     pub name: String,

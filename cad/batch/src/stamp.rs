@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use pinswitch_diagnostic::{Diagnostic, Location};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checksum::{has_valid_checksum, with_checksum};
@@ -16,7 +17,7 @@ pub(super) const STAMP: &str = "batch.json";
 const SCHEMA: &str = "pinswitch.batch/1";
 
 /// The stamp of a destination: the content of `batch.json`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Stamp {
     /// Name and version of this file's schema.
     pub schema: String,

@@ -1,9 +1,10 @@
 //! Totals of a batch or a shard.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Totals over a number of variants.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Tally {
     /// Variants that were made, in this run or an earlier one.
     pub made: u64,

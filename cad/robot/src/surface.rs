@@ -4,6 +4,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::FrictionCurve;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Name and version of the JSON format.
@@ -12,10 +13,13 @@ const SCHEMA: &str = "pinswitch.surface/1";
 const EDGE: f64 = 1.96;
 
 /// Tensions of a switch: rows for wrap angles, columns for loads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Surface {
+    /// Name and version of the format.
     schema: &'static str,
+    /// Name of the switch.
     name: String,
+    /// Law of the tensions.
     law: &'static str,
     /// Wrap angles, ascending, rad.
     wrap_rad: Vec<f64>,

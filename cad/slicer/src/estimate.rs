@@ -1,9 +1,10 @@
 //! Time and filament from the comments at the end of a slicer's G-code.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Time and filament of a print.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PrintEstimate {
     /// Time, minutes.
     pub print_minutes: f64,

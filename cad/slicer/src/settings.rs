@@ -1,5 +1,6 @@
 //! Settings of a slicer for printer and material.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use pinswitch_switch::config::Configuration;
@@ -13,7 +14,7 @@ const INFILL_PCT: u32 = 100;
 const ELEPHANT_FOOT_MM: f64 = 0.2;
 
 /// Settings that follow from a configuration. All others are the slicer's defaults.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PrintSettings {
     /// Nozzle, mm.
     pub nozzle_mm: f64,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::estimate::PrintEstimate;
@@ -16,7 +17,7 @@ pub const SLICING_FILE: &str = "slicing.json";
 pub const SETTINGS_FILE: &str = "settings.ini";
 
 /// A file of a set with its estimate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SlicedFile {
     /// The file.
     pub file: String,
@@ -26,7 +27,7 @@ pub struct SlicedFile {
 }
 
 /// Time and filament of a set.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Slicing {
     /// Name and version of this file's schema.
     pub schema: &'static str,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use pinswitch_measurements::{correlation, ranks};
@@ -12,7 +13,7 @@ use crate::table::PlateauRow;
 const TOGETHER: f64 = 0.95;
 
 /// Two confounded covariates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Aliasing {
     /// Names of the covariates.
     pub covariates: [String; 2],

@@ -6,12 +6,13 @@ use std::convert::Infallible;
 use pinswitch_friction::least_squares::minimise;
 use pinswitch_friction::published::{self, PublishedLayout};
 use pinswitch_friction::{LayoutLaw, PinPattern, Substrate, Switch, ThresholdRule, sort_by_number};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::table::Condition;
 
 /// Result of one explanation of the seven maxima.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Explanation {
     /// Id of the effect; `as printed` or `refitted` for the paper's model.
     pub id: &'static str,

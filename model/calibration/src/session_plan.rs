@@ -2,6 +2,7 @@
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::published;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::report::{Report, TrialOutcome};
@@ -14,7 +15,7 @@ pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
 pub(crate) const COVERED: f64 = 0.9;
 
 /// Answer to a question.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
     /// One of the two effects is attributed, without the other.
@@ -40,7 +41,7 @@ impl Answer {
 }
 
 /// A question of a plan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanQuestion {
     /// The two explanations: two ids, or an id and `none`.
     pub between: [String; 2],
@@ -62,7 +63,7 @@ fn open() -> Answer {
 }
 
 /// Plan of a session: the content of `experiment.json`, and the answer to each question.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SessionPlan {
     /// Duration in minutes.
     pub minutes: f64,

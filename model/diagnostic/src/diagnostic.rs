@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-use serde::ser::SerializeMap;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::{Location, excerpt, neutral_line};
@@ -19,7 +19,7 @@ const LONGEST_LINE: usize = 590;
 const MAX_CAUSES: usize = 5;
 
 /// A field and the value that it takes, as TOML.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Change {
     /// Field, such as `shell.width_mm`.
     pub field: String,
@@ -31,7 +31,11 @@ pub struct Change {
 ///
 /// Its [`Display`](fmt::Display) is one line, `location: problem; help`, for logs and tables; [`Diagnostic::render`] is
 /// what a person reads, and its serialisation what a program does.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, JsonSchema)]
+#[schemars(
+    with = "WrittenDiagnostic<'static>",
+    description = "What is wrong, where, and what to do about it."
+)]
 pub struct Diagnostic {
     location: Option<Box<Location>>,
     problem: String,
@@ -209,25 +213,36 @@ impl PartialEq for Diagnostic {
 }
 
 impl Serialize for Diagnostic {
-    /// An object with the keys `location`, `problem`, `help`, `changes` and `causes`; those without content are absent.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        if let Some(location) = &self.location {
-            map.serialize_entry("location", location)?;
+        WrittenDiagnostic {
+            location: self.location(),
+            problem: &self.problem,
+            help: self.help(),
+            changes: &self.changes,
+            causes: self.causes(),
         }
-        map.serialize_entry("problem", &self.problem)?;
-        if let Some(help) = &self.help {
-            map.serialize_entry("help", help)?;
-        }
-        if !self.changes.is_empty() {
-            map.serialize_entry("changes", &self.changes)?;
-        }
-        let causes = self.causes();
-        if !causes.is_empty() {
-            map.serialize_entry("causes", &causes)?;
-        }
-        map.end()
+        .serialize(serializer)
     }
+}
+
+/// What is wrong, where, and what to do about it. Keys without content are absent.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Diagnostic")]
+struct WrittenDiagnostic<'a> {
+    /// Where the problem is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    location: Option<&'a Location>,
+    /// What is wrong, with the bound that was broken.
+    problem: &'a str,
+    /// What to do about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    help: Option<&'a str>,
+    /// Values that solve the problem when all of them are set.
+    #[serde(skip_serializing_if = "<[Change]>::is_empty")]
+    changes: &'a [Change],
+    /// Messages of the errors that caused it, outermost first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    causes: Vec<String>,
 }
 
 impl From<String> for Diagnostic {

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use unicode_width::UnicodeWidthStr;
 
@@ -20,7 +21,7 @@ const WINDOW: usize = 100;
 const COLUMNS_BEFORE: usize = 40;
 
 /// Where a problem is: a file or an option, a line and a column in it, and the field that is wrong.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Location {
     /// File as given, or the option that gave the value.
     #[serde(skip_serializing_if = "Option::is_none")]

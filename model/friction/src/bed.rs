@@ -1,12 +1,13 @@
 //! The support of the tendon: dimensions and stiffness of pins, silicone and tendon.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Part of the wrap outside the outermost pins where silicone can touch the tendon.
 ///
 /// The paper does not describe the tendon's path there (14 to 20 degrees a side with three pins);
 /// [`crate::physics::hypotheses`] compares the alternatives with the published facts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum OutsidePins {
     /// None beyond the grooves of the outermost pins: free spans lead to the guide pulleys.
@@ -18,7 +19,7 @@ pub enum OutsidePins {
 }
 
 /// Dimensions and stiffness of the support under the tendon. Lengths are in mm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Bed {
     /// Radius of the silicone's surface.
     pub contact_radius_mm: f64,

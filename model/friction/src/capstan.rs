@@ -1,9 +1,10 @@
 //! The capstan equation: tension across a wrapped contact.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Direction of the load's motion while the tension is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// The load is released, and friction reduces the tension (`d = -1`).

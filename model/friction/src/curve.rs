@@ -1,5 +1,6 @@
 //! Predicted friction curves.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::band::Band;
@@ -11,7 +12,7 @@ use crate::substrate::Substrate;
 use crate::switch::SwitchState;
 
 /// Tension and friction over load, as columns of equal length. Forces are in newtons.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrictionCurve {
     /// Law of the curve.
     pub law: Law,

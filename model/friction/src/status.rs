@@ -1,5 +1,6 @@
 //! The status of a prediction: how well measurements support it, with the reasons.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Contact;
@@ -19,7 +20,7 @@ const LOAD_SLACK: f64 = 1e-3;
 const UNMEASURED_BELOW: f64 = 0.9;
 
 /// Support of a prediction by measurements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PredictionStatus {
     /// Condition that the paper measured.

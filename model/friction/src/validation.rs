@@ -1,6 +1,7 @@
 //! Validation of the laws: errors on the seven published maxima, in sample and
 //! leave-one-layout-out. The default law has the smallest leave-one-layout-out error.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::bed::Bed;
@@ -14,7 +15,7 @@ use crate::substrate::Substrate;
 use crate::switch::Switch;
 
 /// Relative errors of a law on one published maximum: predicted over measured, minus one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MaximumError {
     /// Name of the maximum, such as `three-double, device`.
     pub maximum: String,
@@ -26,7 +27,7 @@ pub struct MaximumError {
 }
 
 /// Errors of a law on all seven maxima.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LawValidation {
     /// Law.
     pub law: Law,

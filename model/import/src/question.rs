@@ -1,11 +1,12 @@
 //! Decisions that only a person can take.
 
 use pinswitch_diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A decision that the file leaves open: two or more readings, and the option that decides for
 /// each.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Question {
     /// What is uncertain.
     pub problem: String,
@@ -14,7 +15,7 @@ pub struct Question {
 }
 
 /// One reading of a file, and the options that decide for it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Answer {
     /// What the file then means.
     pub reading: String,

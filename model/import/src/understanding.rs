@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use pinswitch_diagnostic::{excerpt, neutral_line};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::column::Column;
@@ -16,7 +17,7 @@ const MAX_NAME: usize = 32;
 const MAX_NOTES: usize = 12;
 
 /// What was recognised in the files.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct Understanding {
     /// `table` or `log`.
     pub kind: &'static str,
@@ -37,7 +38,7 @@ pub struct Understanding {
 }
 
 /// What was recognised in one file.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct FileUnderstanding {
     /// Name of the file.
     pub name: String,
@@ -64,7 +65,7 @@ pub struct FileUnderstanding {
 }
 
 /// What was recognised in one column.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct ColumnUnderstanding {
     /// Name in the file.
     pub name: String,

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 
 use pinswitch_calibration::calibrate;
 use pinswitch_calibration::effects::UNATTRIBUTED;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::plan::{EffectPlan, Plan};
 use crate::simulate::simulate;
 
 /// Detection rate of an effect with one size.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Power {
     /// Id of the effect.
     pub id: String,

@@ -9,12 +9,13 @@ use pinswitch_friction::{Direction, Substrate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::plan::{Plan, RawPlan};
 
 /// Faults that a log contains on purpose.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Faults {
     /// Number of samples with a spike.
     pub spikes: usize,

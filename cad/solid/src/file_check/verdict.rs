@@ -3,6 +3,7 @@
 use std::io::{BufRead, Seek};
 
 use pinswitch_diagnostic::{Diagnostic, excerpt, neutral_line};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::validity::{Examination, Expectation, Fault, Level, MeshFacts};
@@ -16,10 +17,13 @@ const MAX_CHARACTERS: usize = 300;
 const MAX_PARTS: usize = 100;
 
 /// The outcome of the check of one file; its facts are the sums over its parts.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Verdict {
+    /// The file, as given.
     file: String,
+    /// Its format.
     format: &'static str,
+    /// Whether it has no fault that counts.
     valid: bool,
     /// Whether all checks that count are complete, or a fault is known.
     judged: bool,
@@ -34,9 +38,11 @@ pub struct Verdict {
 }
 
 /// The outcome of the check of one part of a file.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct PartVerdict {
+    /// Name of the object.
     name: String,
+    /// Whether it has no fault that counts.
     valid: bool,
     /// The outcome.
     #[serde(skip)]

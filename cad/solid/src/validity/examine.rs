@@ -1,5 +1,6 @@
 //! The examination: all checks in their order.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::budget::Allowance;
@@ -45,7 +46,7 @@ impl Default for Expectation {
 }
 
 /// Measures of a mesh.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct MeshFacts {
     /// Number of triangles.
     pub triangles: usize,
@@ -86,7 +87,7 @@ impl MeshFacts {
 }
 
 /// A check that was not completed, because the mesh needs more work than a bound allows.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Incomplete {
     /// Name of the check.
     pub check: &'static str,
@@ -97,7 +98,7 @@ pub struct Incomplete {
 }
 
 /// The outcome of an examination.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Examination {
     /// Measures of the mesh.
     pub facts: MeshFacts,

@@ -1,11 +1,12 @@
 //! Faults of meshes and files.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::mesh::Point3;
 
 /// How serious a fault is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
     /// An observation without consequences for the part.
@@ -28,7 +29,7 @@ impl Level {
 }
 
 /// A fault of a mesh or of a file: its name, level, number of occurrences, place and extent.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fault {
     /// Name of the check that failed.
     pub check: &'static str,

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use pinswitch_diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::kernel::{Kernel, KernelError};
@@ -13,7 +14,7 @@ use crate::solid::Solid;
 use crate::validity::{is_closed, largest_distance};
 
 /// The agreement of a mesh with that of a second kernel: differences, and their limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Verification {
     /// Name of the kernel.
     pub kernel: &'static str,

@@ -1,12 +1,13 @@
 //! One parameter: its unit, range, origin and reason, and its conversion from and to TOML.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use toml_edit::{Array, Value};
 
 use super::ValueError;
 
 /// The origin of a default value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
     /// Printed in the paper.

@@ -1,6 +1,7 @@
 //! The reason why no design meets a request: the missed targets of the nearest design, the limits
 //! that block it, and changes that would meet the request.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::candidate::Trial;
@@ -23,7 +24,7 @@ const RANGE_END_SHARE: f64 = 0.01;
 const LEAST_REDUCTION: f64 = 0.02;
 
 /// A target that the nearest design misses.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Missed {
     /// The target as text.
     pub target: String,
@@ -37,7 +38,7 @@ pub struct Missed {
 }
 
 /// A change of one parameter while all others stay fixed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Move {
     /// The parameter.
     pub parameter: Parameter,
@@ -57,7 +58,7 @@ pub struct Move {
 }
 
 /// The reason why no design meets a request.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Blocked {
     /// Targets that the nearest design misses.
     pub missed: Vec<Missed>,
@@ -116,7 +117,7 @@ fn advice(m: &Move) -> String {
 }
 
 /// The change of one parameter among several.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Change {
     /// The parameter.
     pub parameter: Parameter,

@@ -2,6 +2,7 @@
 //! errors. It guides the search and gives the sources of the uncertainty. Reported probabilities
 //! come from [`super::probability`].
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -30,7 +31,7 @@ pub(super) struct Spread {
 }
 
 /// Share of the variance of a target.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct VarianceShare {
     /// `constants`, `model`, or a tolerance.
     pub source: String,

@@ -4,6 +4,7 @@
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -13,7 +14,7 @@ use crate::parallel::map_each;
 use crate::request::SOURCES;
 
 /// The probability of meeting a request, estimated from simulated parts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Probability {
     /// Share of draws that meet all targets.
     pub all: f64,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use pinswitch_friction::PredictionStatus;
 use pinswitch_friction::layout_search::LayoutCandidate;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::candidate::{Draw, Trial, outer_width_mm};
@@ -17,7 +18,7 @@ use crate::feasibility::is_feasible;
 use crate::request::{Parameter, Quantity, Target};
 
 /// A target with the result of a proposal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TargetResult {
     /// The target.
     #[serde(flatten)]
@@ -33,7 +34,7 @@ pub struct TargetResult {
 }
 
 /// A configuration with its reported properties.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Proposal {
     /// Occupied grooves.
     pub pins: Vec<usize>,

@@ -1,5 +1,6 @@
 //! Sensitivity of a proposal to each parameter.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::candidate::Trial;
@@ -11,7 +12,7 @@ use crate::request::{Parameter, Quantity};
 const STEP: f64 = 0.02;
 
 /// Derivatives with respect to one parameter, by central differences.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Sensitivity {
     /// The parameter.
     pub parameter: Parameter,

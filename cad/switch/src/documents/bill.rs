@@ -1,5 +1,6 @@
 //! The bill of materials: pins, silicone, tendon, fasteners and hardware.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::config::{MouldKind, MountKind};
@@ -19,7 +20,7 @@ pub(crate) const AXLE_WASHER_MM: f64 = 1.6;
 pub(crate) const AXLE_NUT_MM: f64 = 6.8;
 
 /// Steel pins.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Pins {
     /// Number in the switch.
     pub number: usize,
@@ -32,7 +33,7 @@ pub struct Pins {
 }
 
 /// Silicone to cast.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Silicone {
     /// Volume of the layer before shrinkage, mm³.
     pub layer_mm3: f64,
@@ -60,7 +61,7 @@ pub struct Silicone {
 }
 
 /// The tendon.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Tendon {
     /// Diameter of the bare rope, mm.
     pub rope_diameter_mm: f64,
@@ -71,7 +72,7 @@ pub struct Tendon {
 }
 
 /// Screws with their nuts or inserts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fasteners {
     /// Number of screws.
     pub number: usize,
@@ -89,7 +90,7 @@ pub struct Fasteners {
 }
 
 /// Steel dowels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Dowels {
     /// Number.
     pub number: usize,
@@ -100,7 +101,7 @@ pub struct Dowels {
 }
 
 /// Hardware of a mounting plate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MountHardware {
     /// Number of holes for screws of the plate, or at the end of the proximal link.
     pub holes: usize,
@@ -130,7 +131,7 @@ pub struct MountHardware {
 }
 
 /// The bill of materials of one set.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Bill {
     /// Steel pins.
     pub pins: Pins,

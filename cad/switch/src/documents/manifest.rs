@@ -1,6 +1,7 @@
 //! `manifest.json`: settings, dimensions, parts, bill, prediction and files of a set, with hashes to verify them.
 
 use pinswitch_friction::{FrictionCurve, Law, PredictionStatus, Transition};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -17,11 +18,12 @@ use pinswitch_solid::validity::MeshFacts;
 use pinswitch_solid::verification::Verification;
 
 /// A parameter of the configuration.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Setting {
     /// Field, such as `shell.width_mm`.
     pub field: String,
     /// Value.
+    #[schemars(extend("type" = ["boolean", "number", "string", "array"]))]
     pub value: Value,
     /// Unit; empty for words and plain numbers.
     pub unit: &'static str,
@@ -32,7 +34,7 @@ pub struct Setting {
 }
 
 /// A dimension that is derived from the settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct DerivedDimension {
     /// Name.
     pub name: &'static str,
@@ -47,7 +49,7 @@ pub struct DerivedDimension {
 }
 
 /// A printed part.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PartEntry {
     /// Name.
     pub name: String,
@@ -73,7 +75,7 @@ pub struct PartEntry {
 }
 
 /// The accuracy of all meshes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeshBound {
     /// Chord tolerance, mm: the largest distance of a curve from its mesh.
     pub chord_tolerance_mm: f64,
@@ -82,7 +84,7 @@ pub struct MeshBound {
 }
 
 /// The prediction at the heaviest load, with its law and status.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FrictionEntry {
     /// Law.
     pub law: Law,
@@ -110,7 +112,7 @@ pub struct FrictionEntry {
 }
 
 /// The prediction of another law at the heaviest load.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LawEntry {
     /// Law.
     pub law: Law,
@@ -127,7 +129,7 @@ pub struct LawEntry {
 }
 
 /// A file of the set.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FileEntry {
     /// Name in the folder of the set.
     pub file: String,
@@ -141,7 +143,7 @@ pub struct FileEntry {
 }
 
 /// The configuration of a set.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SourceEntry {
     /// Name of the template, or path of the file from the folder of the set, with `/` on every machine. The path of a file is
     /// never the name of a template.
@@ -160,7 +162,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
 }
 
 /// The batch that contains a set.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct BatchEntry {
     /// SHA-256 of the sweep.
     pub sweep_sha256: String,
@@ -171,7 +173,7 @@ pub struct BatchEntry {
 }
 
 /// The manifest of a set.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Manifest {
     /// Name and version of the schema.
     pub schema: &'static str,

@@ -1,12 +1,13 @@
 //! Plates in the manifest.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::built::Built;
 use crate::plates::plates;
 
 /// A plate to print.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlateEntry {
     /// 3MF file.
     pub file: String,
@@ -17,7 +18,7 @@ pub struct PlateEntry {
 }
 
 /// A part on a plate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlacedPart {
     /// Name.
     pub name: String,

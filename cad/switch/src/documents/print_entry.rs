@@ -1,9 +1,10 @@
 //! Print time and filament in the manifest of a sliced set.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Time and filament to print a set, by a slicer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PrintEntry {
     /// `plates` if all plates were sliced, `parts` if each part was sliced alone.
     pub of: &'static str,

@@ -2,6 +2,7 @@
 
 use pinswitch_friction::physics::Bed;
 use pinswitch_friction::{FrictionCurve, NORMAL_95, Transition, predict};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Measured, mean};
@@ -9,7 +10,7 @@ use crate::design::Design;
 use crate::prediction::loads_n;
 
 /// One measured quantity next to its planned value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredQuantity {
     /// Key in the file.
     pub key: &'static str,
@@ -30,7 +31,7 @@ pub struct MeasuredQuantity {
 }
 
 /// A made switch compared with its plan.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Comparison {
     /// Measured quantities.
     pub quantities: Vec<MeasuredQuantity>,

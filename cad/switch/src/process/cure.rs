@@ -1,9 +1,10 @@
 //! One cure: a temperature and a duration.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A cure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Cure {
     /// Temperature, °C.
     pub temperature_c: f64,

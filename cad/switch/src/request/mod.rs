@@ -35,7 +35,7 @@ const LARGEST_DEVIATION: f64 = 20.0;
 const SAME_LOAD: f64 = 1e-6;
 
 /// Targets, limits, variable parameters, available materials, and manufacturing tolerances.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Request {
     /// Targets of the curve, all to be met at once.
     pub targets: Vec<Target>,
@@ -66,7 +66,7 @@ pub struct Limits {
 }
 
 /// Parameters that the search may vary.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Vary {
     /// Whether the occupied grooves may change.
     pub pattern: bool,
@@ -75,7 +75,7 @@ pub struct Vary {
 }
 
 /// A continuous parameter and the range in which it varies.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Varied {
     /// The parameter.
     pub parameter: Parameter,

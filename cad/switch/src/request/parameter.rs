@@ -1,11 +1,12 @@
 //! The continuous parameters that a search may vary.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::config::Configuration;
 
 /// A parameter that may vary; the names are those of a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
     /// Angle between neighbouring grooves, degrees: `segment.span_deg` over `segment.grooves`.

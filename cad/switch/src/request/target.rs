@@ -1,12 +1,13 @@
 //! Targets: a quantity of the curve and a requirement on it.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::config::Diagnostic;
 use pinswitch_diagnostic::short_number;
 
 /// A quantity of a friction curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "quantity", rename_all = "snake_case")]
 pub enum Quantity {
     /// Load at which silicone carries half of the friction, N.
@@ -67,7 +68,7 @@ impl std::fmt::Display for Quantity {
 }
 
 /// A requirement on a quantity. All values are above zero.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Requirement {
     /// No more than this.
@@ -148,7 +149,7 @@ impl std::fmt::Display for Requirement {
 }
 
 /// A quantity with a requirement on it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Target {
     /// The quantity.
     #[serde(flatten)]

@@ -3,6 +3,7 @@
 
 use crate::process::Process;
 use pinswitch_friction::physics::{Bed, MadeDimensions, modulus_of_shore_a_mpa};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::design::Design;
@@ -36,7 +37,7 @@ const SELECTED_TENDON_MM: f64 = 0.02;
 const SET_WRAP_DEG: f64 = 0.25;
 
 /// Dimension of the chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ChainDimension {
     /// Diameter of the pins, which are cut from one rod.
@@ -139,7 +140,7 @@ impl ChainDimension {
 }
 
 /// Tolerance of a dimension, with its source.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SourcedTolerance {
     /// Half width of the tolerance zone, ±, in the unit of the dimension.
     pub plus_minus: f64,
@@ -148,7 +149,7 @@ pub struct SourcedTolerance {
 }
 
 /// Dimension of the chain of one switch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Link {
     /// Dimension.
     pub dimension: ChainDimension,

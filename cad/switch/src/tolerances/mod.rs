@@ -21,6 +21,7 @@ mod simulation;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::physics::{Constants, Dimension, MadeDimensions, PhysicsSwitch};
 use pinswitch_friction::{Contact, Substrate};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::design::Design;
@@ -39,7 +40,7 @@ const WIDER_RANGE: f64 = 1.5;
 const STEP: f64 = 1e-6;
 
 /// Contribution of a dimension to the variance of the threshold.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Contribution {
     /// The dimension with its tolerances.
     #[serde(flatten)]
@@ -51,7 +52,7 @@ pub struct Contribution {
 }
 
 /// Scatter of the threshold to first order.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Linear {
     /// Standard deviation, N.
     pub standard_deviation_n: f64,
@@ -60,7 +61,7 @@ pub struct Linear {
 }
 
 /// Tolerances for a wanted scatter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Allocation {
     /// Wanted half width of the 95 % interval, N.
     pub wanted_n: f64,

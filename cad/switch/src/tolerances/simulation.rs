@@ -3,13 +3,14 @@
 use pinswitch_diagnostic::Diagnostic;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::parallel::map_each;
 
 /// Thresholds of simulated switches.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Simulated {
     /// Number of simulated switches.
     pub draws: usize,

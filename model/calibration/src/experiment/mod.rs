@@ -32,6 +32,7 @@ mod whitening;
 use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{published, sort_by_number};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use candidates::paper_runs;
@@ -60,7 +61,7 @@ const LIFT: &str = "loads descend from here";
 const ANSWERABLE: f64 = 0.5;
 
 /// A question with the expected result of the runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct QuestionOutlook {
     /// The two explanations: two ids, or an id and `none`.
     pub between: [String; 2],
@@ -74,7 +75,7 @@ pub struct QuestionOutlook {
 }
 
 /// A question that no experiment on the rig answers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Unanswerable {
     /// The two explanations: two ids, or an id and `none`.
     pub between: [String; 2],
@@ -83,7 +84,7 @@ pub struct Unanswerable {
 }
 
 /// Content of `experiment.json`, and the runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Proposal {
     /// Name and version of the format.
     pub schema: &'static str,

@@ -1,10 +1,11 @@
 //! Hierarchical noise of a model file: repetition noise, possibly autocorrelated, and components that
 //! rows share.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A variance that increases with the square of the load: `constant^2 + (per_load F)^2`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Standard deviation at zero load, in newtons.
@@ -22,7 +23,7 @@ impl Spread {
 
 /// Drifting part of the offsets of series, in files of earlier versions. Sizes are shares of the
 /// offsets' standard deviations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wandering {
     /// Correlation with the previous series; 0 without drift.
@@ -43,7 +44,7 @@ impl Wandering {
 }
 
 /// Noise of a table. A component is zero if it was not detected or not estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
     /// Noise of one repetition.

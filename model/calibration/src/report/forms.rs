@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Estimate;
 
 /// A formula that fits equally well.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FormRival {
     /// Shape.
     pub shape: String,
@@ -18,7 +19,7 @@ pub struct FormRival {
 }
 
 /// Formula of unattributed structure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FormReport {
     /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`,
     /// `forgetting`, `memory` or `groups`.

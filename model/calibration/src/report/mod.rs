@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
@@ -18,7 +19,7 @@ pub use trials::{TrialOutcome, TrialReport};
 pub use verdict::Verdict;
 
 /// A constant with its confidence interval.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Estimate {
     /// Value.
     pub value: f64,
@@ -29,7 +30,7 @@ pub struct Estimate {
 }
 
 /// Counts of a table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DataSummary {
     /// Number of rows.
     pub rows: usize,
@@ -42,7 +43,7 @@ pub struct DataSummary {
 }
 
 /// A fitted model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelReport {
     /// In-sample RMSE in newtons, without gross errors; predictions contain the effects of their mounts.
     #[serde(rename = "rmse_N")]
@@ -65,7 +66,7 @@ pub struct ModelReport {
 }
 
 /// An effect that explains the data equally well.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RivalReport {
     /// Id; the name of the structure, if it is not an effect.
     pub id: String,
@@ -78,7 +79,7 @@ pub struct RivalReport {
 }
 
 /// An effect of the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffectReport {
     /// Id, or `unattributed`.
     pub id: String,
@@ -112,7 +113,7 @@ pub struct EffectReport {
 }
 
 /// Outcome for a candidate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
     /// In the model.
@@ -128,7 +129,7 @@ pub enum Fate {
 }
 
 /// An effect of the vocabulary as a candidate.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CandidateReport {
     /// Id.
     pub id: String,
@@ -139,7 +140,7 @@ pub struct CandidateReport {
 }
 
 /// Structure without a name that may act.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StructureReport {
     /// Quantity and covariate, such as `friction over position`.
     pub name: String,
@@ -150,7 +151,7 @@ pub struct StructureReport {
 }
 
 /// An expected error with its interval, in newtons.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExpectedErrorReport {
     /// Expected root mean square error.
     pub value: f64,
@@ -159,7 +160,7 @@ pub struct ExpectedErrorReport {
 }
 
 /// An effect that is not identifiable with this table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Invisible {
     /// Id.
     pub id: String,
@@ -173,7 +174,7 @@ pub struct Invisible {
 }
 
 /// A series that departs from the model by more than its noise.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BadSeries {
     /// Session, if the table names it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -214,7 +215,7 @@ impl BadSeries {
 }
 
 /// A component of the noise.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoisePart {
     /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount` or `specimen`.
     pub part: String,
@@ -227,7 +228,7 @@ pub struct NoisePart {
 }
 
 /// Sizes of an effect that the data do not exclude.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitReport {
     /// Id.
     pub id: String,
@@ -256,7 +257,7 @@ pub struct LimitReport {
 }
 
 /// An input of a calibration that no manifest lists, so that a change of it is not detected.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ExternalInput {
     /// Name without its folder.
     pub file: String,
@@ -265,7 +266,7 @@ pub struct ExternalInput {
 }
 
 /// Origin of the inputs of a calibration.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ProvenanceReport {
     /// External inputs, by name. All others were compared with their manifests.
     pub external: Vec<ExternalInput>,
@@ -279,7 +280,7 @@ impl ProvenanceReport {
 }
 
 /// Content of `report.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// Name and version of the format.
     pub schema: String,
@@ -367,7 +368,7 @@ impl Report {
 }
 
 /// Errors on rows with higher loads than those fitted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Extrapolation {
     /// Highest load fitted, in newtons.
     #[serde(rename = "fitted_below_N")]

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{EffectReport, Report, Verdict};
 use crate::session_plan::SessionPlan;
 
 /// A constant of the switch that differs between sessions or specimens.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ChangeReport {
     /// `mu_p`, `mu_s`, or `mu` for all friction coefficients.
     pub constant: String,
@@ -33,7 +34,7 @@ impl ChangeReport {
 }
 
 /// State after one of several tables and those before it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SessionReport {
     /// The last table.
     pub table: String,

@@ -1,11 +1,12 @@
 //! Trials of user-defined effects in a report.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Estimate;
 
 /// Outcome of a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TrialOutcome {
     /// The effect is present in readings from which it was not derived, with the sign of its start
@@ -35,7 +36,7 @@ impl TrialOutcome {
 }
 
 /// Trial of one user-defined effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrialReport {
     /// Id.
     pub id: String,

@@ -1,11 +1,12 @@
 //! Verdict of a calibration.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{TrialOutcome, TrialReport};
 
 /// Verdict on the paper's model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// No effect is probable, and every relevant size of every effect that acts on this table is

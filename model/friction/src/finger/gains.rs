@@ -1,12 +1,13 @@
 //! Gains and costs of a curve, load by load, with their bands and the measured values.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::contact::Contact;
 use crate::curve::{FrictionCurve, published_points};
 
 /// Gain or cost with its band, as a fraction (0.1 is 10 %).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Gain {
     /// Value of the curve.
     pub value: f64,
@@ -17,7 +18,7 @@ pub struct Gain {
 }
 
 /// Gains and costs at one load.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FingerPoint {
     /// Load, N.
     pub load_n: f64,
@@ -134,7 +135,7 @@ pub fn extra_holding_of(force_difference: f64) -> f64 {
 }
 
 /// Force difference from a measurement of the paper.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredGain {
     /// Load, N.
     pub load_n: f64,

@@ -2,6 +2,7 @@
 //! the tendon.
 
 use pinswitch_diagnostic::{Diagnostic, Location};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::gains::{FingerPoint, Tensions};
@@ -101,9 +102,11 @@ pub trait FlexionWrap {
 /// assert!(error.to_string().starts_with("joint angle (deg) = -5: must be from 0 to 180"));
 /// # Ok::<(), pinswitch_friction::finger::JointPathError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JointPath {
+    /// Wrap angle at the straight finger, degrees.
     wrap_at_straight_deg: f64,
+    /// Increase of the wrap angle per degree of flexion, degrees.
     wrap_per_flexion: f64,
 }
 
@@ -169,7 +172,7 @@ impl std::fmt::Display for JointPath {
 }
 
 /// Gains and costs at one flexion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JointPoint {
     /// Flexion of the joint, degrees.
     pub joint_deg: f64,
@@ -195,7 +198,7 @@ fn is_zero(value: &f64) -> bool {
 }
 
 /// Gains over the joint at one load.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JointCurve {
     /// Load, N.
     pub load_n: f64,

@@ -1,5 +1,6 @@
 //! Size of a motor that holds a load with the help of friction.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::gains::{FingerPoint, Gain};
@@ -9,7 +10,7 @@ use super::gains::{FingerPoint, Gain};
 /// Assumptions: mass is proportional to torque, with the same drum; the motor holds by its torque,
 /// without a brake or a self-locking gear; friction supports its full share while the load is held
 /// (`model/doc/finger.md`).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MotorSizing {
     /// Load that it can hold, N.
     pub holds_n: f64,

@@ -7,7 +7,10 @@
 mod definition;
 mod error;
 
+use std::borrow::Cow;
+
 use pinswitch_diagnostic::excerpt;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::Contact;
@@ -123,6 +126,17 @@ const LONGEST_WORD: usize = 60;
 impl Serialize for Law {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.as_str())
+    }
+}
+
+impl JsonSchema for Law {
+    fn schema_name() -> Cow<'static, str> {
+        "Law".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let words: Vec<&str> = Self::ALL.iter().map(|law| law.as_str()).collect();
+        json_schema!({ "description": "Law of friction.", "type": "string", "enum": words })
     }
 }
 

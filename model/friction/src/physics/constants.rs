@@ -1,10 +1,11 @@
 //! The three constants of the materials, and their fit to the published maxima.
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Material constants for the published bed; a [`Bed`](crate::bed::Bed) scales them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Constants {
     /// Ploughing coefficient `kappa` of the coating on a pin, `mu = kappa sqrt(N)`, in N^-0.5.
     pub kappa_per_sqrt_n: f64,

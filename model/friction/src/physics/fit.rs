@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use pinswitch_diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::constants::{Constants, PUBLISHED_FIT};
@@ -73,7 +74,7 @@ pub(super) fn published_maxima(wrap: impl Fn(&PinPattern) -> f64) -> Vec<Maximum
 }
 
 /// Constants fitted to published maxima.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MaximaFit {
     /// Fitted constants.
     pub constants: Constants,
@@ -89,7 +90,7 @@ pub struct MaximaFit {
 }
 
 /// Errors of the maxima of a layout, predicted with constants that are fitted to the others.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LayoutLeftOut {
     /// Name of the layout.
     pub layout: &'static str,

@@ -7,6 +7,7 @@
 //! is not used to test it. The paper does not give the radius either: the likelihoods are averaged
 //! over possible radii.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::constants::Constants;
@@ -40,7 +41,7 @@ const RADII_MM: [f64; 3] = [18.0, 22.0, 26.0];
 const SEARCH_N: (f64, f64) = (80.0, 0.5);
 
 /// Angle over which the tendon turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TurnAngle {
     /// The wrap angle, 63.89 degrees with every layout.
@@ -50,7 +51,7 @@ pub enum TurnAngle {
 }
 
 /// Hypothesis about the path of the tendon.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Hypothesis {
     /// Description.
     pub name: &'static str,
@@ -65,7 +66,7 @@ pub struct Hypothesis {
 }
 
 /// Comparison of a hypothesis with a fact.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FactComparison {
     /// Fact.
     pub fact: &'static str,
@@ -77,7 +78,7 @@ pub struct FactComparison {
 }
 
 /// Result of the test of a hypothesis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct HypothesisFinding {
     /// Hypothesis.
     pub hypothesis: Hypothesis,

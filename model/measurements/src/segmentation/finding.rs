@@ -3,10 +3,11 @@
 use std::fmt;
 
 use pinswitch_friction::Direction;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A defect of a log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum Finding {
     /// Samples far from the median of their plateau.

@@ -1,5 +1,6 @@
 //! Moves of the actuator, from its power, its position, or the force alone.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::force_moves::{ForceMoves, force_moves};
@@ -10,7 +11,7 @@ use super::two_levels::{LEVELS_NOISE, noise_about_slope, two_levels, without_spi
 use crate::median::median;
 
 /// Column from which the moves of a log were found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
     /// Power of the actuator.

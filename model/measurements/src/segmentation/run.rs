@@ -5,6 +5,7 @@ use std::fmt;
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::clock::SessionClock;
@@ -21,7 +22,7 @@ use crate::table::{Labels, Optional, PlateauRow, Sweep, Unknown};
 const SCHEMA: &str = "pinswitch.segmentation/1";
 
 /// Number of plateaus and defects of one log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SegmentedSeries {
     /// Name of the log in the description of the run.
     pub file: String,
@@ -46,7 +47,7 @@ impl fmt::Display for SegmentedSeries {
 }
 
 /// Plateaus and defects of each log of a run, in the order of the run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SegmentationReport {
     /// Name and version of the format.
     pub schema: &'static str,

@@ -1,6 +1,7 @@
 //! The segmentation of one log: its plateaus, moves and findings.
 
 use pinswitch_friction::Direction;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::direction::Evidence;
@@ -9,7 +10,7 @@ use super::interval::Move;
 use super::moves::Source;
 
 /// Kind of the motion in a log.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
     /// Moves with rests between them.

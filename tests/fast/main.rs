@@ -39,6 +39,8 @@ mod provenance;
 mod readme;
 mod reference_shell;
 mod release;
+mod report_documents;
+mod report_schemas;
 mod rig_set;
 mod schemas;
 mod segment_raw;

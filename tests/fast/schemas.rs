@@ -99,7 +99,7 @@ fn readings_and_their_schema_agree() {
 }
 
 /// Kinds of files with their readers and templates.
-const KINDS: [(&str, &str, &[&str]); 8] = [
+pub(crate) const KINDS: [(&str, &str, &[&str]); 8] = [
     ("effects", "effects", &["rig/effects.toml"]),
     ("import", "import_map", &["rig/import.toml"]),
     ("measured", "measured", &["rig/measured.toml"]),

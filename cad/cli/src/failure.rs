@@ -5,8 +5,8 @@ use std::fmt;
 use std::process::ExitCode;
 
 use pinswitch_diagnostic::Diagnostic;
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Exit code of work that could not be done: a full disk, an invalid mesh.
 const FAILED: u8 = 1;
@@ -14,9 +14,11 @@ const FAILED: u8 = 1;
 const BAD_INPUT: u8 = 2;
 
 /// Why a command stopped: an exit code and at least one diagnostic.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Failure {
+    /// Exit code of the program: 1 failed, 2 bad input.
     exit_code: u8,
+    /// Every problem, in the order in which it was met.
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -66,16 +68,6 @@ impl fmt::Display for Failure {
 impl Error for Failure {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         self.diagnostics.first().and_then(Error::source)
-    }
-}
-
-impl Serialize for Failure {
-    /// Writes an object with the keys `exit_code` and `diagnostics`.
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Failure", 2)?;
-        object.serialize_field("exit_code", &self.exit_code)?;
-        object.serialize_field("diagnostics", &self.diagnostics)?;
-        object.end()
     }
 }
 

@@ -13,6 +13,7 @@ use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus};
 use pinswitch_report::{FingerLayout, finger_svg};
 use pinswitch_switch::design::{Design, Joint};
 use pinswitch_switch::output::OutputFile;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::finger_text::{csv, table};
@@ -106,17 +107,23 @@ pub(super) struct Arguments {
 }
 
 /// The gains of one layout.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Layout {
+    /// Name of the switch.
     pub(super) name: String,
+    /// Law of the friction at the wrap angle of the configuration.
     pub(super) law: Law,
+    /// Support of its prediction by measurements.
     pub(super) trust: PredictionStatus,
+    /// Reasons of that status.
     pub(super) reasons: Vec<String>,
     /// Wrap angle of `points` in degrees.
     pub(super) wrap_deg: f64,
     /// Gains over the load.
     pub(super) points: Vec<FingerPoint>,
+    /// Gains at the loads that the paper measured.
     pub(super) measured: Vec<MeasuredGain>,
+    /// The motor that holds the heaviest load; null without a load.
     pub(super) motor: Option<MotorSizing>,
     /// Gains over the joint, at the light and at the heavy load.
     pub(super) over_joint: Vec<JointCurve>,
@@ -129,7 +136,7 @@ pub(super) struct Layout {
 }
 
 /// Geometry of a joint between its stops.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct JointGeometry {
     /// Flexion at the stops in degrees.
     pub(super) flexion_deg: [f64; 2],
@@ -157,23 +164,29 @@ impl JointGeometry {
 }
 
 /// The human finger, for comparison.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Human {
+    /// Least and largest usual force difference, a fraction.
     force_difference: [f64; 2],
     /// The same as extra holding.
     extra_holding: [f64; 2],
+    /// Largest force difference, a fraction.
     largest_force_difference: f64,
+    /// Flexion at which it was measured, degrees.
     largest_at_joint_deg: f64,
 }
 
 /// Content of `--json` and finger.json.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Report {
+    /// The human finger.
     human: Human,
+    /// What is assumed about finger and motor.
     pub(super) assumptions: Vec<String>,
     /// Assumed wrap over the joint; absent if every layout has a joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     joint_path: Option<JointPath>,
+    /// Each switch.
     pub(super) layouts: Vec<Layout>,
 }
 

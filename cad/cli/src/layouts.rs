@@ -1,6 +1,7 @@
 //! `pinswitch layouts`.
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use pinswitch_friction::published::{self, PublishedLayout};
@@ -17,27 +18,39 @@ pub(super) struct Arguments {
 }
 
 /// A published layout, with friction in N at the heaviest load.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Layout {
+    /// Name.
     name: &'static str,
+    /// Number of pins.
     pins: usize,
+    /// Angle between neighbouring pins, degrees.
     pitch_deg: f64,
+    /// Occupied grooves, numbered from 1.
     grooves: &'static [usize],
+    /// Friction on silicone, N.
     device_max_n: f64,
+    /// Friction on the rigid proxy, N.
     pins_max_n: f64,
 }
 
 /// A template and its first line.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Entry {
+    /// Name.
     name: &'static str,
+    /// First line.
     about: &'static str,
 }
 
-#[derive(Serialize)]
-struct Listing {
+/// The published layouts and the templates.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Listing {
+    /// Published layouts.
     layouts: Vec<Layout>,
+    /// Templates of the published conditions.
     conditions: Vec<Entry>,
+    /// Presets of printers, for `--preset`.
     printers: Vec<Entry>,
 }
 

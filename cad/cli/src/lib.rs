@@ -23,6 +23,7 @@ mod law;
 mod predict_rows;
 mod provenance;
 mod range;
+mod report_schema;
 mod second_kernel;
 mod slicing;
 mod source;

@@ -12,6 +12,7 @@ use pinswitch_friction::validation::{LawValidation, validate_laws};
 use pinswitch_friction::{Direction, Law, Substrate};
 use pinswitch_report::contact_svg;
 use pinswitch_switch::output::OutputFile;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::source::Source;
@@ -43,12 +44,17 @@ pub(super) struct Arguments {
 }
 
 /// Everything that is printed.
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Report {
+    /// Support of the tendon on the published rig.
     bed: Bed,
+    /// Constants, fitted to the seven published maxima.
     fit: MaximaFit,
+    /// Errors on each layout with constants that are fitted without it.
     left_out: Vec<LayoutLeftOut>,
+    /// Errors of each law on the maxima.
     evidence: Vec<LawValidation>,
+    /// Hypotheses of the path of the tendon outside the pins.
     hypotheses: Vec<HypothesisFinding>,
 }
 

@@ -5,6 +5,7 @@ use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::documents::friction_csv;
 use pinswitch_switch::prediction::Prediction;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::as_measured::{self, AsMeasured};
@@ -39,10 +40,12 @@ pub(super) struct Arguments {
 }
 
 /// The curve, and the curves of the other laws for comparison.
-#[derive(Serialize)]
-struct Output {
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Output {
+    /// The curve.
     #[serde(flatten)]
     curve: FrictionCurve,
+    /// Curves of the other laws that apply, at fewer loads.
     other_laws: Vec<FrictionCurve>,
 }
 

@@ -9,6 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use pinswitch_batch::{has_valid_checksum, with_checksum};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::output::OutputFile;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -25,14 +26,16 @@ const SHOWN_DIGITS: usize = 8;
 const DERIVING: [&str; 3] = ["import", "segment", "calibrate"];
 
 /// The content of a manifest.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Provenance {
+    /// Name and version of the format.
     schema: String,
+    /// One for each run of a command.
     records: Vec<ProvenanceRecord>,
 }
 
 /// The files that one run of a command wrote.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct ProvenanceRecord {
     /// Name of the subcommand.
     command: String,
@@ -45,7 +48,7 @@ pub(crate) struct ProvenanceRecord {
 }
 
 /// A file that a command read.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct SourceFile {
     /// Path from the folder of the manifest, with `/` on every machine.
     pub(crate) file: String,
@@ -57,7 +60,7 @@ pub(crate) struct SourceFile {
 }
 
 /// A file that a command wrote.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 struct HashedFile {
     /// Name in the folder of the manifest.
     file: String,

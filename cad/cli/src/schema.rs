@@ -1,21 +1,37 @@
 //! `pinswitch schema`.
 
+use std::collections::BTreeMap;
+
 use clap::{Args, ValueEnum};
+use pinswitch_batch::{Estimate, ShardStamp, Stamp, Tally};
 use pinswitch_calibration::effects::effects_schema;
-use pinswitch_calibration::experiment::RigLimits;
-use pinswitch_calibration::segmentation::RunPlan;
-use pinswitch_simulation::Plan;
+use pinswitch_calibration::experiment::{Proposal, RigLimits};
+use pinswitch_calibration::segmentation::{RunPlan, SegmentationReport};
+use pinswitch_calibration::{Explanation, Report};
+use pinswitch_import::Understanding;
+use pinswitch_robot::Surface;
+use pinswitch_simulation::{Faults, Plan, Power};
+use pinswitch_slicer::Slicing;
+use pinswitch_solid::file_check::Verdict;
+use pinswitch_switch::documents::Manifest;
 use pinswitch_switch::{config, measured, request};
+use schemars::schema_for;
 
-use super::{Failure, print_json};
+use super::provenance::Provenance;
+use super::report_schema::{perhaps_with_checksum, written, written_with_checksum};
+use super::terminal::FailureReport;
+use super::{Failure, design, finger, layouts, physics, predict, print_json, tolerances};
 
-/// Print the JSON Schema of a file that you write, for an editor that completes and checks TOML.
+/// Print the JSON Schema of a file that you write, or of a report that the program writes.
 ///
-/// Keep it next to your files, and name it in their first line: `#:schema ./switch.schema.json`.
+/// With that of a file, an editor completes and checks TOML: keep it next to your files, and name it in their first line,
+/// `#:schema ./switch.schema.json`. With that of a report, a program checks what it reads, or makes its own types from it.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: pinswitch schema configuration > switch.schema.json")]
+#[command(after_help = "Examples:
+  pinswitch schema configuration > switch.schema.json
+  pinswitch schema calibration-report > report.schema.json")]
 pub(super) struct Arguments {
-    /// Kind of file.
+    /// Kind of file or report.
     #[arg(value_enum)]
     kind: Kind,
 }
@@ -40,18 +56,88 @@ enum Kind {
     Run,
     /// A sweep, as for `batch`.
     Sweep,
+    /// The estimate of a batch, from `batch --dry-run --json`.
+    BatchEstimate,
+    /// The sweep of a batch, batch.json of `batch`.
+    BatchRecord,
+    /// The totals of a batch, from `batch --json` and `merge --json`.
+    BatchTally,
+    /// A calibration, report.json of `calibrate`.
+    CalibrationReport,
+    /// Verdicts on mesh files, from `check --json`.
+    CheckReport,
+    /// Designs for a request, from `design --json` and design.json.
+    DesignReport,
+    /// The next runs, from `experiment --json` and experiment.json.
+    ExperimentReport,
+    /// Why a command stopped, from any command with --json that fails.
+    Failure,
+    /// A finger with a switch, from `finger --json` and finger.json.
+    FingerReport,
+    /// What an import understood, from `import --json`.
+    ImportReport,
+    /// Published layouts and templates, from `layouts --json`.
+    LayoutsReport,
+    /// A set, from `generate --json` and manifest.json, also of a batch.
+    Manifest,
+    /// The physics, from `physics --json` and physics.json.
+    PhysicsReport,
+    /// The power of a plan, from `power --json`.
+    PowerReport,
+    /// A predicted curve, from `predict --json`.
+    PredictionReport,
+    /// Origin of the files of a folder, provenance.json of `calibrate` and others.
+    Provenance,
+    /// A calibration on the published maxima, published.json of `calibrate --published`.
+    PublishedReport,
+    /// The segmented logs of a run, the JSON file of `segment`.
+    SegmentationReport,
+    /// A finished block of a batch, shard.json of `batch --shard`.
+    ShardRecord,
+    /// The faults of simulated logs, faults.json of `simulate --raw`.
+    SimulatedFaults,
+    /// Print time and filament, slicing.json of `generate --slice`.
+    SlicingReport,
+    /// Tensions over load and wrap angle, switch.json of `export`.
+    TensionTable,
+    /// The scatter of the threshold, from `tolerances --json` and tolerances.json.
+    TolerancesReport,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.kind {
-        Kind::Configuration => print_json(&config::json_schema()),
-        Kind::Effects => print_json(&effects_schema()),
-        Kind::Import => print_json(&pinswitch_import::map_schema()),
-        Kind::Measured => print_json(&measured::json_schema()),
-        Kind::Plan => print_json(&schemars::schema_for!(Plan)),
-        Kind::Request => print_json(&request::request_schema()),
-        Kind::Rig => print_json(&schemars::schema_for!(RigLimits)),
-        Kind::Run => print_json(&schemars::schema_for!(RunPlan)),
-        Kind::Sweep => print_json(&pinswitch_batch::json_schema()),
-    }
+    let schema = match arguments.kind {
+        Kind::Configuration => return print_json(&config::json_schema()),
+        Kind::Measured => return print_json(&measured::json_schema()),
+        Kind::Sweep => return print_json(&pinswitch_batch::json_schema()),
+        Kind::Effects => effects_schema(),
+        Kind::Import => pinswitch_import::map_schema(),
+        Kind::Plan => schema_for!(Plan),
+        Kind::Request => request::request_schema(),
+        Kind::Rig => schema_for!(RigLimits),
+        Kind::Run => schema_for!(RunPlan),
+        Kind::BatchEstimate => written::<Estimate>("Estimate of a batch"),
+        Kind::BatchRecord => written_with_checksum::<Stamp>("Sweep of a batch"),
+        Kind::BatchTally => written::<Tally>("Totals of a batch"),
+        Kind::CalibrationReport => written::<Report>("Report of a calibration"),
+        Kind::CheckReport => written::<Vec<Verdict>>("Verdicts on mesh files"),
+        Kind::DesignReport => written::<design::Report<'_>>("Designs for a request"),
+        Kind::ExperimentReport => written::<Proposal>("Plan of the next runs"),
+        Kind::Failure => written::<FailureReport<'_>>("Failure of a command"),
+        Kind::FingerReport => written::<finger::Report>("Finger with a friction switch"),
+        Kind::ImportReport => written::<Understanding>("Understanding of an import"),
+        Kind::LayoutsReport => written::<layouts::Listing>("Published layouts and templates"),
+        Kind::Manifest => perhaps_with_checksum::<Manifest>("Manifest of a set"),
+        Kind::PhysicsReport => written::<physics::Report>("Physics of the friction switch"),
+        Kind::PowerReport => written::<Vec<Power>>("Power of a plan"),
+        Kind::PredictionReport => written::<predict::Output>("Predicted friction curve"),
+        Kind::Provenance => written_with_checksum::<Provenance>("Origin of the files of a folder"),
+        Kind::PublishedReport => written::<Vec<Explanation>>("Calibration on the published maxima"),
+        Kind::SegmentationReport => written::<SegmentationReport>("Segmented logs of a run"),
+        Kind::ShardRecord => written_with_checksum::<ShardStamp>("Finished block of a batch"),
+        Kind::SimulatedFaults => written::<BTreeMap<String, Faults>>("Faults of simulated logs"),
+        Kind::SlicingReport => written::<Slicing>("Print time and filament of a set"),
+        Kind::TensionTable => written::<Surface>("Tensions over load and wrap angle"),
+        Kind::TolerancesReport => written::<tolerances::Report>("Scatter of the threshold"),
+    };
+    print_json(&schema)
 }

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use log::{Level, LevelFilter};
 use pinswitch_diagnostic::{Diagnostic, neutral, neutral_line};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Failure;
@@ -75,15 +76,18 @@ pub(super) fn report_failure(failure: &Failure, as_json: bool) {
     print_line(&failure.render());
 }
 
+/// What a command prints with `--json` in place of its result when it fails.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct FailureReport<'a> {
+    /// Why it stopped.
+    error: &'a Failure,
+}
+
 /// Prints a failure as JSON on standard output, unless the command has printed its report there.
 pub(super) fn print_failure_json(failure: &Failure) {
-    #[derive(Serialize)]
-    struct Report<'a> {
-        error: &'a Failure,
-    }
     if !IS_STDOUT_USED.load(Ordering::Relaxed) {
         // The text and the exit code report the failure even if this cannot be written.
-        let _ = print_json(&Report { error: failure });
+        let _ = print_json(&FailureReport { error: failure });
     }
 }
 

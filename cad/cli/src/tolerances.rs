@@ -10,6 +10,7 @@ use pinswitch_switch::tolerances::{
     Allocation, Analysis, ChainDimension, Contribution, DEVIATIONS_PER_TOLERANCE, Linear, NORMAL_95,
     Simulated, link,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::source::Source;
@@ -126,24 +127,32 @@ impl FromStr for Measured {
 }
 
 /// Content of `--json` and tolerances.json.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Report {
+    /// Name and version of the format.
     schema: &'static str,
+    /// Name of the switch.
     pub(super) name: String,
+    /// Threshold of the nominal switch, N.
     pub(super) threshold_n: f64,
     /// Law of the threshold and of its derivatives.
     law: &'static str,
     /// Standard deviations within a tolerance.
     deviations_per_tolerance: f64,
+    /// Each dimension with its contribution to the scatter.
     pub(super) dimensions: Vec<Contribution>,
+    /// Scatter of the threshold to first order.
     pub(super) linear: Linear,
+    /// Scatter of the threshold of simulated switches.
     pub(super) simulated: Simulated,
+    /// Play of the pins.
     pub(super) play: Play,
+    /// Tolerances for the wanted scatter; null without `--scatter`.
     pub(super) allocation: Option<Allotted>,
 }
 
 /// Play of a pin in its slot, and how far groove and slot can be apart.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Play {
     /// Half of the difference between the widths of slot and pin, mm.
     pub(super) half_mm: f64,
@@ -154,11 +163,15 @@ pub(super) struct Play {
 }
 
 /// Allotted tolerances, with simulated switches.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Allotted {
+    /// Method.
     method: &'static str,
+    /// Source of the method.
     source: &'static str,
+    /// Whether the best processes reach the wanted scatter.
     pub(super) possible: bool,
+    /// Tolerances and scatter.
     #[serde(flatten)]
     pub(super) allocation: Allocation,
     /// Simulated switches with these tolerances; `None` if the wanted scatter is not reached.

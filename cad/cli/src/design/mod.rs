@@ -18,6 +18,7 @@ use pinswitch_switch::design_search::{
 };
 use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::request::{Parameter, Quantity, Request};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::calibrated_curve::read_model;
@@ -74,18 +75,25 @@ pub(super) struct Arguments {
 }
 
 /// Content of `--json` and design.json.
-#[derive(Serialize)]
-struct Report<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Report<'a> {
+    /// The request.
     request: &'a Request,
+    /// Lightest and heaviest load, N.
     load_range_n: (f64, f64),
+    /// Simulated parts per probability.
     draws: usize,
+    /// Seed of the simulated parts.
     seed: u64,
     /// Distinct patterns; mirror images count once.
     patterns: usize,
     /// Curves that were computed to compare the patterns.
     tried: usize,
+    /// Whether a design meets the request.
     possible: bool,
+    /// Designs, the most probable first; the nearest one if none meets the request.
     proposals: &'a [Proposal],
+    /// What blocks the request; null if it is possible.
     blocked: Option<&'a Blocked>,
 }
 

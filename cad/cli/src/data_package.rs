@@ -1,4 +1,4 @@
-//! `datapackage.json`: the files of a calibration as a Data Package (<https://datapackage.org>, version 2), by which
+//! `datapackage.json`: the files of a calibration as a Data Package (<https://specs.frictionlessdata.io/data-package>, version 1), by which
 //! repositories of research data list and check them.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,10 +15,6 @@ use crate::terminal::to_json;
 
 /// Name of the file.
 const DATA_PACKAGE: &str = "datapackage.json";
-/// Profile of the standard.
-const PROFILE: &str = "https://datapackage.org/profiles/2.0/datapackage.json";
-/// Profile of a resource with a table.
-const TABLE_PROFILE: &str = "https://datapackage.org/profiles/2.0/dataresource.json";
 /// Columns that a calibration adds to those of the plateau table, in newtons or without a unit.
 const ADDED: [(&str, &str); 5] = [
     ("baseline_N", "N"),
@@ -30,8 +26,7 @@ const ADDED: [(&str, &str); 5] = [
 
 #[derive(Serialize)]
 struct DataPackage {
-    #[serde(rename = "$schema")]
-    schema: &'static str,
+    profile: &'static str,
     name: &'static str,
     title: String,
     description: &'static str,
@@ -47,12 +42,12 @@ struct Source {
 
 #[derive(Serialize)]
 struct Resource {
-    #[serde(rename = "$schema")]
     profile: &'static str,
     name: String,
     path: String,
-    #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
-    kind: Option<&'static str>,
+    /// Not part of the standard: its reference implementation takes any `report.json` for one of its own without it.
+    #[serde(rename = "type")]
+    kind: &'static str,
     description: &'static str,
     format: &'static str,
     mediatype: &'static str,
@@ -93,7 +88,7 @@ pub(crate) fn data_package(
         })
         .collect();
     let package = DataPackage {
-        schema: PROFILE,
+        profile: "data-package",
         name: "calibration",
         title: format!("Calibration of {title}"),
         description: "Friction of a switch on a test rig: fitted models, residuals of each reading, and the report. \
@@ -118,10 +113,10 @@ fn resource(file: &OutputFile) -> Resource {
     };
     let is_table = format == "csv";
     Resource {
-        profile: TABLE_PROFILE,
+        profile: if is_table { "tabular-data-resource" } else { "data-resource" },
         name: file.name.to_lowercase(),
         path: file.name.clone(),
-        kind: is_table.then_some("table"),
+        kind: if is_table { "table" } else { "file" },
         description: description(&file.name),
         format,
         mediatype,

@@ -57,15 +57,6 @@ impl Component {
             Self::Kernel(i) => space.kernels[i].scale,
         }
     }
-
-    /// Returns the degrees of freedom of this prior, a half-Student one. Mounts that differ by many times the usual rather have
-    /// a cause; structure may have any size.
-    pub(crate) fn freedom(self) -> f64 {
-        match self {
-            Self::Random(_) => 4.0,
-            Self::Kernel(_) => 1.0,
-        }
-    }
 }
 
 /// Point about which a hypothesis is linearised: constants, sizes, weights of the rows, scales of

@@ -64,7 +64,10 @@ pub(crate) fn log_evidence(at: &ScaleProblem<'_>, point: &ScalePoint, log_weight
 /// mode, and the posterior mean of the variance.
 fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Component) -> (f64, f64) {
     let scale = component.scale(&at.problem.space);
-    let prior = Mixture::half_student(scale, component.freedom());
+    let prior = match component {
+        Component::Random(_) => Mixture::half_normal(scale),
+        Component::Kernel(_) => Mixture::half_cauchy(scale),
+    };
     let columns = at.design.columns_of(component);
     let mut variances = point.variances.clone();
     let terms: Vec<(f64, f64)> = prior

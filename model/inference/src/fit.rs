@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Component, Design, Mode, Role};
 use crate::evidence::{Integrals, SizePosterior, log_evidence};
@@ -312,38 +312,72 @@ fn student_weight(square: f64) -> f64 {
     weight.clamp(WEIGHT_RANGE.0, WEIGHT_RANGE.1)
 }
 
-/// Moves constants and sizes to the mean of their posterior, by limited steps.
+/// Moves constants and sizes to the mean of their posterior, by limited steps. Where a limit holds one back, the others move to
+/// their mean given its value: on a ridge they compensate each other.
 fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &mut Mode) {
+    let prior_mean = DVector::from_column_slice(&design.prior_mean);
+    let mut mean = &point.solution.mean + &prior_mean;
+    let mut covariance: Option<DMatrix<f64>> = None;
     for (i, role) in design.roles.iter().enumerate() {
-        let value = point.solution.mean[i] + design.prior_mean[i];
+        let limited = within_limits(space, mode, role, mean[i]);
+        if limited != mean[i] {
+            let covariance = covariance.get_or_insert_with(|| point.solution.covariance.clone());
+            condition(&mut mean, covariance, i, limited);
+        }
+    }
+    for (i, role) in design.roles.iter().enumerate() {
+        let value = within_limits(space, mode, role, mean[i]);
         match role {
-            Role::Constant(constant) => {
-                let step = value - mode.constants[*constant];
-                mode.constants[*constant] += step.clamp(-MOST_CONSTANT_STEP, MOST_CONSTANT_STEP);
-            }
+            Role::Constant(constant) => mode.constants[*constant] = value,
             Role::Size(effect) => {
-                let prior = &space.effects[*effect];
-                let typical = prior.typical_size.unwrap_or(1.0);
-                let value = if prior.is_one_sided { value.max(LEAST_SHARE * typical) } else { value };
-                let size = mode.sizes.entry(*effect).or_insert(value);
-                let most = (FREE_SIZE_SD * typical).max(2.0 * size.abs());
-                *size += (value - *size).clamp(-most, most);
+                mode.sizes.insert(*effect, value);
             }
-            Role::Shape(effect, i) => {
-                let shift = &mut mode.shifts.entry(*effect).or_default()[*i];
-                *shift += (value - *shift).clamp(-MOST_SHIFT.0, MOST_SHIFT.0);
-                *shift = shift.clamp(-MOST_SHIFT.1, MOST_SHIFT.1);
-            }
+            Role::Shape(effect, i) => mode.shifts.entry(*effect).or_default()[*i] = value,
             Role::Discrepancy(_) | Role::Variance(_) => {}
         }
     }
+    mean -= prior_mean;
     mode.curved = space.curved_channel.map_or_else(BTreeMap::new, |channel| {
         let of_channel = design.components().into_iter().filter(|c| c.channel(space) == channel);
-        let coefficients = |component: Component| {
-            design.columns_of(component).into_iter().map(|i| point.solution.mean[i]).collect()
-        };
+        let coefficients =
+            |component: Component| design.columns_of(component).into_iter().map(|i| mean[i]).collect();
         of_channel.map(|component| (component, coefficients(component))).collect()
     });
+}
+
+/// Returns the nearest value of a coefficient that one step from the mode may reach.
+fn within_limits(space: &Space, mode: &Mode, role: &Role, value: f64) -> f64 {
+    match role {
+        Role::Constant(constant) => {
+            let from = mode.constants[*constant];
+            value.clamp(from - MOST_CONSTANT_STEP, from + MOST_CONSTANT_STEP)
+        }
+        Role::Size(effect) => {
+            let prior = &space.effects[*effect];
+            let typical = prior.typical_size.unwrap_or(1.0);
+            let value = if prior.is_one_sided { value.max(LEAST_SHARE * typical) } else { value };
+            let Some(size) = mode.sizes.get(effect) else { return value };
+            let most = (FREE_SIZE_SD * typical).max(2.0 * size.abs());
+            value.clamp(size - most, size + most)
+        }
+        Role::Shape(effect, i) => {
+            let shift = mode.shifts.get(effect).map_or(0.0, |shifts| shifts[*i]);
+            let value = value.clamp(shift - MOST_SHIFT.0, shift + MOST_SHIFT.0);
+            value.clamp(-MOST_SHIFT.1, MOST_SHIFT.1)
+        }
+        Role::Discrepancy(_) | Role::Variance(_) => value,
+    }
+}
+
+/// Conditions a normal distribution on the value of a coordinate.
+fn condition(mean: &mut DVector<f64>, covariance: &mut DMatrix<f64>, at: usize, value: f64) {
+    let variance = covariance[(at, at)];
+    if variance > 0.0 {
+        let column = covariance.column(at) / variance;
+        mean.axpy(value - mean[at], &column, 1.0);
+        covariance.ger(-variance, &column, &column, 1.0);
+    }
+    mean[at] = value;
 }
 
 impl Fit {
@@ -356,6 +390,17 @@ impl Fit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Two coefficients whose sum is known: where one is held back, the other compensates it.
+    #[test]
+    fn a_limited_step_keeps_to_the_ridge() {
+        let mut mean = DVector::from_vec(vec![3.0, -2.0, 7.0]);
+        let ridge = [[4.0, -4.0, 0.0], [-4.0, 4.000_1, 0.0], [0.0, 0.0, 1.0]];
+        let mut covariance = DMatrix::from_fn(3, 3, |i, j| ridge[i][j]);
+        condition(&mut mean, &mut covariance, 0, 0.5);
+        assert!((mean[0] - 0.5).abs() < 1e-12 && (mean[1] - 0.5).abs() < 1e-3 && mean[2] == 7.0, "{mean}");
+        assert!(covariance[(0, 0)].abs() < 1e-9 && (covariance[(1, 1)] - 1e-4).abs() < 1e-6, "{covariance}");
+    }
 
     /// With the weight at its mode, the log density of the mixture is that of Student's t, up to
     /// a constant.

@@ -151,7 +151,7 @@ impl Scales {
             curvature[i] = 1.0;
         }
         for (i, scale) in half_cauchy.iter().enumerate() {
-            let term = log_half_student(self.log[i + 2], *scale, 1.0);
+            let term = log_half_cauchy(self.log[i + 2], *scale);
             value += term.0;
             gradient[i + 2] = term.1;
             curvature[i + 2] = term.2;
@@ -165,16 +165,20 @@ impl Scales {
     }
 }
 
-/// Returns value, derivative and negative second derivative in `ln x` of the logarithm of the density of the absolute value of
-/// Student's t at `x`: half-Cauchy with one degree of freedom.
-pub(crate) fn log_half_student(log_x: f64, scale: f64, freedom: f64) -> (f64, f64, f64) {
-    let square = libm::exp(2.0 * (log_x - libm::log(scale))) / freedom;
-    let power = freedom + 1.0;
-    let constant = libm::lgamma(0.5 * power) - libm::lgamma(0.5 * freedom);
-    let at_zero = libm::log(2.0 / scale) + constant - 0.5 * libm::log(freedom * std::f64::consts::PI);
-    let value = at_zero - 0.5 * power * libm::log1p(square) + SCALE_POWER * log_x;
+/// Returns value, derivative and negative second derivative in `ln x` of the logarithm of a
+/// half-Cauchy density at `x`.
+pub(crate) fn log_half_cauchy(log_x: f64, scale: f64) -> (f64, f64, f64) {
+    let square = libm::exp(2.0 * (log_x - libm::log(scale)));
+    let value = libm::log(2.0 / std::f64::consts::PI / scale) - libm::log1p(square) + SCALE_POWER * log_x;
     let share = square / (1.0 + square);
-    (value, SCALE_POWER - power * share, 2.0 * power * share * (1.0 - share))
+    (value, SCALE_POWER - 2.0 * share, 4.0 * share * (1.0 - share))
+}
+
+/// The same for a half-normal density.
+pub(crate) fn log_half_normal(log_x: f64, scale: f64) -> (f64, f64, f64) {
+    let square = libm::exp(2.0 * (log_x - libm::log(scale)));
+    let value = 0.5 * libm::log(2.0 / std::f64::consts::PI) - libm::log(scale) - 0.5 * square;
+    (value + SCALE_POWER * log_x, SCALE_POWER - square, 2.0 * square)
 }
 
 /// Noise of the rows of a table, at given scales, weights and sensitivities to friction.

@@ -70,7 +70,7 @@ pub struct RandomEffect {
     pub name: String,
     /// Index of the channel through which it acts.
     pub channel: usize,
-    /// Scale of the half-Student prior of its standard deviation, in the unit of the channel.
+    /// Scale of the half-normal prior of its standard deviation, in the unit of the channel.
     pub scale: f64,
     /// Number of levels.
     pub levels: usize,

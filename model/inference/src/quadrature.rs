@@ -27,12 +27,20 @@ impl Mixture {
         Self::new(nodes, log_weights)
     }
 
-    /// Returns the distribution of the absolute value of Student's t over standard deviations: half-Cauchy with one degree of
-    /// freedom.
-    pub(crate) fn half_student(scale: f64, freedom: f64) -> Self {
+    /// Returns a half-Cauchy distribution over standard deviations.
+    pub(crate) fn half_cauchy(scale: f64) -> Self {
+        Self::of_scales(scale, |x| -libm::log1p(x * x))
+    }
+
+    /// Returns a half-normal distribution over standard deviations.
+    pub(crate) fn half_normal(scale: f64) -> Self {
+        Self::of_scales(scale, |x| -0.5 * x * x)
+    }
+
+    /// Returns a distribution over standard deviations of any size: on a geometric grid the width of a cell is proportional to
+    /// its node.
+    fn of_scales(scale: f64, log_density: impl Fn(f64) -> f64) -> Self {
         let nodes = geometric(libm::exp(-3.5), libm::exp(3.5), 15);
-        let log_density = |x: f64| -0.5 * (freedom + 1.0) * libm::log1p(x * x / freedom);
-        // On a geometric grid the width of a cell is proportional to its node.
         let log_weights = nodes.iter().map(|x| libm::log(*x) + log_density(*x)).collect();
         Self::new(nodes.iter().map(|x| x * scale).collect(), log_weights)
     }
@@ -123,17 +131,16 @@ mod tests {
         }
     }
 
-    /// Moments of the half-Student distribution with 4 degrees of freedom: the mean is 1, by integration, and the share above 4 is
-    /// that of the table.
+    /// The mean of the half-normal distribution, and its share above two scales. Nodes are close at any size, so that a well known
+    /// standard deviation lies between two of them.
     #[test]
-    fn half_student_has_the_tail_of_the_table() {
-        let prior = Mixture::half_student(1.0, 4.0);
+    fn half_normal_has_its_mean_and_tail() {
+        let prior = Mixture::half_normal(1.0);
         let weights: Vec<f64> = prior.log_weights.iter().map(|w| libm::exp(*w)).collect();
         let mean: f64 = prior.nodes.iter().zip(&weights).map(|(x, w)| x * w).sum();
-        assert!((mean - 1.0).abs() < 0.05, "{mean}");
-        let above: f64 = prior.nodes.iter().zip(&weights).filter(|(x, _)| **x > 4.0).map(|(_, w)| w).sum();
-        assert!((above / 0.016_1 - 1.0).abs() < 0.3, "{above}");
-        // Nodes are at most a factor of 1.7 apart, so that a well known scale lies between close ones.
+        assert!((mean / (2.0 / PI).sqrt() - 1.0).abs() < 0.05, "{mean}");
+        let above: f64 = prior.nodes.iter().zip(&weights).filter(|(x, _)| **x > 2.0).map(|(_, w)| w).sum();
+        assert!((0.02..0.07).contains(&above), "{above}");
         assert!(prior.nodes.windows(2).all(|pair| pair[1] < 1.7 * pair[0]));
     }
 

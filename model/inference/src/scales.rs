@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
-use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales, log_half_student};
+use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
 use crate::problem::Problem;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
@@ -70,7 +70,11 @@ impl ScaleProblem<'_> {
     }
 
     fn component_prior(&self, component: Component, log_sd: f64) -> (f64, f64, f64) {
-        log_half_student(log_sd, component.scale(&self.problem.space), component.freedom())
+        let scale = component.scale(&self.problem.space);
+        match component {
+            Component::Random(_) => log_half_normal(log_sd, scale),
+            Component::Kernel(_) => log_half_cauchy(log_sd, scale),
+        }
     }
 
     /// Takes Newton steps from a mode until they gain little, at most `steps`.

@@ -270,7 +270,7 @@ impl<'a> Scores<'a> {
 /// Returns the gain of the log evidence by coefficients with a common standard deviation, whose prior
 /// is half-Cauchy with this scale.
 pub(crate) fn variance_gain(scale: f64, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
-    let prior = Mixture::half_student(scale, 1.0);
+    let prior = Mixture::half_cauchy(scale);
     let eigen = information.symmetric_eigen();
     let rotated = eigen.eigenvectors.tr_mul(score);
     let gain = |v: f64| -> f64 {

@@ -114,8 +114,8 @@ impl SessionView {
         let (design, mean) = (&linearised.design, &linearised.point.solution.mean);
         for (i, role) in design.roles.iter().enumerate() {
             let is_lasting = match role {
-                // Zero at a mode. On a ridge it is not: constants that compensate each other are predicted together.
-                Role::Constant(_) | Role::Size(_) | Role::Shape(..) | Role::Discrepancy(_) => true,
+                Role::Constant(_) | Role::Size(_) | Role::Shape(..) => false,
+                Role::Discrepancy(_) => true,
                 Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
                 Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
             };

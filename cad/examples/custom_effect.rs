@@ -17,31 +17,25 @@ use pinswitch::calibration::model::Term;
 use pinswitch::calibration::table::{Frame, PlateauRow};
 use pinswitch::simulation::{Plan, simulate};
 
-static CREEP: FormulaEffect = FormulaEffect::new(
-    Description {
-        id: "cell_creep",
-        side: Side::Rig,
-        covariate: Covariate::Dwell,
-        stage: Stage::CellScale,
-        formula: "reading (1 + k ln(dwell / 3 s))",
-        written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
-        parameters: &[Parameter::free("k", "1")],
-        one_sided: true,
-        bends: true,
-        scales: true,
-        on_plain: true,
-        confused_with: &[Cow::Borrowed("dwell_relaxation")],
-        experiment: "dead weights with two pauses",
-        invisible_because: "the dwell time never varies",
-        study: StudyRange {
-            size: Some((0.01, 0.05)),
-            signed: false,
-            shapes: &[],
-            paper: PaperProtocol::Hidden,
-        },
-    },
-    &[&[0.02]],
-);
+static CREEP: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.02]]);
+
+const DESCRIPTION: Description<'static> = Description {
+    id: "cell_creep",
+    side: Side::Rig,
+    covariate: Covariate::Dwell,
+    stage: Stage::CellScale,
+    formula: "reading (1 + k ln(dwell / 3 s))",
+    written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: true,
+    bends: true,
+    scales: true,
+    on_plain: true,
+    confused_with: &[Cow::Borrowed("dwell_relaxation")],
+    experiment: "dead weights with two pauses",
+    invisible_because: "the dwell time never varies",
+    study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
+};
 
 /// Returns the root mean square of the differences of readings from predictions, in newtons.
 fn rms(rows: &[PlateauRow], predicted_n: &[f64]) -> f64 {

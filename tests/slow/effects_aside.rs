@@ -39,7 +39,7 @@ fn heldout_n(report: &Value) -> f64 {
 fn an_effect_hides_no_other() {
     for (table, effects, outcome, verdict) in [
         ("growing-spot", "growing-spot", "confirmed", "unattributed"),
-        ("step", "two-waves", "open", "inconclusive"),
+        ("step", "two-waves", "refuted", "inconclusive"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let file = form(effects);

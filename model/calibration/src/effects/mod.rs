@@ -91,26 +91,25 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// use pinswitch_calibration::table::{Frame, PlateauTable};
 ///
 /// /// The cell reads too much after a long pause.
-/// static CREEP: FormulaEffect = FormulaEffect::new(
-///     Description {
-///         id: "cell_creep",
-///         side: Side::Rig,
-///         covariate: Covariate::Dwell,
-///         stage: Stage::CellScale,
-///         formula: "reading (1 + k ln(dwell / 3 s))",
-///         written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
-///         parameters: &[Parameter::free("k", "1")],
-///         one_sided: true,
-///         bends: true,
-///         scales: true,
-///         on_plain: true,
-///         confused_with: &[Cow::Borrowed("dwell_relaxation")],
-///         experiment: "dead weights with two pauses",
-///         invisible_because: "the dwell time never varies",
-///         study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
-///     },
-///     &[&[0.02]],
-/// );
+/// static CREEP: FormulaEffect = FormulaEffect::new(DESCRIPTION, &[&[0.02]]);
+///
+/// const DESCRIPTION: Description<'static> = Description {
+///     id: "cell_creep",
+///     side: Side::Rig,
+///     covariate: Covariate::Dwell,
+///     stage: Stage::CellScale,
+///     formula: "reading (1 + k ln(dwell / 3 s))",
+///     written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
+///     parameters: &[Parameter::free("k", "1")],
+///     one_sided: true,
+///     bends: true,
+///     scales: true,
+///     on_plain: true,
+///     confused_with: &[Cow::Borrowed("dwell_relaxation")],
+///     experiment: "dead weights with two pauses",
+///     invisible_because: "the dwell time never varies",
+///     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
+/// };
 ///
 /// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
 /// a,silicone,,up,0,20,50,30,concentric,1,12.7,4.5,0

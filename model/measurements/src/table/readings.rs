@@ -7,8 +7,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use pinswitch_friction::sort_by_number;
+
 use super::row::PlateauRow;
 use super::substrate_word::substrate_word;
+use crate::median::median;
 
 /// Offset basis and prime of the FNV-1a hash of 32 bits (Fowler, Noll, Vo).
 const BASIS: u32 = 0x811c_9dc5;
@@ -35,14 +38,14 @@ const LEAST_EQUAL: usize = 3;
 /// before, or a part of it; it does not protect against forgery.
 pub fn readings_by_session(rows: &[PlateauRow]) -> BTreeMap<String, String> {
     let written = |session: &Session<'_>| {
-        let readings = session.by_setting.iter().flat_map(|(hash, readings_n)| {
+        let readings = session.by_setting.chunk_by(|a, b| a.0 == b.0).flat_map(|alike| {
             // Mounts and sweeps may repeat a setting: each of its readings has its own chance to be kept.
-            let place = |rank: usize| hashed(*hash, rank.to_string().as_bytes());
-            readings_n.iter().enumerate().map(move |(rank, reading_n)| (place(rank), *hash, *reading_n))
+            let place = |(rank, (hash, _)): (usize, &(u32, f64))| hashed(*hash, rank.to_string().as_bytes());
+            alike.iter().enumerate().map(move |reading| (place(reading), *reading.1))
         });
-        let mut readings: Vec<(u32, u32, f64)> = readings.collect();
-        readings.sort_by_key(|(place, ..)| *place);
-        readings.iter().take(SKETCH).fold(MARK.to_owned(), |mut text, (_, hash, reading_n)| {
+        let mut readings: Vec<(u32, (u32, f64))> = readings.collect();
+        sort_by_number(&mut readings, |(place, _)| f64::from(*place));
+        readings.iter().take(SKETCH).fold(MARK.to_owned(), |mut text, (_, (hash, reading_n))| {
             let _ = write!(text, "{hash:08x}{:08x}", thousandths(*reading_n));
             text
         })
@@ -83,28 +86,37 @@ fn kept_readings(fingerprint: &str) -> Option<Vec<(u32, f64)>> {
 }
 
 /// The readings of one session.
-#[derive(Default)]
 struct Session<'a> {
+    /// Rows in the order of time.
     rows: Vec<&'a PlateauRow>,
-    /// Readings in newtons in the order of time, by the hash of their setting and repetition.
-    by_setting: BTreeMap<u32, Vec<f64>>,
+    /// Readings in newtons with the hash of their setting and repetition, in its order and then in that of time.
+    by_setting: Vec<(u32, f64)>,
 }
 
-fn sessions(rows: &[PlateauRow]) -> BTreeMap<&str, Session<'_>> {
-    let mut found: BTreeMap<&str, Session<'_>> = BTreeMap::new();
+fn sessions(rows: &[PlateauRow]) -> Vec<(&str, Session<'_>)> {
+    let mut found: BTreeMap<&str, Vec<&PlateauRow>> = BTreeMap::new();
     for row in rows {
-        found.entry(row.labels.session.as_str()).or_default().rows.push(row);
+        found.entry(row.labels.session.as_str()).or_default().push(row);
     }
-    for session in found.values_mut() {
-        session.rows.sort_by(|a, b| a.time_s.total_cmp(&b.time_s).then(a.repetition.cmp(&b.repetition)));
-        for row in &session.rows {
-            session.by_setting.entry(hash_of(row)).or_default().push(row.force_n);
-        }
-    }
-    found
+    found.into_iter().map(|(name, rows)| (name, Session::new(rows))).collect()
 }
 
-impl Session<'_> {
+impl<'a> Session<'a> {
+    fn new(mut rows: Vec<&'a PlateauRow>) -> Self {
+        sort_by_number(&mut rows, |row| f64::from(row.repetition));
+        sort_by_number(&mut rows, |row| row.time_s);
+        let mut by_setting: Vec<(u32, f64)> = rows.iter().map(|row| (hash_of(row), row.force_n)).collect();
+        sort_by_number(&mut by_setting, |(hash, _)| f64::from(*hash));
+        Self { rows, by_setting }
+    }
+
+    /// Returns the readings with this hash.
+    fn readings_at(&self, hash: u32) -> &[(u32, f64)] {
+        let first = self.by_setting.partition_point(|(known, _)| *known < hash);
+        let alike = &self.by_setting[first..];
+        &alike[..alike.partition_point(|(known, _)| *known == hash)]
+    }
+
     /// Returns whether kept readings agree with those of the session better than readings with noise of their own.
     ///
     /// Of `m` readings `x` at the setting of a kept reading `v`, with noise of standard deviation `s`, the nearest one is
@@ -114,8 +126,8 @@ impl Session<'_> {
         let gaps_n: Vec<(f64, usize)> = kept
             .iter()
             .filter_map(|(hash, reading_n)| {
-                let own = self.by_setting.get(hash)?;
-                let gap_n = own.iter().map(|own| (own - reading_n).abs()).fold(f64::INFINITY, f64::min);
+                let own = self.readings_at(*hash);
+                let gap_n = own.iter().map(|(_, own)| (own - reading_n).abs()).reduce(f64::min)?;
                 Some((gap_n, own.len()))
             })
             .collect();
@@ -135,10 +147,10 @@ impl Session<'_> {
 
     /// Returns the smallest difference of two readings in newtons, at least that of a fingerprint.
     fn step_n(&self) -> f64 {
-        let mut sorted: Vec<i64> = self.rows.iter().map(|row| i64::from(thousandths(row.force_n))).collect();
-        sorted.sort_unstable();
-        let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0);
-        UNIT_N * steps.min().unwrap_or(1) as f64
+        let mut sorted: Vec<i32> = self.rows.iter().map(|row| thousandths(row.force_n)).collect();
+        sort_by_number(&mut sorted, |reading| f64::from(*reading));
+        let steps = sorted.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).filter(|step| *step > 0);
+        UNIT_N * f64::from(steps.min().unwrap_or(1))
     }
 
     /// Returns the standard deviation of the noise in newtons; `None` without repeated readings, and where most are equal.
@@ -147,20 +159,24 @@ impl Session<'_> {
     /// every session of the rig has is no noise: a slow change does not enter these differences, an alternation not those of
     /// every second reading, and a pattern over the stroke not those of two loads, added to both or in proportion to them.
     fn noise_n(&self) -> Option<f64> {
-        let mut settings: BTreeMap<Setting<'_>, (f64, Vec<f64>)> = BTreeMap::new();
-        for row in &self.rows {
-            settings.entry(setting(row)).or_insert((row.load_n, Vec::new())).1.push(row.force_n);
-        }
-        let settings: Vec<_> = settings.into_iter().collect();
-        let single: Vec<Vec<f64>> = settings.iter().map(|(_, (_, readings))| readings.clone()).collect();
+        let mut rows = self.rows.clone();
+        sort_by_number(&mut rows, |row| f64::from(hundredths(row.load_n)));
+        sort_by_number(&mut rows, |row| f64::from(condition_hash(row)));
+        let settings: Vec<&[&PlateauRow]> = rows
+            .chunk_by(|a, b| {
+                condition_hash(a) == condition_hash(b) && hundredths(a.load_n) == hundredths(b.load_n)
+            })
+            .collect();
+        let single: Vec<Vec<f64>> =
+            settings.iter().map(|rows| rows.iter().map(|row| row.force_n).collect()).collect();
         let of_two = |factor: &dyn Fn(f64, f64) -> f64| -> Vec<Vec<f64>> {
-            let pairs = settings.windows(2).filter(|pair| pair[0].0.0 == pair[1].0.0);
-            let difference = |pair: &[(Setting<'_>, (f64, Vec<f64>))]| {
-                let [(lower, a), (upper, b)] = [&pair[0].1, &pair[1].1];
-                let by = factor(*lower, *upper);
+            let pairs =
+                settings.windows(2).filter(|pair| condition_hash(pair[0][0]) == condition_hash(pair[1][0]));
+            let difference = |pair: &[&[&PlateauRow]]| {
+                let by = factor(pair[0][0].load_n, pair[1][0].load_n);
                 // With the noise of one reading.
                 let scale = (1.0 + by * by).sqrt();
-                b.iter().zip(a).map(|(b, a)| (b - by * a) / scale).collect()
+                pair[1].iter().zip(pair[0]).map(|(b, a)| (b.force_n - by * a.force_n) / scale).collect()
             };
             pairs.map(difference).collect()
         };
@@ -175,8 +191,9 @@ impl Session<'_> {
 /// Returns the standard deviation of noise from the differences of readings with a lag, in each of several courses.
 fn noise_of(courses: &[Vec<f64>], lag: usize) -> Option<f64> {
     let apart = courses.iter().flat_map(|x| x.iter().zip(x.iter().skip(lag)));
+    let mut apart_n: Vec<f64> = apart.map(|(a, b)| (a - b).abs()).collect();
     // The median of |x| is 0.6745 standard deviations of x; a difference has the variance of two readings.
-    median(apart.map(|(a, b)| (a - b).abs()).collect()).map(|median| median / 0.6745 / 2f64.sqrt())
+    (!apart_n.is_empty()).then(|| median(&mut apart_n) / 0.6745 / 2f64.sqrt())
 }
 
 /// Returns the probability of logarithms of probabilities that are jointly as small by chance: their sum times -2 has the
@@ -192,29 +209,26 @@ fn fisher(logs: &[f64]) -> f64 {
     if logs.is_empty() { 1.0 } else { sum }
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
-
-/// Condition with direction, and load.
-type Setting<'a> = ((&'static str, &'a [usize], bool), i32);
-
-fn setting(row: &PlateauRow) -> Setting<'_> {
-    let load = thousandths(row.load_n / 10.0);
-    ((substrate_word(row.substrate), &row.pins, row.direction.sign() > 0.0), load)
+/// Returns a hash of the condition and the direction of a row.
+fn condition_hash(row: &PlateauRow) -> u32 {
+    let text = format!("{}{:?}{}", substrate_word(row.substrate), row.pins, row.direction.as_str());
+    hashed(BASIS, text.as_bytes())
 }
 
 fn hash_of(row: &PlateauRow) -> u32 {
-    let ((substrate, pins, is_concentric), load) = setting(row);
-    let text = format!("{substrate}{pins:?}{is_concentric} {load} {}", row.repetition);
-    hashed(BASIS, text.as_bytes())
+    hashed(condition_hash(row), format!(" {} {}", hundredths(row.load_n), row.repetition).as_bytes())
 }
 
 fn hashed(basis: u32, bytes: &[u8]) -> u32 {
     bytes.iter().fold(basis, |hash, byte| (hash ^ u32::from(*byte)).wrapping_mul(PRIME))
 }
 
+/// Rounds a load to hundredths of a newton, which are one setting.
+fn hundredths(load_n: f64) -> i32 {
+    thousandths(load_n / 10.0)
+}
+
+/// Returns a number in the unit of fingerprints.
 #[expect(clippy::cast_possible_truncation, reason = "tables bound their numbers far below")]
 fn thousandths(value: f64) -> i32 {
     (value / UNIT_N).round() as i32

@@ -104,6 +104,38 @@ fn a_busy_folder_is_refused_soon() {
     assert!(code == Some(2) && output.contains("--wait"), "{output}");
 }
 
+/// Repositories of data take one name only, so that a descriptor may be a person's own.
+#[test]
+fn a_descriptor_of_ones_own_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    with_measurements(path);
+    let descriptor = path.join("out/datapackage.json");
+    let calibrate = ["-q", "calibrate", "bench/plateaus.csv", "--out", "out"];
+    let published = ["-q", "calibrate", "--published", "--out", "out"];
+    for command in [&calibrate, &calibrate, &published] {
+        done(path, command);
+        assert_eq!(descriptor.exists(), command == &calibrate);
+    }
+    for own in ["{\"name\": \"mine\"}".to_owned(), {
+        done(path, &calibrate);
+        std::fs::read_to_string(&descriptor).unwrap().replacen(
+            '{',
+            "{ \"licenses\": [{ \"name\": \"CC0-1.0\" }],",
+            1,
+        )
+    }] {
+        std::fs::write(&descriptor, &own).unwrap();
+        let before = hashes(&path.join("out"));
+        for command in [&calibrate, &published] {
+            let (code, output) = ends_soon(path, command);
+            assert!(code == Some(2) && output.contains("datapackage.json"), "{output}");
+        }
+        assert_eq!(hashes(&path.join("out")), before);
+        std::fs::remove_file(&descriptor).unwrap();
+    }
+}
+
 #[test]
 fn commands_share_a_folder() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,7 +18,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, calibration_files, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
 
-use super::data_package::data_package;
+use super::data_package::{DATA_PACKAGE, data_package, has_own_descriptor};
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, SEED, print_text};
@@ -98,6 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Locked before the work, which may take minutes.
     let out = SetFolder::lock(&arguments.out)?;
+    has_own_descriptor(&out, COMMAND)?;
     let vocabulary = with_forms(arguments.effects.vocabulary()?, &arguments.plan)?;
     let plans = plans(&arguments.plan, &arguments.tables, &vocabulary)?;
     let (mut table, name) = joined(&arguments.tables)?;
@@ -232,7 +233,9 @@ fn published(out: &Path) -> Result<(), Failure> {
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
-    SetFolder::lock(out)?.replace_listed(&files, COMMAND, &[])?;
+    let out = SetFolder::lock(out)?;
+    let stale: &[&str] = if has_own_descriptor(&out, COMMAND)? { &[DATA_PACKAGE] } else { &[] };
+    out.replace_listed(&files, COMMAND, stale)?;
     print_text(&text)
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use pinswitch_calibration::table::column_unit;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::output::OutputFile;
 use serde::Serialize;
 
@@ -12,9 +13,10 @@ use crate::Failure;
 use crate::input::InputFile;
 use crate::provenance::sha256;
 use crate::terminal::to_json;
+use crate::write::SetFolder;
 
 /// Name of the file.
-const DATA_PACKAGE: &str = "datapackage.json";
+pub(crate) const DATA_PACKAGE: &str = "datapackage.json";
 /// Columns that a calibration adds to those of the plateau table, in newtons or without a unit.
 const ADDED: [(&str, &str); 5] = [
     ("baseline_N", "N"),
@@ -100,6 +102,26 @@ pub(crate) fn data_package(
         resources: files.iter().map(resource).collect(),
     };
     Ok(OutputFile { name: DATA_PACKAGE.to_owned(), bytes: to_json(&package)? })
+}
+
+/// Returns whether the folder contains a descriptor that `command` wrote.
+///
+/// # Errors
+/// [`Failure`] of another descriptor: repositories take this name only, so that it may be a person's own, or one of ours with
+/// authors and licence added.
+pub(crate) fn has_own_descriptor(folder: &SetFolder, command: &str) -> Result<bool, Failure> {
+    if folder.existing(DATA_PACKAGE)?.is_none() {
+        return Ok(false);
+    }
+    if folder.written_by(command)?.iter().any(|name| name == DATA_PACKAGE) {
+        return Ok(true);
+    }
+    let path = folder.folder().join(DATA_PACKAGE);
+    Err(Failure::bad_input(
+        Diagnostic::new("pinswitch did not write this file, or it was changed since")
+            .with_location(Location::file(path.display().to_string()))
+            .with_help("give another folder with --out, or move the file away"),
+    ))
 }
 
 fn resource(file: &OutputFile) -> Resource {

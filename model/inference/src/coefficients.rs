@@ -31,7 +31,7 @@ pub struct Coefficients {
     pub roles: Vec<Coefficient>,
     /// Posterior means; constants and sizes are absolute.
     pub mean: Vec<f64>,
-    /// Posterior covariance.
+    /// Posterior covariance, in which weights and scales are not known.
     pub covariance: DMatrix<f64>,
     /// Expectation of each fitted reading, without the offsets of its series.
     pub predicted: Vec<f64>,
@@ -40,7 +40,9 @@ pub struct Coefficients {
 impl Coefficients {
     /// Returns the coefficients of a fit; `None` if its design is not finite.
     pub fn new(problem: &Problem, fit: &Fit) -> Option<Self> {
-        let Linearised { design, point } = Linearised::new(problem, fit)?;
+        let linearised = Linearised::new(problem, fit)?;
+        let covariance = linearised.covariance(problem, fit)?;
+        let Linearised { design, point } = linearised;
         let mut roles: Vec<Coefficient> = Vec::new();
         for role in &design.roles {
             let count =
@@ -65,7 +67,7 @@ impl Coefficients {
         let residual = &design.target - &design.matrix * &solution.mean;
         let predicted = problem.readings.iter().zip(residual.iter()).map(|(y, r)| y - r).collect();
         let mean = solution.mean.iter().zip(&design.prior_mean).map(|(x, prior)| x + prior).collect();
-        Some(Self { roles, mean, covariance: solution.covariance, predicted })
+        Some(Self { roles, mean, covariance, predicted })
     }
 
     /// Returns the index of a coefficient.

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::design::{Component, Role};
+use crate::design::{Component, Design, Role};
 use crate::quadrature::{Mixture, log_normal_cdf, log_sum_exp};
 use crate::scales::{ScalePoint, ScaleProblem};
 
@@ -68,20 +68,29 @@ fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Comp
         Component::Random(_) => Mixture::half_normal(scale),
         Component::Kernel(_) => Mixture::half_cauchy(scale),
     };
-    let columns = at.design.columns_of(component);
+    let terms = component_terms(at.design, point, component, &prior);
+    let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
+    let variance = terms.iter().map(|(sd, term)| libm::exp(term - total) * sd * sd).sum();
+    (total - point.solution.log_likelihood, variance)
+}
+
+/// Returns the standard deviations of a component at the nodes of its prior, each with the logarithm of its joint probability
+/// with the readings.
+pub(crate) fn component_terms(
+    design: &Design,
+    point: &ScalePoint,
+    component: Component,
+    prior: &Mixture,
+) -> Vec<(f64, f64)> {
+    let columns = design.columns_of(component);
     let mut variances = point.variances.clone();
-    let terms: Vec<(f64, f64)> = prior
-        .nodes
-        .iter()
-        .zip(&prior.log_weights)
+    let nodes = prior.nodes.iter().zip(&prior.log_weights);
+    nodes
         .filter_map(|(sd, weight)| {
             columns.iter().for_each(|i| variances[*i] = sd * sd);
-            Some((point.marginal.log_likelihood(&variances)? + weight, sd * sd))
+            Some((*sd, point.marginal.log_likelihood(&variances)? + weight))
         })
-        .collect();
-    let total = log_sum_exp(&terms.iter().map(|(term, _)| *term).collect::<Vec<f64>>());
-    let variance = terms.iter().map(|(term, variance)| libm::exp(term - total) * variance).sum();
-    (total - point.solution.log_likelihood, variance)
+        .collect()
 }
 
 /// A size with a normal prior and its posterior, before the prior is replaced.

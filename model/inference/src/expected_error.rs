@@ -4,17 +4,20 @@
 //! the same conditions. A hypothesis counts by its probability without that
 //! series, so that it is held out of the choice of effects too. New mounts and what a session draws again
 //! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
-//! sessions.
+//! sessions, whose mounts have standard deviations drawn from their posterior.
+
+use std::collections::BTreeMap;
 
 use nalgebra::DVector;
 
 use crate::design::{Component, Role};
+use crate::evidence::component_terms;
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
 use crate::outliers::Outliers;
 use crate::problem::Problem;
-use crate::quadrature::log_sum_exp;
+use crate::quadrature::{Mixture, log_sum_exp};
 use crate::random::Random;
 
 /// Most hypotheses that are averaged.
@@ -191,11 +194,26 @@ struct Simulation<'a> {
     problem: &'a Problem,
     fit: &'a Fit,
     linearised: &'a Linearised,
+    /// Standard deviations of each random effect that a new session draws again, with the sum of the probabilities up to each.
+    redrawn: BTreeMap<usize, Vec<(f64, f64)>>,
 }
 
 impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
-        Self { problem, fit, linearised }
+        let mut redrawn = BTreeMap::new();
+        for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
+            let prior = Mixture::fine_half_normal(effect.scale);
+            let (design, point) = (&linearised.design, &linearised.point);
+            let terms = component_terms(design, point, Component::Random(i), &prior);
+            let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
+            let mut sum = 0.0;
+            let up_to = terms.into_iter().map(|(sd, term)| {
+                sum += libm::exp(term - total);
+                (sd, sum)
+            });
+            redrawn.insert(i, up_to.collect());
+        }
+        Self { problem, fit, linearised, redrawn }
     }
 
     /// Returns the mean square of each session over the median one.
@@ -257,13 +275,15 @@ impl<'a> Simulation<'a> {
         errors
     }
 
-    /// Adds new levels of the random effects that a new session draws again.
+    /// Adds new levels of the random effects that a new session draws again, with standard deviations from their posterior.
     fn add_new_levels(&self, random: &mut Random, errors: &mut [f64]) {
-        for (i, effect) in self.problem.space.random_effects.iter().enumerate() {
-            let Some(sd) = self.fit.random_effect_sd(i).filter(|_| effect.is_redrawn) else { continue };
+        for (i, standard_deviations) in &self.redrawn {
+            let (share, effect) = (random.uniform(), &self.problem.space.random_effects[*i]);
+            let drawn = standard_deviations.iter().find(|(_, up_to)| share < *up_to);
+            let Some((sd, _)) = drawn.or(standard_deviations.last()) else { continue };
             let values: Vec<f64> = (0..effect.levels).map(|_| sd * random.normal()).collect();
             let channel = &self.linearised.design.channels[effect.channel];
-            for (row, level) in self.problem.rows.levels[i].iter().enumerate() {
+            for (row, level) in self.problem.rows.levels[*i].iter().enumerate() {
                 errors[row] += level.map_or(0.0, |level| values[level] * channel[row]);
             }
         }
@@ -272,8 +292,28 @@ impl<'a> Simulation<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::{SessionView, mean_square_step, session_variance};
     use crate::test_problem::problem;
     use crate::{SearchOptions, infer};
+
+    #[test]
+    fn steps_between_sessions_are_counted_once_each() {
+        assert_eq!(mean_square_step(&[0.3, 0.3, 0.3]), 0.0);
+        assert_eq!(mean_square_step(&[0.0, 0.0, 0.0, 1.0, 3.0, 3.0]), (1.0 + 4.0) / 2.0);
+        assert_eq!(mean_square_step(&[]), 0.0);
+    }
+
+    /// Two hypotheses of equal probability that predict 1 and 3 differ by 1 from their mean; one row of two is sound.
+    #[test]
+    fn a_session_varies_by_its_draws_its_step_and_the_hypotheses() {
+        let view = |prediction, deviation, step| SessionView {
+            prediction: vec![prediction, 100.0],
+            deviation: vec![deviation, 100.0],
+            steps: vec![step, 100.0],
+        };
+        let views = [(0.5, view(1.0, 0.0, 4.0)), (0.5, view(3.0, 2.0, 0.0))];
+        assert_eq!(session_variance(&views, &[0]), 0.5 * 2f64.powi(2) + 0.5 * 4.0 + 1.0);
+    }
 
     /// Series differ by 0.05 and readings by 0.03, so a new session differs by their root sum of
     /// squares.

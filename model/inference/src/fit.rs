@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::design::{Component, Design, Mode, Role};
 use crate::evidence::{Integrals, SizePosterior, log_evidence};
 use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::leave_out::Linearised;
 use crate::noise::{EXCLUDED, Scales};
 use crate::problem::{Problem, SizedEffect, Space};
 use crate::scales::{ScalePoint, ScaleProblem};
@@ -136,6 +137,20 @@ impl Fit {
     /// Returns the scales of the noise.
     pub fn scales(&self) -> Scales {
         self.mode.scales
+    }
+
+    /// Widens the posteriors of the sizes for weights and scales that are not known.
+    pub(crate) fn widen_sizes(&mut self, problem: &Problem) {
+        let Some(linearised) = Linearised::new(problem, self) else { return };
+        let Some(covariance) = linearised.covariance(problem, self) else { return };
+        for (i, role) in linearised.design.roles.iter().enumerate() {
+            let Role::Size(effect) = role else { continue };
+            let Some(size) = self.sizes.get_mut(effect) else { continue };
+            let known = linearised.point.solution.covariance[(i, i)];
+            if known > 0.0 {
+                size.sd *= (covariance[(i, i)] / known).max(1.0).sqrt();
+            }
+        }
     }
 
     /// Returns the fit with the noise of repeated readings; `None` if its own is not much larger.
@@ -373,9 +388,14 @@ fn within_limits(space: &Space, mode: &Mode, role: &Role, value: f64) -> f64 {
 fn condition(mean: &mut DVector<f64>, covariance: &mut DMatrix<f64>, at: usize, value: f64) {
     let variance = covariance[(at, at)];
     if variance > 0.0 {
-        let column = covariance.column(at) / variance;
-        mean.axpy(value - mean[at], &column, 1.0);
-        covariance.ger(-variance, &column, &column, 1.0);
+        let shares: Vec<f64> = covariance.column(at).iter().map(|with| with / variance).collect();
+        let change = value - mean[at];
+        for (i, share) in shares.iter().enumerate() {
+            mean[i] += share * change;
+            for (j, other) in shares.iter().enumerate() {
+                covariance[(i, j)] -= variance * share * other;
+            }
+        }
     }
     mean[at] = value;
 }

@@ -32,6 +32,7 @@
 //! | weights of the t noise | EM for its scale mixture |
 //! | scales of noise and components | Newton steps with the average information matrix |
 //! | `ln p(y \| H)` | all coefficients exactly (Woodbury); Cauchy priors, signs and `tau` by quadrature |
+//! | intervals of `q` and `s` | corrected for weights and scales that are not known: Fisher information of the t noise, Kackar and Harville, Satterthwaite |
 //! | `P(H \| y)` | `exp(score)` over the sum in Occam's window ([`SearchOptions::window`]) |
 //! | expected error | exact leave-one-series-out, hypotheses weighed without the series ([`ExpectedError`]) |
 //!
@@ -119,6 +120,7 @@ mod score;
 mod search;
 #[cfg(test)]
 mod test_problem;
+mod uncertainty;
 
 pub use coefficients::{Coefficient, Coefficients};
 pub use design::Mode;

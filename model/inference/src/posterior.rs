@@ -104,6 +104,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let error_of =
         |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
     let expected_error = error_of(&window, &probabilities);
+    window.iter_mut().for_each(|fit| fit.widen_sizes(problem));
     let (fit_count, baseline) = (fits, search.baseline()?);
     let baseline_error =
         if is_baseline { expected_error } else { error_of(std::slice::from_ref(&baseline), &[1.0]) };

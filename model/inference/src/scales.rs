@@ -127,20 +127,43 @@ impl ScaleProblem<'_> {
     /// gain.
     fn newton_step(&self, point: &ScalePoint) -> Option<(Vec<f64>, f64)> {
         let (mut gradient, tangents) = self.likelihood_gradient(point);
-        let white = point.marginal.whitening.whiten(&tangents);
-        let projected = point.marginal.white_matrix.transpose() * &white;
-        let explained = &point.solution.root * &projected;
-        let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
-        let (_, prior_gradient, prior_curvature) = point.scales.log_prior(&self.problem.reference);
-        let components = point.log_sd.iter().map(|(c, log)| self.component_prior(*c, *log));
-        let noise = prior_gradient.into_iter().zip(prior_curvature);
-        for (i, (slope, curvature)) in noise.chain(components.map(|(_, g, c)| (g, c))).enumerate() {
+        let mut information = self.average_information(point, &tangents);
+        for (i, (slope, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
             gradient[i] += slope;
-            information[(i, i)] += curvature + DAMPING;
+            information[(i, i)] += curvature;
         }
         let step = information.cholesky()?.solve(&gradient);
         let gain = 0.5 * step.dot(&gradient);
         gain.is_finite().then(|| (step.iter().copied().collect(), gain))
+    }
+
+    /// Returns the information of the readings and the priors about the logarithms of the scales, and the column `dV P r` of
+    /// each scale.
+    pub(crate) fn information(&self, point: &ScalePoint) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (_, tangents) = self.likelihood_gradient(point);
+        let mut information = self.average_information(point, &tangents);
+        for (i, (_, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
+            information[(i, i)] += curvature;
+        }
+        (information, tangents)
+    }
+
+    fn average_information(&self, point: &ScalePoint, tangents: &DMatrix<f64>) -> DMatrix<f64> {
+        let white = point.marginal.whitening.whiten(tangents);
+        let projected = point.marginal.white_matrix.transpose() * &white;
+        let explained = &point.solution.root * &projected;
+        (white.transpose() * &white - explained.transpose() * &explained) * 0.5
+    }
+
+    /// Returns the slope of the prior of the logarithm of each scale, and its curvature with the damping.
+    fn prior_slopes(&self, point: &ScalePoint) -> Vec<(f64, f64)> {
+        let (_, slopes, curvatures) = point.scales.log_prior(&self.problem.reference);
+        let components = point.log_sd.iter().map(|(c, log)| self.component_prior(*c, *log));
+        let all = slopes
+            .into_iter()
+            .zip(curvatures)
+            .chain(components.map(|(_, slope, curvature)| (slope, curvature)));
+        all.map(|(slope, curvature)| (slope, curvature + DAMPING)).collect()
     }
 
     /// Returns the gradient of the marginal likelihood, and the column `dV P r` of each scale.

@@ -49,7 +49,7 @@ pub(crate) fn rows(count: usize) -> Rows {
     }
 }
 
-fn space() -> Space {
+pub(crate) fn space() -> Space {
     Space {
         constants: vec![Constant { name: "slope".to_owned(), mean: 1.0, sd: 1.0 }],
         effects: vec![Effect {

@@ -370,11 +370,14 @@ struct Band {
     rows: usize,
     depths: Vec<f32>,
     faces: Vec<u32>,
+    /// First column of each row with a face, and the one after the last.
+    touched: Vec<(usize, usize)>,
 }
 
 impl Band {
     fn new(columns: usize, edge_mm: f32) -> Self {
-        Self { columns, edge_mm, first_row: 0, rows: 0, depths: Vec::new(), faces: Vec::new() }
+        let (depths, faces, touched) = (Vec::new(), Vec::new(), Vec::new());
+        Self { columns, edge_mm, first_row: 0, rows: 0, depths, faces, touched }
     }
 
     fn clear(&mut self, first_row: usize, end_row: usize) {
@@ -382,6 +385,8 @@ impl Band {
         self.depths.clear();
         self.depths.resize(self.rows * self.columns, NOTHING);
         self.faces.resize(self.rows * self.columns, 0);
+        self.touched.clear();
+        self.touched.resize(self.rows, (self.columns, 0));
     }
 
     /// Draws the samples whose centre is in `face` and that are nearer than the present ones.
@@ -393,9 +398,14 @@ impl Band {
             let y = top + row as f64;
             let (left, right) = face.span(y);
             let (from, to) = (first_from(left - 0.5, self.columns), first_from(right - 0.5, self.columns));
+            if from >= to {
+                continue;
+            }
+            let touched = &mut self.touched[row];
+            *touched = (touched.0.min(from), touched.1.max(to));
             let start = row * self.columns;
-            let depths = &mut self.depths[start + from..start + to.max(from)];
-            let faces = &mut self.faces[start + from..start + to.max(from)];
+            let depths = &mut self.depths[start + from..start + to];
+            let faces = &mut self.faces[start + from..start + to];
             let [origin, across, down] = face.depth;
             let mut depth = origin + down * y + across * (from as f64 + 0.5);
             for (known, owner) in depths.iter_mut().zip(faces) {
@@ -417,7 +427,13 @@ impl Band {
                 let i = (row + i).min(self.rows - 1);
                 &self.depths[i * self.columns..(i + 1) * self.columns]
             });
-            for column in (0..self.columns).step_by(SAMPLES) {
+            let touched = &self.touched[row..(row + SAMPLES + 1).min(self.rows)];
+            let (from, to) = touched.iter().fold((self.columns, 0), |(a, b), (c, d)| (a.min(*c), b.max(*d)));
+            // A pixel depends on one more column than it has.
+            let from = (from.saturating_sub(SAMPLES) / SAMPLES * SAMPLES).min(self.columns);
+            let to = to.next_multiple_of(SAMPLES).min(self.columns).max(from);
+            add_background(from / SAMPLES, pixels, owners);
+            for column in (from..to).step_by(SAMPLES) {
                 // One more column than the pixel has, except for the last.
                 let seen = column..(column + SAMPLES + 1).min(self.columns);
                 if lines.iter().all(|line| line[seen.clone()].iter().all(|depth| *depth == NOTHING)) {
@@ -429,6 +445,7 @@ impl Band {
                     pixels.extend(self.pixel(row, column, &lines, faces).map(to_byte));
                 }
             }
+            add_background((self.columns - to) / SAMPLES, pixels, owners);
         }
     }
 
@@ -457,6 +474,12 @@ impl Band {
         }
         sum
     }
+}
+
+/// Appends pixels of the background.
+fn add_background(count: usize, pixels: &mut Vec<u8>, owners: &mut Vec<Option<u16>>) {
+    pixels.extend(std::iter::repeat_n(BACKGROUND.map(to_byte), count).flatten());
+    owners.resize(owners.len() + count, None);
 }
 
 /// Whether there is an edge between samples of these depths: one is background, or they differ by

@@ -265,7 +265,8 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     }
     let mut study = Study::default();
     each_case(arguments, seeds, numbered.collect(), run_case, |case, outcomes| study.add(case, outcomes))?;
-    print_text(&format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()))
+    let parts = [study.table(), study.groups(), study.summary(), study.reliability()];
+    print_text(&parts.join("\n"))
 }
 
 /// Runs the rigs of the requested kinds and passes the outcomes of each kind to `add`. The number of a kind is its place

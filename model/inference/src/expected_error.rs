@@ -6,8 +6,6 @@
 //! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
 //! sessions, whose mounts have standard deviations drawn from their posterior.
 
-use std::collections::BTreeMap;
-
 use nalgebra::DVector;
 
 use crate::design::{Component, Role};
@@ -195,12 +193,12 @@ struct Simulation<'a> {
     fit: &'a Fit,
     linearised: &'a Linearised,
     /// Standard deviations of each random effect that a new session draws again, with the sum of the probabilities up to each.
-    redrawn: BTreeMap<usize, Vec<(f64, f64)>>,
+    redrawn: Vec<(usize, Vec<(f64, f64)>)>,
 }
 
 impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
-        let mut redrawn = BTreeMap::new();
+        let mut redrawn = Vec::new();
         for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
             let prior = Mixture::fine_half_normal(effect.scale);
             let (design, point) = (&linearised.design, &linearised.point);
@@ -211,7 +209,7 @@ impl<'a> Simulation<'a> {
                 sum += libm::exp(term - total);
                 (sd, sum)
             });
-            redrawn.insert(i, up_to.collect());
+            redrawn.push((i, up_to.collect()));
         }
         Self { problem, fit, linearised, redrawn }
     }

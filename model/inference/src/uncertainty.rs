@@ -29,7 +29,7 @@ impl Linearised {
     /// Returns the covariance of the coefficients with the corrections. Constants and sizes have the variances of the normal
     /// distributions with the 95 % intervals of their t distributions. `None` if the readings then determine nothing.
     pub(crate) fn covariance(&self, problem: &Problem, fit: &Fit) -> Option<DMatrix<f64>> {
-        let weights = &fit.mode.weights * HEAVY_TAILS;
+        let weights = DVector::from_fn(problem.len(), |row, _| fit.mode.weights[row] * HEAVY_TAILS);
         let size_variances = size_variances(&problem.space, &fit.hypothesis, &fit.mode, true);
         let at = ScaleProblem {
             problem,
@@ -39,20 +39,25 @@ impl Linearised {
         };
         let point = at.at(fit.mode.scales, &fit.mode.log_sd)?;
         let (information, tangents) = at.information(&point);
-        let scales = information.cholesky()?.inverse();
-        let shifts = derivatives_of_mean(&at, &point, &tangents);
-        let mut covariance = &point.solution.covariance + &shifts * &scales * shifts.transpose();
+        // With S^-1 = F F', J S J' is X'X for X = F^-1 J', and g' S g the square of F^-1 g.
+        let factor = information.cholesky()?.unpack();
+        let mut shifts = derivatives_of_mean(&at, &point, &tangents).transpose();
+        factor.solve_lower_triangular_mut(&mut shifts);
+        let mut covariance = shifts.transpose() * &shifts;
+        covariance += &point.solution.covariance;
         for (i, role) in self.design.roles.iter().enumerate() {
             if !matches!(role, Role::Constant(_) | Role::Size(_)) {
                 continue;
             }
             let variance = point.solution.covariance[(i, i)];
             let slopes = derivatives_of_variance(&at, &point, i);
-            let spread = slopes.dot(&(&scales * &slopes));
+            let spread = factor.solve_lower_triangular(&slopes)?.norm_squared();
             if variance > 0.0 && spread > 0.0 {
-                let factor = student_95(2.0 * variance * variance / spread) / NORMAL_95;
-                covariance.row_mut(i).scale_mut(factor);
-                covariance.column_mut(i).scale_mut(factor);
+                let wider = student_95(2.0 * variance * variance / spread) / NORMAL_95;
+                for j in 0..self.design.roles.len() {
+                    covariance[(i, j)] *= wider;
+                    covariance[(j, i)] *= wider;
+                }
             }
         }
         Some(covariance)
@@ -62,7 +67,8 @@ impl Linearised {
 /// Returns the derivatives of the posterior mean with respect to the logarithms of the scales, from the columns `dV P r`.
 fn derivatives_of_mean(at: &ScaleProblem<'_>, point: &ScalePoint, tangents: &DMatrix<f64>) -> DMatrix<f64> {
     let projected = point.marginal.white_matrix.tr_mul(&point.marginal.whitening.whiten(tangents));
-    let mut shifts = -(&point.solution.covariance * projected);
+    let mut shifts = &point.solution.covariance * projected;
+    shifts.iter_mut().for_each(|shift| *shift = -*shift);
     for (i, component) in point.log_sd.keys().enumerate() {
         for column in at.design.columns_of(*component) {
             shifts[(column, SCALES + i)] += 2.0 * point.solution.mean[column];

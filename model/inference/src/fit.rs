@@ -141,6 +141,9 @@ impl Fit {
 
     /// Widens the posteriors of the sizes for weights and scales that are not known.
     pub(crate) fn widen_sizes(&mut self, problem: &Problem) {
+        if self.sizes.is_empty() {
+            return;
+        }
         let Some(linearised) = Linearised::new(problem, self) else { return };
         let Some(covariance) = linearised.covariance(problem, self) else { return };
         for (i, role) in linearised.design.roles.iter().enumerate() {

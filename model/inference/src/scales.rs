@@ -43,6 +43,15 @@ pub(crate) struct ScalePoint {
     pub(crate) log_posterior: f64,
 }
 
+/// Slopes of the log posterior in the logarithms of the scales: those of the noise, then of the components.
+pub(crate) struct Slopes {
+    pub(crate) gradient: DVector<f64>,
+    /// Average information of the readings, with the curvature of the priors.
+    pub(crate) information: DMatrix<f64>,
+    /// The column `dV P r` of each scale.
+    pub(crate) tangents: DMatrix<f64>,
+}
+
 impl ScaleProblem<'_> {
     pub(crate) fn noise<'b>(&'b self, scales: &'b Scales) -> Noise<'b> {
         Noise {
@@ -126,33 +135,24 @@ impl ScaleProblem<'_> {
     /// Returns the Newton step of all scales, the noise's, then the components', and its expected
     /// gain.
     fn newton_step(&self, point: &ScalePoint) -> Option<(Vec<f64>, f64)> {
-        let (mut gradient, tangents) = self.likelihood_gradient(point);
-        let mut information = self.average_information(point, &tangents);
-        for (i, (slope, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
-            gradient[i] += slope;
-            information[(i, i)] += curvature;
-        }
+        let Slopes { gradient, information, .. } = self.slopes(point);
         let step = information.cholesky()?.solve(&gradient);
         let gain = 0.5 * step.dot(&gradient);
         gain.is_finite().then(|| (step.iter().copied().collect(), gain))
     }
 
-    /// Returns the information of the readings and the priors about the logarithms of the scales, and the column `dV P r` of
-    /// each scale.
-    pub(crate) fn information(&self, point: &ScalePoint) -> (DMatrix<f64>, DMatrix<f64>) {
-        let (_, tangents) = self.likelihood_gradient(point);
-        let mut information = self.average_information(point, &tangents);
-        for (i, (_, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
-            information[(i, i)] += curvature;
-        }
-        (information, tangents)
-    }
-
-    fn average_information(&self, point: &ScalePoint, tangents: &DMatrix<f64>) -> DMatrix<f64> {
-        let white = point.marginal.whitening.whiten(tangents);
+    /// Returns the slopes of the log posterior in the logarithms of the scales.
+    pub(crate) fn slopes(&self, point: &ScalePoint) -> Slopes {
+        let (mut gradient, tangents) = self.likelihood_gradient(point);
+        let white = point.marginal.whitening.whiten(&tangents);
         let projected = point.marginal.white_matrix.transpose() * &white;
         let explained = &point.solution.root * &projected;
-        (white.transpose() * &white - explained.transpose() * &explained) * 0.5
+        let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
+        for (i, (slope, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
+            gradient[i] += slope;
+            information[(i, i)] += curvature;
+        }
+        Slopes { gradient, information, tangents }
     }
 
     /// Returns the slope of the prior of the logarithm of each scale, and its curvature with the damping.

@@ -16,7 +16,7 @@ use crate::fit::{DEGREES_OF_FREEDOM, Fit, size_variances};
 use crate::leave_out::Linearised;
 use crate::noise::SCALES;
 use crate::problem::Problem;
-use crate::scales::{ScalePoint, ScaleProblem};
+use crate::scales::{ScalePoint, ScaleProblem, Slopes};
 
 /// Fisher information of Student's t noise over that with known weights.
 const HEAVY_TAILS: f64 = (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + 3.0);
@@ -38,9 +38,11 @@ impl Linearised {
             size_variances: &size_variances,
         };
         let point = at.at(fit.mode.scales, &fit.mode.log_sd)?;
-        let (information, tangents) = at.information(&point);
+        let Slopes { information, tangents, .. } = at.slopes(&point);
         // With S^-1 = F F', J S J' is X'X for X = F^-1 J', and g' S g the square of F^-1 g.
-        let factor = information.cholesky()?.unpack();
+        // To rounding, very many precise readings may have no positive information: scales are then known.
+        let Some(factor) = information.cholesky() else { return Some(point.solution.covariance) };
+        let factor = factor.unpack();
         let mut shifts = derivatives_of_mean(&at, &point, &tangents).transpose();
         factor.solve_lower_triangular_mut(&mut shifts);
         let mut covariance = shifts.transpose() * &shifts;
@@ -135,7 +137,7 @@ mod tests {
         let (design, weights) = (&linearised.design, &fit.mode.weights);
         let at = ScaleProblem { problem: &problem, design, weights, size_variances: &size_variances };
         let point = &linearised.point;
-        let shifts = derivatives_of_mean(&at, point, &at.information(point).1);
+        let shifts = derivatives_of_mean(&at, point, &at.slopes(point).tangents);
         let slopes = derivatives_of_variance(&at, point, 0);
         for scale in 0..SCALES + point.log_sd.len() {
             let moved = |step: f64| {

@@ -4,6 +4,7 @@
 //! without a mesh and without sampling. So one rule finds every thin place of every part.
 
 use std::borrow::Cow;
+use std::f64::consts::{PI, TAU};
 
 use super::definition::{Solid, Wall};
 use crate::profile::{Arc, Contour, Edge, Point2, Vector2};
@@ -13,6 +14,8 @@ use crate::profile::{Arc, Contour, Edge, Point2, Vector2};
 const FACING: f64 = 0.82;
 /// Distance up to which points are equal, mm.
 const SAME_MM: f64 = 1e-9;
+/// Angle up to which directions are equal, rad.
+const SAME_RAD: f64 = 1e-6;
 
 /// A thin wall of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +34,8 @@ pub struct ThinPlace {
 struct Face {
     wall: usize,
     edge: usize,
-    /// The edge at every height, for an upright wall.
-    upright: Option<Section>,
+    /// The edge at every height, for an upright wall, and its directions.
+    upright: Option<(Section, Directions)>,
     low: Point2,
     high: Point2,
     from_mm: f64,
@@ -82,7 +85,10 @@ impl Solid {
             for edge in 0..lower.contour.edges().len() {
                 let (a, b) = (lower.contour.edge_bounds(edge), upper.contour.edge_bounds(edge));
                 let (low, high) = (a.0.inf(&b.0), a.1.sup(&b.1));
-                let upright = is_upright.then(|| self.edge_at(wall, edge, 0.0));
+                let upright = is_upright.then(|| self.edge_at(wall, edge, 0.0)).map(|section| {
+                    let directions = section.directions();
+                    (section, directions)
+                });
                 all.push(Face { wall, edge, upright, low, high, from_mm: lower.z_mm, to_mm: upper.z_mm });
             }
         }
@@ -110,7 +116,7 @@ impl Solid {
     }
 
     fn face_at<'a>(&self, face: &'a Face, z_mm: f64) -> Cow<'a, Section> {
-        if let Some(section) = &face.upright {
+        if let Some((section, _)) = &face.upright {
             return Cow::Borrowed(section);
         }
         let Wall { lower, upper } = self.walls[face.wall];
@@ -200,26 +206,77 @@ impl Candidate {
 }
 
 impl Face {
-    /// Whether another face is further away than `under_mm` at every height, by its box or the disc
-    /// around that.
+    /// Whether no wall is between this face and another one: it is further away than `under_mm` at every height, by its box or
+    /// the disc around that, or the two do not face each other.
     fn is_apart(&self, other: &Self, under_mm: f64) -> bool {
         other.low.y > self.high.y + under_mm
             || self.low.y > other.high.y + under_mm
+            || self.is_averted(other)
             || self.is_beyond(other, under_mm)
             || other.is_beyond(self, under_mm)
+    }
+
+    /// Whether no direction through material from this face is one to the other.
+    fn is_averted(&self, other: &Self) -> bool {
+        match (&self.upright, &other.upright) {
+            (Some((_, a)), Some((_, b))) => a.are_averted(*b),
+            _ => false,
+        }
     }
 
     /// Whether the disc around the box of another face is further away than `under_mm` from the
     /// line or circle of this one.
     fn is_beyond(&self, other: &Self, under_mm: f64) -> bool {
-        self.upright.as_ref().is_some_and(|section| {
+        self.upright.as_ref().is_some_and(|(section, _)| {
             let middle = nalgebra::center(&other.low, &other.high);
             section.offset_mm(middle) > under_mm + 0.5 * (other.high - other.low).norm()
         })
     }
 }
 
+/// Directions in which a wall may be behind an edge: all within `half_rad` of `middle_rad`.
+#[derive(Clone, Copy)]
+struct Directions {
+    middle_rad: f64,
+    half_rad: f64,
+}
+
+impl Directions {
+    /// Whether none of these is opposite to one of the others.
+    fn are_averted(self, other: Self) -> bool {
+        angle_between(self.middle_rad, other.middle_rad + PI) > self.half_rad + other.half_rad + SAME_RAD
+    }
+}
+
+/// Angle between two directions, 0 to a half turn.
+fn angle_between(a_rad: f64, b_rad: f64) -> f64 {
+    let turn = (a_rad - b_rad).rem_euclid(TAU);
+    turn.min(TAU - turn)
+}
+
 impl Section {
+    /// All directions that [`Section::faces`] accepts at any point: those close to a normal, and up to the normals of the
+    /// neighbours at corners that point into the material.
+    fn directions(&self) -> Directions {
+        let angle = |direction: Vector2| libm::atan2(direction.y, direction.x);
+        let inwards = |t: Vector2| angle(Vector2::new(-t.y, t.x));
+        let (middle_rad, reach_rad) = match &self.arc {
+            Some(arc) => {
+                let towards_centre = if arc.sweep_rad > 0.0 { PI } else { 0.0 };
+                (arc.start_rad + 0.5 * arc.sweep_rad + towards_centre, 0.5 * arc.sweep_rad.abs())
+            }
+            None => (inwards(self.to - self.from), 0.0),
+        };
+        let here: PlainEdge = (self.from, self.to, self.arc);
+        let corners =
+            [(self.before, tangent(&here, 0.0), self.before), (tangent(&here, 1.0), self.after, self.after)];
+        let pointed = corners.into_iter().filter(|(first, second, _)| first.perp(second) < 0.0);
+        let half_rad = pointed
+            .map(|(_, _, neighbour)| angle_between(inwards(neighbour), middle_rad))
+            .fold(reach_rad + libm::acos(FACING), f64::max);
+        Directions { middle_rad, half_rad }
+    }
+
     /// Distance of a point from the line or circle of this edge, mm.
     fn offset_mm(&self, point: Point2) -> f64 {
         match &self.arc {
@@ -368,7 +425,37 @@ mod tests {
         assert!((places[0].thickness_mm - 0.8).abs() < 1e-12, "{places:?}");
     }
 
+    /// Of a regular polygon of 12 sides, each faces the opposite one and the four beside that.
+    #[test]
+    fn sides_that_do_not_face_each_other_are_averted() {
+        let corners = (0..12).map(|i| crate::profile::polar(5.0, -TAU * f64::from(i) / 12.0)).collect();
+        let solid = Solid::prism(&Contour::polygon(corners), &[], 0.0, 5.0, 0.0).unwrap();
+        let faces = solid.faces();
+        let averted = |a: &Face| faces.iter().filter(|b| a.is_averted(b)).count();
+        assert!(faces.iter().all(|a| averted(a) == 7));
+    }
+
     proptest! {
+        /// Between averted edges there is no wall of any thickness.
+        #[test]
+        fn averted_edges_have_no_wall(radii in proptest::collection::vec(6.0..9.0f64, 6..16), hole in 0.2..1.5f64) {
+            let count = radii.len() as f64;
+            let corner = |(i, r): (usize, &f64)| crate::profile::polar(*r, -TAU * i as f64 / count);
+            let outline = Contour::polygon(radii.iter().enumerate().map(corner).collect());
+            let ring = Contour::circle(Point2::new(0.1, 0.05), hole.min(0.5)).reversed();
+            let solid = Solid::prism(&outline, &[ring], 0.0, 500.0, 0.0).unwrap();
+            let faces = solid.faces();
+            let mut walls = 0;
+            for (i, a) in faces.iter().enumerate() {
+                for b in &faces[i + 1..] {
+                    let is_wall = solid.between(a, b, 0.0, 500.0, 1e3).is_some();
+                    walls += usize::from(is_wall);
+                    prop_assert!(!(is_wall && a.is_averted(b)), "{} and {}", a.edge, b.edge);
+                }
+            }
+            prop_assert!(walls > 0);
+        }
+
         /// The thickness between two holes is the exact distance of their circles.
         #[test]
         fn the_thinnest_place_is_the_least_distance(x in 6.0..9.0f64, y in 3.0..7.0f64, r in 0.5..2.0f64) {

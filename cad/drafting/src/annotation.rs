@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::draft::{Candidate, Draft};
+use super::draft::{Candidate, Draft, Shapes};
 use super::font::{fit_text, text_width_mm};
 use super::geometry::{Extent, Point};
 use super::indicator::{INDICATOR_MM, Indicator, datum, rectangle};
@@ -312,6 +312,14 @@ impl Label {
     }
 }
 
+/// A possible position of a callout: its leader, the end of that, and the side of its shelf, +1 right and -1 left.
+#[derive(Clone, Copy, Debug)]
+struct Position {
+    leader: Leader,
+    elbow: Point,
+    side: f64,
+}
+
 /// Additional length of a leader rather than end in an area to avoid, mm.
 const AVOID_MM: f64 = 40.0;
 
@@ -326,7 +334,8 @@ const REACHES_MM: [f64; 20] = [
 impl Callout {
     /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
-        draft.place_with_content(&self.key, Some(self.content().join("\n")), self.candidates())
+        let content = Some(self.content().join("\n"));
+        draft.place_with_content(&self.key, content, self.positions(), |position| self.shapes_at(&position))
     }
 
     /// Returns its lines, with the geometrical tolerances and the datum in words.
@@ -336,7 +345,8 @@ impl Callout {
         self.lines.iter().cloned().chain(indicators).chain(datum).collect()
     }
 
-    fn candidates(&self) -> Vec<Candidate> {
+    /// Its possible positions, each with its cost.
+    fn positions(&self) -> Vec<(f64, Position)> {
         let mut all = Vec::new();
         for leader in &self.leaders {
             for reach in REACHES_MM {
@@ -344,22 +354,24 @@ impl Callout {
                 let around = Extent::between(elbow, elbow).grown(BALLOON_MM);
                 let is_avoided = self.avoid.iter().any(|a| a.overlaps(around));
                 let cost = leader.cost_mm + reach + if is_avoided { AVOID_MM } else { 0.0 };
+                let at = |side: f64| (cost, Position { leader: *leader, elbow, side });
                 if self.is_balloon {
-                    all.push((cost, self.balloon(leader, elbow)));
+                    all.push(at(1.0));
                     continue;
                 }
                 // The shelf continues to the side to which the leader leans; an upright leader has both.
-                for side in [1.0, -1.0] {
-                    if leader.direction.x * side >= -0.15 {
-                        all.push((cost, self.note(leader, elbow, side)));
-                    }
-                }
+                all.extend([1.0, -1.0].into_iter().filter(|side| leader.direction.x * side >= -0.15).map(at));
             }
         }
         all
     }
 
-    fn note(&self, leader: &Leader, elbow: Point, side: f64) -> Vec<(Layer, Shape)> {
+    fn shapes_at(&self, position: &Position) -> Shapes {
+        if self.is_balloon { self.balloon(position) } else { self.note(position) }
+    }
+
+    fn note(&self, Position { leader, elbow, side }: &Position) -> Shapes {
+        let (elbow, side) = (*elbow, *side);
         let shelf = elbow + Point::new(2.0 * side, 0.0);
         let mut shapes =
             vec![arrow(leader.tip, leader.direction * -1.0), line(leader.tip, elbow), line(elbow, shelf)];
@@ -389,13 +401,13 @@ impl Callout {
         shapes
     }
 
-    fn balloon(&self, leader: &Leader, elbow: Point) -> Vec<(Layer, Shape)> {
+    fn balloon(&self, Position { leader, elbow, .. }: &Position) -> Shapes {
         let number = self.lines.join(" ");
-        let centre = elbow + leader.direction * BALLOON_MM;
+        let centre = *elbow + leader.direction * BALLOON_MM;
         let at = centre - Point::new(text_width_mm(&number, TEXT_MM) / 2.0, TEXT_MM / 2.0);
         vec![
             arrow(leader.tip, leader.direction * -1.0),
-            line(leader.tip, elbow),
+            line(leader.tip, *elbow),
             (Layer::Dimension, Shape::Circle { centre, radius_mm: BALLOON_MM }),
             (Layer::Text, text(at, &number, false)),
         ]

@@ -17,8 +17,10 @@ const EDGE_CROSSING_MM: f64 = 2.5;
 /// The same rather than run along another line, mm.
 const COVERING_MM: f64 = 30.0;
 
+/// The shapes of an annotation.
+pub(super) type Shapes = Vec<(Layer, Shape)>;
 /// A possible position of an annotation: its cost in mm of leader length, and its shapes.
-pub(super) type Candidate = (f64, Vec<(Layer, Shape)>);
+pub(super) type Candidate = (f64, Shapes);
 
 /// A sheet under construction.
 #[derive(Clone, Debug)]
@@ -198,22 +200,25 @@ impl Draft {
 
     /// Draws the cheapest of `candidates` that touches nothing; returns whether there is one.
     pub(super) fn place(&mut self, key: &str, candidates: Vec<Candidate>) -> bool {
-        self.place_with_content(key, None, candidates)
+        self.place_with_content(key, None, candidates, |shapes| shapes)
     }
 
-    /// As [`Draft::place`], with the content of the annotation where it is not that of its texts.
-    pub(super) fn place_with_content(
+    /// As [`Draft::place`], with the content of the annotation where it is not that of its texts, and with shapes that are made
+    /// of a position only when its turn comes: most positions are dearer than the one that is taken.
+    pub(super) fn place_with_content<P>(
         &mut self,
         key: &str,
         content: Option<String>,
-        mut candidates: Vec<Candidate>,
+        mut positions: Vec<(f64, P)>,
+        shapes_at: impl Fn(P) -> Shapes,
     ) -> bool {
-        candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+        positions.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Candidate> = None;
-        for (base, shapes) in candidates {
+        for (base, position) in positions {
             if best.as_ref().is_some_and(|b| b.0 <= base) {
                 break;
             }
+            let shapes = shapes_at(position);
             let Some(crossings) = self.cost(&shapes) else { continue };
             if best.as_ref().is_none_or(|b| base + crossings < b.0) {
                 best = Some((base + crossings, shapes));

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::half_t::HalfT;
 use crate::hypothesis::{Hypothesis, Member};
 use crate::noise::Scales;
 use crate::problem::{MOST_SHAPE_CONSTANTS, Problem, Rows, SizedEffect, Space};
@@ -50,11 +51,11 @@ impl Component {
         }
     }
 
-    /// Returns the scale of the prior of its standard deviation.
-    pub(crate) fn scale(self, space: &Space) -> f64 {
+    /// Returns the prior of its standard deviation.
+    pub(crate) fn prior(self, space: &Space) -> HalfT {
         match self {
-            Self::Random(i) => space.random_effects[i].scale,
-            Self::Kernel(i) => space.kernels[i].scale,
+            Self::Random(i) => space.random_effects[i].prior(),
+            Self::Kernel(i) => HalfT::cauchy(space.kernels[i].scale),
         }
     }
 }

@@ -63,11 +63,7 @@ pub(crate) fn log_evidence(at: &ScaleProblem<'_>, point: &ScalePoint, log_weight
 /// Returns what integrating the standard deviation of a component adds to the log likelihood at its
 /// mode, and the posterior mean of the variance.
 fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Component) -> (f64, f64) {
-    let scale = component.scale(&at.problem.space);
-    let prior = match component {
-        Component::Random(_) => Mixture::half_normal(scale),
-        Component::Kernel(_) => Mixture::half_cauchy(scale),
-    };
+    let prior = Mixture::half_t(component.prior(&at.problem.space));
     let terms = component_terms(at.design, point, component, &prior);
     let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
     let variance = terms.iter().map(|(sd, term)| libm::exp(term - total) * sd * sd).sum();

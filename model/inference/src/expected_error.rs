@@ -200,7 +200,7 @@ impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
         let mut redrawn = Vec::new();
         for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
-            let prior = Mixture::fine_half_normal(effect.scale);
+            let prior = Mixture::fine_half_t(effect.prior());
             let (design, point) = (&linearised.design, &linearised.point);
             let terms = component_terms(design, point, Component::Random(i), &prior);
             let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
@@ -214,7 +214,7 @@ impl<'a> Simulation<'a> {
         Self { problem, fit, linearised, redrawn }
     }
 
-    /// Returns the mean square of each session over the median one.
+    /// Returns the mean square of each session over their mean, which the expected error estimates.
     fn run(&self, random: &mut Random, sound: &[usize]) -> Vec<f64> {
         let square = |errors: Vec<f64>| -> f64 {
             sound.iter().map(|row| errors[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
@@ -226,8 +226,8 @@ impl<'a> Simulation<'a> {
                 square(errors)
             })
             .collect();
-        let median = crate::quadrature::median(&squares).max(1e-300);
-        squares.iter().map(|s| s / median).collect()
+        let mean = (squares.iter().sum::<f64>() / squares.len() as f64).max(1e-300);
+        squares.iter().map(|s| s / mean).collect()
     }
 
     /// Returns the mean square that new levels of random effects add.
@@ -291,7 +291,9 @@ impl<'a> Simulation<'a> {
 #[cfg(test)]
 mod tests {
     use super::{SessionView, mean_square_step, session_variance};
-    use crate::test_problem::problem;
+    use crate::problem::Problem;
+    use crate::random::Random;
+    use crate::test_problem::{problem, rows, space};
     use crate::{SearchOptions, infer};
 
     #[test]
@@ -323,6 +325,29 @@ mod tests {
         let truth = (0.05f64.powi(2) + 0.03f64.powi(2)).sqrt();
         assert!(error.interval[0] < truth && truth < error.interval[1], "{error:?}");
         assert!((error.value / truth - 1.0).abs() < 0.3, "{error:?}");
+    }
+
+    /// Twelve mounts that differ by twenty scales of the prior: the error of a session in new mounts is that of the mounts.
+    #[test]
+    fn expected_error_believes_mounts_that_differ_by_far_more_than_the_prior() {
+        const MOUNTS: usize = 12;
+        let mut rows = rows(3 * MOUNTS);
+        rows.levels = vec![rows.series.iter().map(|series| Some(series / 3)).collect()];
+        let mut space = space();
+        space.random_effects[0].levels = MOUNTS;
+        let sd = 20.0 * space.random_effects[0].scale;
+        let mut random = Random::new(3);
+        let mounts: Vec<f64> = (0..MOUNTS).map(|_| sd * random.normal()).collect();
+        let reading =
+            |i: usize| 2.0 * rows.load[i] * (1.0 + mounts[rows.series[i] / 3]) + 0.03 * random.normal();
+        let readings: Vec<f64> = (0..rows.len()).map(reading).collect();
+        let mean = mounts.iter().sum::<f64>() / MOUNTS as f64;
+        let spread = (mounts.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (MOUNTS - 1) as f64).sqrt();
+        let square = rows.load.iter().map(|load| (2.0 * load).powi(2)).sum::<f64>() / rows.len() as f64;
+        let problem = Problem::new(space, rows, readings).unwrap();
+        let error = infer(&problem, SearchOptions::default(), 5).unwrap().expected_error.unwrap();
+        let truth = spread * square.sqrt();
+        assert!((error.value / truth - 1.0).abs() < 0.25, "{error:?}, {truth}");
     }
 
     #[test]

@@ -291,7 +291,7 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
     let random = (0..space.random_effects.len()).map(Component::Random);
     let kernels = hypothesis.kernels().map(|(kernel, _)| Component::Kernel(kernel));
     for component in random.chain(kernels) {
-        let scale = component.scale(space);
+        let scale = component.prior(space).scale;
         let cold = libm::log(if matches!(component, Component::Random(_)) { 0.5 * scale } else { scale });
         let warm = mode.log_sd.get(&component).map_or(cold, |log| log.max(cold - 2.0));
         log_sd.insert(component, warm);

@@ -16,6 +16,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::half_t::HalfT;
 use crate::problem::Rows;
 
 /// Number of scales of the noise.
@@ -40,8 +41,6 @@ const SERIES_SCALE_PRIOR: f64 = 0.02;
 pub(crate) const EXCLUDED: f64 = 0.0;
 /// Standard deviation of an excluded row, in mean loads.
 const EXCLUDED_SD: f64 = 1e5;
-/// Power of a scale that multiplies its prior, so that its logarithm has a mode above zero.
-const SCALE_POWER: f64 = 0.02;
 
 /// Properties of the readings from which the priors of the noise follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,8 +149,8 @@ impl Scales {
             gradient[i] = -distance;
             curvature[i] = 1.0;
         }
-        for (i, scale) in half_cauchy.iter().enumerate() {
-            let term = log_half_cauchy(self.log[i + 2], *scale);
+        for (i, scale) in half_cauchy.into_iter().enumerate() {
+            let term = HalfT::cauchy(scale).log_density(self.log[i + 2]);
             value += term.0;
             gradient[i + 2] = term.1;
             curvature[i + 2] = term.2;
@@ -163,22 +162,6 @@ impl Scales {
         };
         (value + libm::log(share), gradient, curvature)
     }
-}
-
-/// Returns value, derivative and negative second derivative in `ln x` of the logarithm of a
-/// half-Cauchy density at `x`.
-pub(crate) fn log_half_cauchy(log_x: f64, scale: f64) -> (f64, f64, f64) {
-    let square = libm::exp(2.0 * (log_x - libm::log(scale)));
-    let value = libm::log(2.0 / std::f64::consts::PI / scale) - libm::log1p(square) + SCALE_POWER * log_x;
-    let share = square / (1.0 + square);
-    (value, SCALE_POWER - 2.0 * share, 4.0 * share * (1.0 - share))
-}
-
-/// The same for a half-normal density.
-pub(crate) fn log_half_normal(log_x: f64, scale: f64) -> (f64, f64, f64) {
-    let square = libm::exp(2.0 * (log_x - libm::log(scale)));
-    let value = 0.5 * libm::log(2.0 / std::f64::consts::PI) - libm::log(scale) - 0.5 * square;
-    (value + SCALE_POWER * log_x, SCALE_POWER - square, 2.0 * square)
 }
 
 /// Noise of the rows of a table, at given scales, weights and sensitivities to friction.

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::half_t::HalfT;
 use crate::noise::NoiseReference;
 
 /// A constant of the baseline, with a normal prior in the coordinate in which it is fitted.
@@ -70,12 +71,20 @@ pub struct RandomEffect {
     pub name: String,
     /// Index of the channel through which it acts.
     pub channel: usize,
-    /// Scale of the half-normal prior of its standard deviation, in the unit of the channel.
+    /// Scale of the half-t prior of its standard deviation, in the unit of the channel.
     pub scale: f64,
     /// Number of levels.
     pub levels: usize,
     /// Whether a new session has new levels: a new mount, but the same specimen.
     pub is_redrawn: bool,
+}
+
+impl RandomEffect {
+    /// Returns the prior of its standard deviation. With three degrees of freedom a scale that is far too small gives way to
+    /// the data, as by default in brms; a half-normal prior would not.
+    pub(crate) const fn prior(&self) -> HalfT {
+        HalfT { scale: self.scale, degrees: 3.0 }
+    }
 }
 
 /// Everything that hypotheses are made of.

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
-use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales, log_half_cauchy, log_half_normal};
+use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales};
 use crate::problem::Problem;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
@@ -73,17 +73,9 @@ impl ScaleProblem<'_> {
         let solution = marginal.solve(&variances)?;
         let mut log_posterior = solution.log_likelihood + scales.log_prior(&problem.reference).0;
         for (component, log) in log_sd {
-            log_posterior += self.component_prior(*component, *log).0;
+            log_posterior += component.prior(&self.problem.space).log_density(*log).0;
         }
         Some(ScalePoint { scales, log_sd: log_sd.clone(), variances, marginal, solution, log_posterior })
-    }
-
-    fn component_prior(&self, component: Component, log_sd: f64) -> (f64, f64, f64) {
-        let scale = component.scale(&self.problem.space);
-        match component {
-            Component::Random(_) => log_half_normal(log_sd, scale),
-            Component::Kernel(_) => log_half_cauchy(log_sd, scale),
-        }
     }
 
     /// Takes Newton steps from a mode until they gain little, at most `steps`.
@@ -158,7 +150,7 @@ impl ScaleProblem<'_> {
     /// Returns the slope of the prior of the logarithm of each scale, and its curvature with the damping.
     fn prior_slopes(&self, point: &ScalePoint) -> Vec<(f64, f64)> {
         let (_, slopes, curvatures) = point.scales.log_prior(&self.problem.reference);
-        let components = point.log_sd.iter().map(|(c, log)| self.component_prior(*c, *log));
+        let components = point.log_sd.iter().map(|(c, log)| c.prior(&self.problem.space).log_density(*log));
         let all = slopes
             .into_iter()
             .zip(curvatures)

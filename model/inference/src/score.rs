@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Component, Design, Role, added_column, kernel_columns};
 use crate::fit::Fit;
+use crate::half_t::HalfT;
 use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
 use crate::problem::Problem;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
@@ -270,7 +271,7 @@ impl<'a> Scores<'a> {
 /// Returns the gain of the log evidence by coefficients with a common standard deviation, whose prior
 /// is half-Cauchy with this scale.
 pub(crate) fn variance_gain(scale: f64, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
-    let prior = Mixture::half_cauchy(scale);
+    let prior = Mixture::half_t(HalfT::cauchy(scale));
     let eigen = information.symmetric_eigen();
     let rotated = eigen.eigenvectors.tr_mul(score);
     let gain = |v: f64| -> f64 {

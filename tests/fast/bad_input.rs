@@ -232,7 +232,10 @@ fn fix_moves_values_into_range() {
         ("segment.grooves: 1000 -> ", "outside 1 to 60"),
         ("print.line_mm: 99 -> 1.5", "outside 0.1 to 1.5"),
     ] {
-        let is_reported = |line: &str| line.contains(&format!("changed {change}")) && line.ends_with(reason);
+        let is_reported = |line: &str| {
+            line.contains(&format!("changed {change}"))
+                && line.ends_with(&format!("{reason} [configuration-changed]"))
+        };
         assert!(output.lines().any(is_reported), "{output}");
     }
     let fixed = std::fs::read_to_string(folder.path().join("set").join("fixed.toml")).unwrap();

@@ -157,7 +157,9 @@ fn merged_shards_equal_one_run() {
     let (code, output) = ended(path, &["merge", "shards"]);
     assert_eq!(code, Some(2));
     assert!(
-        output.contains("variants 17 to 24 of 24 are in no finished shard\n  help: run --shard 3/3"),
+        output.contains(
+            "variants 17 to 24 of 24 are in no finished shard [shards-do-not-join]\n  help: run --shard 3/3"
+        ),
         "{output}"
     );
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "3/3"]);

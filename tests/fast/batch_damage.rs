@@ -194,7 +194,9 @@ fn large_sweeps_are_refused_unexpanded() {
             let message = String::from_utf8_lossy(&output.stderr);
             assert_eq!(output.status.code(), Some(2), "{message}");
             assert!(
-                message.contains(" variants are more than 10000\n  help: allow them with --yes"),
+                message.contains(
+                    " variants are more than 10000 [too-many-variants]\n  help: allow them with --yes"
+                ),
                 "{message}"
             );
         }

@@ -279,7 +279,7 @@ fn empty_studies_are_refused() {
     for (arguments, words) in [
         (
             &["--study", "1", "--forms", "--only", "singles"][..],
-            "--only = singles: no kind of rig in this study has this group or name\n  help: give one of the groups outside,",
+            "--only = singles: no kind of rig in this study has this group or name [unknown-word]\n  help: give one of the groups outside,",
         ),
         (
             &["--study", "1", "--only", "no-such-rig"],

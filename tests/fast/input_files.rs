@@ -79,7 +79,7 @@ fn binary_files_have_their_line() {
     ] {
         let (code, output) = ended(folder.path(), arguments);
         assert!(
-            code == Some(2) && output.contains("folder: is a folder\n  help: give a file"),
+            code == Some(2) && output.contains("folder: is a folder [not-a-file]\n  help: give a file"),
             "{arguments:?}: {output}"
         );
     }

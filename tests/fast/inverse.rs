@@ -216,7 +216,7 @@ fn malformed_targets_are_refused() {
         ),
         (
             &["predict", "proxy-six-single", "--law", "layout"],
-            "pins on silicone only\n  help: use the law paper or physics",
+            "pins on silicone only [law-does-not-apply]\n  help: use the law paper or physics",
         ),
         (&["physics", "silicone-only", "--out", "x"], "pins on silicone"),
     ] {

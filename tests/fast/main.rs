@@ -18,6 +18,7 @@ mod batch_damage;
 mod command_line;
 mod corpus;
 mod documents;
+mod explain;
 mod export;
 mod few_series;
 mod finger;

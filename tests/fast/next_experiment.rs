@@ -102,12 +102,21 @@ fn unplanned_tables_give_a_warning() {
         ("half", format!("half/plateaus.csv: lacks 2 of the 4 runs of {runs}")),
         (
             "before",
-            format!("before/plateaus.csv: contains none of the 4 runs of {runs}\n  help: give the table"),
+            format!(
+                "before/plateaus.csv: contains none of the 4 runs of {runs} [plan-not-followed]\n  help: give the table"
+            ),
         ),
-        ("fast", format!("fast/plateaus.csv: contains none of the 4 runs of {runs}\n  help: give the table")),
+        (
+            "fast",
+            format!(
+                "fast/plateaus.csv: contains none of the 4 runs of {runs} [plan-not-followed]\n  help: give the table"
+            ),
+        ),
         (
             "twice",
-            format!("twice/plateaus.csv: contains only 1 of the 4 runs of {runs}\n  help: give the table"),
+            format!(
+                "twice/plateaus.csv: contains only 1 of the 4 runs of {runs} [plan-not-followed]\n  help: give the table"
+            ),
         ),
         (
             "turned",

@@ -145,7 +145,7 @@ fn problems_are_located() {
         let (code, output) = ended(at, &arguments);
         assert_eq!(code, Some(2), "{output}");
         assert!(
-            output.contains("bad.toml:12:24: unknown variable 'sped_pct'\n")
+            output.contains("bad.toml:12:24: unknown variable 'sped_pct' [unknown-name]\n")
                 && output.contains("\n  help: did you mean speed_pct?"),
             "{output}"
         );

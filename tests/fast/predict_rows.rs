@@ -104,7 +104,7 @@ fn refused_rows_do_not_stop_others() {
     assert_eq!(
         output,
         "[INFO ] curves.csv: 2 of 5 rows predicted, 3 refused, 0 failed\n\
-         warning: 3 of 5 rows refused\n  help: see columns status and reason\n"
+         warning: 3 of 5 rows refused [variants-failed]\n  help: see columns status and reason\n"
     );
     let table = lines(&folder.path().join("curves.csv"));
     let of_row = |row: &str| table.iter().filter(|line| line["row"] == row).collect::<Vec<_>>();
@@ -236,8 +236,8 @@ fn unusable_tables_are_refused() {
     for (text, problem) in [
         ("", "t.csv:1: the table has no rows"),
         ("shell.width_mm\n", "t.csv:1: the table has no rows"),
-        ("shell.with_mm\n12\n", "t.csv:1:1: shell.with_mm: unknown field\n"),
-        ("shell.width_mm,note\n12,a\n", "t.csv:1:16: note: unknown field\n"),
+        ("shell.with_mm\n12\n", "t.csv:1:1: shell.with_mm: unknown field [unknown-field]\n"),
+        ("shell.width_mm,note\n12,a\n", "t.csv:1:16: note: unknown field [unknown-field]\n"),
         ("shell.width_mm,shell.width_mm\n1,2\n", "t.csv:1:16: shell.width_mm: two columns have this name"),
         ("shell.width_mm,layout.pins\n12\n", "t.csv:2: expected 2 cells, found 1"),
         (

@@ -59,6 +59,8 @@ pub(crate) const PRINTED: &[(&str, i32, &str)] = &[
     ("batch-tally", 0, "batch sweep.toml --out batch --shard 2/2 --json"),
     ("batch-tally", 0, "merge batch --json"),
     ("batch-tally", 0, "batch verify.toml --verify --out verified --json"),
+    ("explain-report", 0, "explain grooves-overlap --json"),
+    ("explain-report", 0, "explain --json"),
     ("failure", 2, "generate three-double --set segment.grooves=40 --json"),
     ("failure", 2, "check set/shell.stl --bogus --json"),
     ("failure", 2, "power no-such.toml --json"),

@@ -47,6 +47,7 @@ const OPTIONAL: &[(&str, &[&str])] = &[
     ),
     ("check-report", &["parts"]),
     ("experiment-report", &["size"]),
+    ("explain-report", &["document"]),
     ("failure", &["causes", "changes", "column", "field", "file", "help", "line", "location", "value"]),
     ("finger-report", &["joint", "joint_path", "wrap_middle_deg"]),
     (

@@ -172,7 +172,9 @@ fn another_source_needs_force() {
     let (code, output) = generate(path, &["x.toml"]);
     assert!(
         code == Some(2)
-            && output.contains("another source, ../../a/x.toml, while this set is made from ../../x.toml\n"),
+            && output.contains(
+                "another source, ../../a/x.toml, while this set is made from ../../x.toml [other-source]\n"
+            ),
         "{output}"
     );
     std::fs::write(path.join("six-single"), "[shell]\nwidth_mm = 17\n").unwrap();
@@ -210,7 +212,8 @@ fn changed_parts_need_force() {
     let (code, output) = again(&["--set", "shell.width_mm=15"]);
     assert_eq!(code, Some(2), "{output}");
     assert!(
-        output.contains("set/shell.stl: was changed since it was written\n  help: give --force"),
+        output
+            .contains("set/shell.stl: was changed since it was written [changed-file]\n  help: give --force"),
         "{output}"
     );
     assert_eq!(std::fs::read(&part).unwrap(), b"repaired by hand");
@@ -242,7 +245,7 @@ fn inputs_are_not_overwritten() {
         let (code, output) = ended(path, &arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {output}");
         assert!(
-            output.contains(": is an input of this command\n  help: give another --out"),
+            output.contains(": is an input of this command [output-is-input]\n  help: give another --out"),
             "{arguments:?}: {output}"
         );
         assert_eq!(files(path), before, "{arguments:?}");

@@ -760,7 +760,8 @@ fn damaged_shards_are_reported() {
             }
             // A shard without its stamp never ran: the error gives its variants, and the option
             // that makes them.
-            let names_variants = output.contains("in no finished shard\n  help: run --shard ");
+            let names_variants =
+                output.contains("in no finished shard [shards-do-not-join]\n  help: run --shard ");
             is_clear(code, &output, if names_variants { &[] } else { &["b"] })?;
             if now != damaged {
                 return Err(format!(

@@ -2,7 +2,7 @@
 //! physics.
 
 use pinswitch_calibration::ModelFile;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::physics::Bed;
 use pinswitch_friction::{Contact, ContactError, FrictionCurve, PinPattern, Transfer, published};
 use pinswitch_switch::design::Design;
@@ -33,7 +33,7 @@ pub fn calibrated_curve_at(
     let configuration = design.configuration();
     let (layout, grooves) = (&configuration.layout.pins, configuration.segment.grooves);
     let pins = rig_grooves(layout, grooves).ok_or_else(|| {
-        Diagnostic::new(format!(
+        Diagnostic::new(codes::MODEL_BEYOND_RIG, format!(
             "the calibrated rig has {} grooves, and some of these {grooves} have no counterpart at the same distance \
              from the middle",
             published::GROOVES

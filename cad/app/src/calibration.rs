@@ -3,7 +3,7 @@
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{EffectReport, Estimate, ModelFile, Report, SessionReport, calibrate};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_report::friction_words;
 use serde::Serialize;
 
@@ -84,7 +84,7 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
     if csv.len() > MAX_TABLE_BYTES {
         let mb = csv.len() / 1_000_000;
         let problem = format!("the table has {mb} MB, and a page reads at most {MAX_TABLE_MB} MB");
-        return Err(Diagnostic::new(problem)
+        return Err(Diagnostic::new(codes::FILE_TOO_LARGE, problem)
             .with_location(Location::file(file))
             .with_help(format!("run `pinswitch calibrate {file}`")));
     }

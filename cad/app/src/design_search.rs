@@ -1,7 +1,7 @@
 //! Search for designs that reach the targets on the plot.
 
 use pinswitch_calibration::ModelFile;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_switch::design::Design;
@@ -93,16 +93,16 @@ pub(crate) fn answer(request: &SearchRequest) -> Answer {
 fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
     let base = feasibility::design(configuration(&wanted.values)?)?;
     let request = design_request(wanted);
-    request.check().map_err(Diagnostic::from_error)?;
-    request.check_loads(load_range_n(base.configuration(), &request)).map_err(Diagnostic::from_error)?;
+    request.check()?;
+    request.check_loads(load_range_n(base.configuration(), &request))?;
     let options = Options { best: wanted.most.clamp(1, MAX_DESIGNS), ..OPTIONS };
-    let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose();
-    let model = model.map_err(Diagnostic::from_error)?;
+    let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose()?;
     let grooves = base.configuration().segment.grooves;
     if model.is_some() && grooves != GROOVES {
-        let diagnostic = Diagnostic::new(format!("the calibrated rig has {GROOVES} grooves"))
-            .with_location(Location::field("segment.grooves", grooves.to_string()))
-            .with_help(format!("set it to {GROOVES}, or go back to the published constants"));
+        let diagnostic =
+            Diagnostic::new(codes::MODEL_BEYOND_RIG, format!("the calibrated rig has {GROOVES} grooves"))
+                .with_location(Location::field("segment.grooves", grooves.to_string()))
+                .with_help(format!("set it to {GROOVES}, or go back to the published constants"));
         return Err(diagnostic.into());
     }
     let published = PublishedPhysics::default();

@@ -3,7 +3,7 @@
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_import::{Import, Map, Output, Question, Source, import};
 use serde::Serialize;
 
@@ -31,11 +31,14 @@ pub(crate) fn answer(data: &str, file: &str, set: &[String]) -> Answer {
 fn preview(data: &str, file: &str, set: &[String]) -> Result<Preview, Diagnostic> {
     // A third more characters than bytes.
     if data.len() / 4 * 3 > MAX_TABLE_MB * 1_000_000 {
-        return Err(Diagnostic::new(format!("the file has more than {MAX_TABLE_MB} MB"))
-            .with_location(Location::file(file))
-            .with_help("import it with `pinswitch import`"));
+        return Err(Diagnostic::new(
+            codes::FILE_TOO_LARGE,
+            format!("the file has more than {MAX_TABLE_MB} MB"),
+        )
+        .with_location(Location::file(file))
+        .with_help("import it with `pinswitch import`"));
     }
-    let bytes = BASE64_STANDARD.decode(data).map_err(Diagnostic::from_error)?;
+    let bytes = BASE64_STANDARD.decode(data).map_err(|e| Diagnostic::from_error(codes::DAMAGED_FILE, e))?;
     if let Some(table) = std::str::from_utf8(&bytes).ok().filter(|text| PlateauTable::has_header(text)) {
         return Ok(Preview { csv: Some(table.to_owned()), ..Preview::default() });
     }

@@ -58,7 +58,7 @@ impl PredictionCache {
         }
         let prediction = match model {
             Some(text) => {
-                let model = ModelFile::parse(text, MODEL_NAME).map_err(Diagnostic::from_error)?;
+                let model = ModelFile::parse(text, MODEL_NAME)?;
                 Prediction::with_curve(design, calibrated_curve(design, &model, MODEL_NAME)?)
             }
             None => Prediction::of(design),

@@ -53,12 +53,13 @@ mod tests {
     use pinswitch_diagnostic::Change;
 
     use super::*;
+    use pinswitch_diagnostic::codes;
     use serde_json::json;
 
     #[test]
     fn changes_become_json_values() {
         let change = |field: &str, value: &str| Change { field: field.to_owned(), value: value.to_owned() };
-        let diagnostic = Diagnostic::new("grooves overlap")
+        let diagnostic = Diagnostic::new(codes::GROOVES_OVERLAP, "grooves overlap")
             .with_location(Location::field("segment.grooves", "40"))
             .with_help("lower it to 20")
             .with_changes(vec![change("segment.grooves", "20"), change("layout.pins", "[5, 8]")]);
@@ -73,7 +74,8 @@ mod tests {
 
     #[test]
     fn a_file_is_part_of_the_problem() {
-        let diagnostic = Diagnostic::new("is empty").with_location(Location::line("x.toml", 3));
+        let diagnostic =
+            Diagnostic::new(codes::DAMAGED_FILE, "is empty").with_location(Location::line("x.toml", 3));
         let refusal = Refusal::from(diagnostic);
         assert_eq!((refusal.field.as_str(), refusal.problem.as_str()), ("", "x.toml:3: is empty"));
     }

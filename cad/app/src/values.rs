@@ -1,6 +1,6 @@
 //! Conversion between the values of the page and configurations.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_switch::config::parameter::Parameter;
 use pinswitch_switch::config::{Configuration, Name, assign, read};
 use pinswitch_switch::documents::toml_to_json;
@@ -54,7 +54,7 @@ pub(crate) fn open(text: &str, file: &str) -> OpenedFile {
 fn read_values(text: &str, file: &str) -> Result<Values, Refusal> {
     if text.len() > MAX_CONFIGURATION_BYTES {
         let problem = format!("{} bytes are too long for a configuration", text.len());
-        let diagnostic = Diagnostic::new(problem)
+        let diagnostic = Diagnostic::new(codes::FILE_TOO_LARGE, problem)
             .with_location(Location::file(file))
             .with_help("drop a TOML file that pinswitch wrote");
         return Err(diagnostic.into());

@@ -6,6 +6,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use pinswitch_diagnostic::codes;
 use pinswitch_formula::{Condition, FormulaError, Kind, NameError, Node, Operator, Type, nearest};
 use pinswitch_friction::{FrictionCurve, Transition};
 
@@ -63,7 +64,7 @@ impl Constraint {
         };
         let condition = Arc::new(Condition::parse(text, resolve)?);
         if let Some(place) = first_infinite(condition.root()) {
-            return Err(FormulaError::new(place, "not a finite number")
+            return Err(FormulaError::new(codes::FORMULA_NOT_FINITE, place, "not a finite number")
                 .with_help("divide by a quantity or a number other than 0"));
         }
         Ok(Self { text: text.to_owned(), because, condition, quantities })
@@ -131,7 +132,10 @@ fn first_infinite<N>(root: &Node<N>) -> Option<Range<usize>> {
 }
 
 fn unknown_name(name: &str, known: &[String]) -> NameError {
-    let error = NameError::new(format!("unknown name '{}'", pinswitch_diagnostic::excerpt(name, 40)));
+    let error = NameError::new(
+        codes::UNKNOWN_NAME,
+        format!("unknown name '{}'", pinswitch_diagnostic::excerpt(name, 40)),
+    );
     error.with_help(match nearest(name, known.iter().map(String::as_str)) {
         Some(near) => format!("did you mean {near}?"),
         None => format!("use numeric fields, derived dimensions with their unit, {}", PREDICTED.join(", ")),

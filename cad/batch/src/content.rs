@@ -4,7 +4,7 @@
 use std::io::Cursor;
 use std::sync::Arc;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use quick_cache::sync::Cache;
 use sha2::{Digest, Sha256};
 
@@ -73,9 +73,11 @@ impl From<ContentError> for Diagnostic {
             ContentError::Verification(error) => error,
             ContentError::Destination(error) => error.into(),
             ContentError::Slicer(error) => error.into(),
-            ContentError::Removed(path) => Self::new("the file was removed during the run")
-                .with_location(Location::file(path))
-                .with_help("run the same command again"),
+            ContentError::Removed(path) => {
+                Self::new(codes::CANNOT_READ, "the file was removed during the run")
+                    .with_location(Location::file(path))
+                    .with_help("run the same command again")
+            }
         }
     }
 }

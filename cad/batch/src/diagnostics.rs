@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location};
 
 /// An error in a field of a sweep; `value` is the value as written.
 pub(crate) fn field_error(
+    code: Code,
     field: &str,
     value: Option<&str>,
     problem: impl Into<String>,
@@ -13,7 +14,7 @@ pub(crate) fn field_error(
 ) -> Diagnostic {
     let value = value.map(|value| value.trim().to_owned());
     let location = Location { field: Some(field.to_owned()), value, ..Location::default() };
-    Diagnostic::new(problem).with_location(location).with_help(help)
+    Diagnostic::new(code, problem).with_location(location).with_help(help)
 }
 
 /// The same diagnostic at the bytes `span` of `text`, the content of `file`, unless it has a file

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use super::checksum::with_checksum;
 use super::constraint::Violation;
@@ -88,7 +88,8 @@ impl From<Refusal> for Diagnostic {
     fn from(refusal: Refusal) -> Self {
         match refusal {
             Refusal::Configuration(error) => error,
-            other => Self::new(other.to_string()),
+            Refusal::Repeats { .. } => Self::new(codes::DUPLICATE_ENTRY, refusal.to_string()),
+            Refusal::Constraint(_) => Self::new(codes::CONSTRAINT_NOT_SATISFIED, refusal.to_string()),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use pinswitch_diagnostic::{Diagnostic, excerpt};
+use pinswitch_diagnostic::{Diagnostic, codes, excerpt};
 use sha2::{Digest, Sha256};
 
 use super::checksum::has_valid_checksum;
@@ -72,20 +72,24 @@ impl MergeError {
     fn diagnostic(&self) -> Diagnostic {
         match self {
             Self::Stamp(error) => error.diagnostic(),
-            Self::DifferentSweeps(first, second) => {
-                Diagnostic::new(format!("{first} and {second} contain different sweeps"))
-                    .with_help("merge the shards of one sweep")
-            }
-            Self::Gap { from, to, of, options } => {
-                Diagnostic::new(format!("variants {from} to {to} of {of} are in no finished shard"))
-                    .with_help(format!("run {options}"))
-            }
-            Self::Overlap { from, to, first, second } => Diagnostic::new(format!(
-                "variants {from} to {to} are both in shard {first} and in shard {second}"
-            ))
+            Self::DifferentSweeps(first, second) => Diagnostic::new(
+                codes::SHARDS_DO_NOT_JOIN,
+                format!("{first} and {second} contain different sweeps"),
+            )
+            .with_help("merge the shards of one sweep"),
+            Self::Gap { from, to, of, options } => Diagnostic::new(
+                codes::SHARDS_DO_NOT_JOIN,
+                format!("variants {from} to {to} of {of} are in no finished shard"),
+            )
+            .with_help(format!("run {options}")),
+            Self::Overlap { from, to, first, second } => Diagnostic::new(
+                codes::SHARDS_DO_NOT_JOIN,
+                format!("variants {from} to {to} are both in shard {first} and in shard {second}"),
+            )
             .with_help("leave one of them out"),
             Self::Broken { shard, problem } => {
-                Diagnostic::new(format!("shard {shard}: {}", excerpt(problem, 300))).with_help("run it again")
+                Diagnostic::new(codes::SHARD_DAMAGED, format!("shard {shard}: {}", excerpt(problem, 300)))
+                    .with_help("run it again")
             }
             Self::Sweep(error) => error.clone(),
             Self::Products(error) => error.diagnostic(),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::error::Error;
 use std::path::Path;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
@@ -42,9 +42,11 @@ impl ProductError {
     pub(super) fn diagnostic(&self) -> Diagnostic {
         match self {
             Self::Table(error) => error.diagnostic(),
-            Self::Plot(error) => Diagnostic::new(error.to_string()),
+            Self::Plot(error) => Diagnostic::new(codes::INTERNAL_ERROR, error.to_string()),
             Self::Destination(error) => error.clone().into(),
-            Self::Stamp(error) => Diagnostic::new(format!("cannot encode the shard's stamp: {error}")),
+            Self::Stamp(error) => {
+                Diagnostic::new(codes::INTERNAL_ERROR, format!("cannot encode the shard's stamp: {error}"))
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -112,13 +112,18 @@ impl RunError {
                 let help = format!("{remedy}{RESUME} (the variants are finished)");
                 error.with_help(help)
             }
-            Self::Stopped { done, of } => {
-                Diagnostic::new(format!("stopped: {done} of {of} variants are finished")).with_help(RESUME)
+            Self::Stopped { done, of } => Diagnostic::new(
+                codes::BATCH_STOPPED,
+                format!("stopped: {done} of {of} variants are finished"),
+            )
+            .with_help(RESUME),
+            Self::Failed { id, reason } => {
+                Diagnostic::new(codes::VARIANTS_FAILED, format!("variant {id} failed: {reason}"))
+                    .with_help("omit --fail-fast to make the other variants")
             }
-            Self::Failed { id, reason } => Diagnostic::new(format!("variant {id} failed: {reason}"))
-                .with_help("omit --fail-fast to make the other variants"),
             Self::Threads(error) => {
-                Diagnostic::new(format!("cannot start threads: {error}")).with_help("give fewer --threads")
+                Diagnostic::new(codes::CANNOT_START, format!("cannot start threads: {error}"))
+                    .with_help("give fewer --threads")
             }
         }
     }
@@ -296,7 +301,7 @@ fn make_chunk(
         let variant = variants.get(index);
         // A panic in one variant must not fail the others.
         let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
-            let bug = Diagnostic::new("internal error (panic)");
+            let bug = Diagnostic::new(codes::INTERNAL_ERROR, "internal error (panic)");
             Ok(VariantOutcome::Failed(bug.with_help("please report the configuration")))
         });
         match outcome {

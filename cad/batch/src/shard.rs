@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,8 @@ pub struct ShardError;
 
 impl ShardError {
     fn diagnostic(self) -> Diagnostic {
-        Diagnostic::new("invalid shard: expected K/N with 1 <= K <= N").with_help("write a shard such as 2/8")
+        Diagnostic::new(codes::INVALID_SHARD, "invalid shard: expected K/N with 1 <= K <= N")
+            .with_help("write a shard such as 2/8")
     }
 
     fn cause(&self) -> Option<&(dyn std::error::Error + 'static)> {

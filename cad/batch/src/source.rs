@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind};
 use std::ops::Range;
 use std::path::Path;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -66,7 +66,13 @@ impl Reach {
             return Ok(());
         }
         let help = "copy it to the sweep's folder, or allow it with --read-outside";
-        Err(field_error(field, Some(&format!("{name:?}")), "outside the sweep's folder", help))
+        Err(field_error(
+            codes::OUTSIDE_THE_FOLDER,
+            field,
+            Some(&format!("{name:?}")),
+            "outside the sweep's folder",
+            help,
+        ))
     }
 }
 
@@ -156,8 +162,8 @@ impl SweepSource {
 fn parse(sweep: &str, file: &str) -> Result<Document<String>, Diagnostic> {
     sweep.parse().map_err(|e: TomlError| {
         let problem = format!("syntax: {}", e.message().trim().replace('\n', ", "));
-        let error =
-            Diagnostic::new(problem).with_help("correct the line; `pinswitch init sweep` writes an example");
+        let error = Diagnostic::new(codes::INVALID_TOML, problem)
+            .with_help("correct the line; `pinswitch init sweep` writes an example");
         at_span(error, file, sweep, e.span().unwrap_or_default())
     })
 }
@@ -188,7 +194,7 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
     let template = templates::text(name).map(|text| (text, name.to_owned()));
     template.ok_or_else(|| {
         let problem = "neither a file in the sweep's folder nor a template";
-        field_error(field, Some(&format!("{name:?}")), problem, RELATIVE_PATH)
+        field_error(codes::FILE_NOT_FOUND, field, Some(&format!("{name:?}")), problem, RELATIVE_PATH)
     })
 }
 
@@ -196,8 +202,14 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
 fn read_rows(name: String, folder: &Path, reach: Reach) -> Result<(String, String), Diagnostic> {
     reach.check("rows.file", &name, folder)?;
     let bytes = read_at_most(&folder.join(&name), MAX_ROWS_BYTES).map_err(|e| {
-        field_error("rows.file", Some(&format!("{name:?}")), "cannot read the file", RELATIVE_PATH)
-            .with_source(e)
+        field_error(
+            codes::CANNOT_READ,
+            "rows.file",
+            Some(&format!("{name:?}")),
+            "cannot read the file",
+            RELATIVE_PATH,
+        )
+        .with_source(e)
     })?;
     let text = text(bytes, &name)?;
     Ok((name, text))
@@ -216,7 +228,7 @@ fn unreadable_file(file: &str, error: Error) -> Diagnostic {
         }
         _ => "give the path of a sweep; see `pinswitch batch --help`",
     };
-    Diagnostic::new("cannot read the file")
+    Diagnostic::new(codes::CANNOT_READ, "cannot read the file")
         .with_location(Location::file(file))
         .with_help(help)
         .with_source(error)

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,19 +74,22 @@ impl StampError {
         const UNCHANGED: &str = "nothing was changed";
         match self {
             Self::OtherSweep { place, name } => {
-                Diagnostic::new(format!("{place} contains another sweep ({name:?})")).with_help(format!(
-                    "give another --out, or the options of that batch, such as --verify ({UNCHANGED})"
-                ))
+                Diagnostic::new(codes::OTHER_SWEEP, format!("{place} contains another sweep ({name:?})"))
+                    .with_help(format!(
+                        "give another --out, or the options of that batch, such as --verify ({UNCHANGED})"
+                    ))
             }
-            Self::NotEmpty { place } => {
-                Diagnostic::new(format!("{place} is not empty and not a batch folder ({STAMP} not found)"))
-                    .with_help(format!("give an empty or new --out ({UNCHANGED})"))
-            }
-            Self::Missing { place } => {
-                Diagnostic::new(format!("{place} is not a batch folder ({STAMP} not found)"))
-                    .with_help("give a folder or bucket that `pinswitch batch` has written")
-            }
-            Self::Invalid { place, problem, .. } => Diagnostic::new(problem)
+            Self::NotEmpty { place } => Diagnostic::new(
+                codes::NOT_A_BATCH_FOLDER,
+                format!("{place} is not empty and not a batch folder ({STAMP} not found)"),
+            )
+            .with_help(format!("give an empty or new --out ({UNCHANGED})")),
+            Self::Missing { place } => Diagnostic::new(
+                codes::NOT_A_BATCH_FOLDER,
+                format!("{place} is not a batch folder ({STAMP} not found)"),
+            )
+            .with_help("give a folder or bucket that `pinswitch batch` has written"),
+            Self::Invalid { place, problem, .. } => Diagnostic::new(codes::CHANGED_FILE, problem)
                 .with_location(Location::file(format!("{place}/{STAMP}")))
                 .with_help("restore it, or give another --out"),
             Self::Destination(error) => error.clone().into(),

@@ -1,7 +1,7 @@
 //! A sweep: a base configuration, the axes over it, and the constraints that every variant must
 //! meet.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use toml_edit::{Document, Item, TableLike};
 
 use super::axis::{self, AXIS_TABLES, ParameterRef, SweepAxis, fields, key_span};
@@ -112,9 +112,9 @@ impl Sweep {
 /// Sets one field of the base configuration.
 fn set_field(base: &mut Configuration, field: ParameterRef, item: &Item) -> Result<(), Diagnostic> {
     let path = field.path();
-    let value = item
-        .as_value()
-        .ok_or_else(|| field_error(&path, None, "not a single value", "write \"table.key\" = value"))?;
+    let value = item.as_value().ok_or_else(|| {
+        field_error(codes::WRONG_TYPE, &path, None, "not a single value", "write \"table.key\" = value")
+    })?;
     let value = axis::accepted(field, value)?;
     (field.set)(base, &value).map_err(|error| error.in_field(&path, ""))
 }
@@ -142,12 +142,13 @@ fn kind_of(key: &str) -> Option<(&'static str, IsKind)> {
 
 fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diagnostic> {
     for (name, item) in document.iter() {
-        let refused = |problem: &str, help: String| {
-            Err(source.locate(field_error(name, None, problem, help), item.span()))
+        let refused = |code: Code, problem: &str, help: String| {
+            Err(source.locate(field_error(code, name, None, problem, help), item.span()))
         };
         let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
             let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
-            let error = field_error(name, None, "unknown table", format!("known are {known}"));
+            let error =
+                field_error(codes::UNKNOWN_FIELD, name, None, "unknown table", format!("known are {known}"));
             return Err(source.locate(error, key_span(document, name).or(item.span())));
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
@@ -159,18 +160,20 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
                 "constraints" => ("not a list of tables", "[[constraints]] before each".to_owned()),
                 _ => ("not a table", format!("[{name}]")),
             };
-            return refused(kind, format!("write {header}"));
+            return refused(codes::WRONG_TYPE, kind, format!("write {header}"));
         }
         for table in tables.iter().filter(|_| !keys.is_empty()) {
             if let Some((key, item)) = table.iter().find(|(key, _)| !keys.contains(key)) {
                 let help = format!("known are {}", keys.join(", "));
-                let error = field_error(&format!("{name}.{key}"), None, "unknown key", help);
+                let error =
+                    field_error(codes::UNKNOWN_FIELD, &format!("{name}.{key}"), None, "unknown key", help);
                 return Err(source.locate(error, key_span(*table, key).or(item.span())));
             }
             for (key, item) in table.iter() {
                 let Some((kind, _)) = kind_of(key).filter(|(_, is_kind)| !is_kind(item)) else { continue };
                 let problem = format!("not {kind}");
                 let error = field_error(
+                    codes::WRONG_TYPE,
                     &format!("{name}.{key}"),
                     Some(&item.to_string()),
                     problem,
@@ -193,9 +196,16 @@ fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, Diagnostic>
     let quoted: Vec<_> = part_names().iter().map(|name| format!("{name:?}")).collect();
     let help = format!("give a list of {}", quoted.join(", "));
     let names: Option<Vec<&str>> = item.as_array().and_then(|list| list.iter().map(|v| v.as_str()).collect());
-    let names = names.ok_or_else(|| field_error("sweep.parts", None, "not a list of names", &help))?;
+    let names = names
+        .ok_or_else(|| field_error(codes::WRONG_TYPE, "sweep.parts", None, "not a list of names", &help))?;
     if let Some(unknown) = names.iter().find(|name| !part_names().contains(name)) {
-        return Err(field_error("sweep.parts", Some(&format!("{unknown:?}")), "unknown part", help));
+        return Err(field_error(
+            codes::UNKNOWN_WORD,
+            "sweep.parts",
+            Some(&format!("{unknown:?}")),
+            "unknown part",
+            help,
+        ));
     }
     Ok(part_names().into_iter().filter(|name| names.contains(name)).collect())
 }
@@ -204,7 +214,10 @@ fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<
     let Some(tables) = document.get("constraints") else { return Ok(Vec::new()) };
     let tables = tables.as_array_of_tables().ok_or_else(|| {
         let help = "write [[constraints]] before each";
-        source.locate(field_error("constraints", None, "not a list of tables", help), tables.span())
+        source.locate(
+            field_error(codes::WRONG_TYPE, "constraints", None, "not a list of tables", help),
+            tables.span(),
+        )
     })?;
     tables
         .iter()
@@ -213,7 +226,13 @@ fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<
             let require = table.get("require");
             let Some(text) = require.and_then(Item::as_str) else {
                 let help = "write a condition in quotes, such as require = \"shell.width_mm >= 12\"";
-                let error = field_error("constraints.require", None, "missing, or not a string", help);
+                let error = field_error(
+                    codes::MISSING_FIELD,
+                    "constraints.require",
+                    None,
+                    "missing, or not a string",
+                    help,
+                );
                 return Err(source.locate(error, require.map_or(table.span(), Item::span)));
             };
             Constraint::new(text, because).map_err(|error| {

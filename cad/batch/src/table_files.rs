@@ -19,7 +19,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::record::reader::RowIter;
 use parquet::record::{Field, Row as ParquetRow};
 use parquet::schema::types::{Type, TypePtr};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use super::diagnostics::diagnostic_error;
 use super::table::{Cell, Column, ColumnType, Row, Schema};
@@ -47,12 +47,15 @@ pub enum BatchTableError {
 
 impl BatchTableError {
     pub(super) fn diagnostic(&self) -> Diagnostic {
-        Diagnostic::new(match self {
-            Self::Csv(error) => format!("cannot write the table as CSV: {error}"),
-            Self::Parquet(error) => format!("cannot write or read the Parquet table: {error}"),
-            Self::File(error) => format!("cannot write the table: {error}"),
-            Self::Invalid(problem) => format!("invalid Parquet table: {problem}"),
-        })
+        let (code, problem) = match self {
+            Self::Csv(error) => (codes::CANNOT_WRITE, format!("cannot write the table as CSV: {error}")),
+            Self::Parquet(error) => {
+                (codes::DAMAGED_FILE, format!("cannot write or read the Parquet table: {error}"))
+            }
+            Self::File(error) => (codes::CANNOT_WRITE, format!("cannot write the table: {error}")),
+            Self::Invalid(problem) => (codes::DAMAGED_FILE, format!("invalid Parquet table: {problem}")),
+        };
+        Diagnostic::new(code, problem)
     }
 
     fn cause(&self) -> Option<&(dyn Error + 'static)> {

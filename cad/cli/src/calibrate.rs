@@ -14,7 +14,7 @@ use pinswitch_calibration::{
     Calibration, ExternalInput, ProvenanceReport, SessionPlan, SessionReport, calibrate, calibrate_below,
     explain_published,
 };
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_report::{UNEXPLAINED, calibration_files, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
 
@@ -76,7 +76,7 @@ pub(super) fn check_stale_form(folder: &Path) -> Result<(), Failure> {
     let path = folder.join(FORM_FILE);
     if was_read(&path) {
         return Err(Failure::bad_input(
-            Diagnostic::new("the file is an input, and --out would remove it")
+            Diagnostic::new(codes::OUTPUT_IS_INPUT, "the file is an input, and --out would remove it")
                 .with_location(Location::file(path.display().to_string()))
                 .with_help("give another folder with --out"),
         ));

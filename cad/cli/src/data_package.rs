@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use pinswitch_calibration::table::column_unit;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_switch::output::OutputFile;
 use serde::Serialize;
 
@@ -118,7 +118,7 @@ pub(crate) fn has_own_descriptor(folder: &SetFolder, command: &str) -> Result<bo
     }
     let path = folder.folder().join(DATA_PACKAGE);
     Err(Failure::bad_input(
-        Diagnostic::new("pinswitch did not write this file, or it was changed since")
+        Diagnostic::new(codes::FILE_IN_THE_WAY, "pinswitch did not write this file, or it was changed since")
             .with_location(Location::file(path.display().to_string()))
             .with_help("give another folder with --out, or move the file away"),
     ))

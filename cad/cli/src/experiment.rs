@@ -10,7 +10,7 @@ use pinswitch_calibration::experiment::{
     ExperimentError, Known, MOST_RUNS, Proposal, RigLimits, propose, write_runs,
 };
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_report::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
@@ -60,7 +60,7 @@ const MAX_MINUTES: f64 = 2_400.0;
 fn minutes(text: &str) -> Result<f64, Diagnostic> {
     let value: Option<f64> = text.parse().ok();
     value.filter(|m| *m > 0.0 && *m <= MAX_MINUTES).ok_or_else(|| {
-        Diagnostic::new("not a time of a session")
+        Diagnostic::new(codes::OUT_OF_RANGE, "not a time of a session")
             .with_help(format!("give a number of minutes above 0 and up to {MAX_MINUTES}"))
     })
 }
@@ -85,9 +85,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let vocabulary = with_form(arguments.effects.vocabulary()?, folder, &report)?;
     if let Some(id) = undefined_effect(&report, &model, &vocabulary) {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("the calibration tested the effect '{id}', which is not defined"))
-                .with_location(Location::file(folder.join("report.json").display().to_string()))
-                .with_help("give the file that defines it with --effects, as for calibrate"),
+            Diagnostic::new(
+                codes::CALIBRATION_INCOMPLETE,
+                format!("the calibration tested the effect '{id}', which is not defined"),
+            )
+            .with_location(Location::file(folder.join("report.json").display().to_string()))
+            .with_help("give the file that defines it with --effects, as for calibrate"),
         ));
     }
     let known =
@@ -132,7 +135,7 @@ fn report(folder: &Path) -> Result<Report, Failure> {
     let text = read_text_file(&path)?;
     serde_json::from_str(&text).map_err(|e| {
         Failure::bad_input(
-            Diagnostic::new("not a report of a calibration")
+            Diagnostic::new(codes::CALIBRATION_INCOMPLETE, "not a report of a calibration")
                 .with_location(Location::file(path.display().to_string()))
                 .with_help("give the folder as `calibrate` wrote it")
                 .with_source(e),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use clap::{Args, ValueEnum};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::finger::{FlexionWrap, JointPath, Wrap};
 use pinswitch_friction::{Contact, FrictionCurve};
 use pinswitch_robot::{FMU_LIBRARY, FMU_SOURCE, Finger, Surface, fmu_sources, zip_fmu};
@@ -252,7 +252,7 @@ fn fmu(surface: &Surface) -> Result<Vec<u8>, Failure> {
     match library(&files) {
         Ok(library) => files.insert(1, library),
         Err(error) => warn(
-            Diagnostic::new("no C compiler: the unit has sources and no library")
+            Diagnostic::new(codes::CANNOT_START, "no C compiler: the unit has sources and no library")
                 .with_help("install a C compiler as `cc`, or compile the sources in the importing tool")
                 .with_source(error),
         ),

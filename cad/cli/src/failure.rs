@@ -74,23 +74,26 @@ impl Error for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pinswitch_diagnostic::codes::{CANNOT_WRITE, OUT_OF_RANGE};
 
     #[test]
     fn every_diagnostic_is_rendered() {
-        let both = Failure::bad_inputs(["a is wrong", "b is wrong"].map(Diagnostic::from)).unwrap();
-        assert_eq!(both.render(), "error: a is wrong\nerror: b is wrong");
+        let both =
+            Failure::bad_inputs(["a is wrong", "b is wrong"].map(|text| Diagnostic::new(OUT_OF_RANGE, text)))
+                .unwrap();
+        assert_eq!(both.render(), "error: a is wrong [out-of-range]\nerror: b is wrong [out-of-range]");
         assert_eq!(both.to_string(), "a is wrong\nb is wrong");
         assert!(Failure::bad_inputs([]).is_none());
     }
 
     #[test]
     fn a_failure_is_json() {
-        let failure = Failure::bad_input(Diagnostic::new("a is wrong").with_help("drop it"));
+        let failure = Failure::bad_input(Diagnostic::new(OUT_OF_RANGE, "a is wrong").with_help("drop it"));
         assert_eq!(
             serde_json::to_value(&failure).unwrap(),
             serde_json::json!({
                 "exit_code": 2,
-                "diagnostics": [{"problem": "a is wrong", "help": "drop it"}],
+                "diagnostics": [{"code": "out-of-range", "problem": "a is wrong", "help": "drop it"}],
             })
         );
     }
@@ -98,9 +101,10 @@ mod tests {
     #[test]
     fn sources_are_kept() {
         let source = std::io::Error::other("disk full");
-        let failure = Failure::failed(Diagnostic::new("cannot write a.stl").with_source(source));
+        let failure =
+            Failure::failed(Diagnostic::new(CANNOT_WRITE, "cannot write a.stl").with_source(source));
         assert_eq!(failure.source().unwrap().to_string(), "disk full");
-        assert_eq!(failure.render(), "error: cannot write a.stl\n  cause: disk full");
+        assert_eq!(failure.render(), "error: cannot write a.stl [cannot-write]\n  cause: disk full");
         assert_eq!(failure.exit_code(), ExitCode::from(1));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::finger::{
     FingerPoint, FlexionWrap, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger,
     measured_gains, over_joint,
@@ -201,7 +201,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && *load <= MAX_LOAD_N)) {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("the load is outside 0 < load <= {MAX_LOAD_N}"))
+            Diagnostic::new(codes::OUT_OF_RANGE, format!("the load is outside 0 < load <= {MAX_LOAD_N}"))
                 .with_location(Location::field("--load", format!("{load:?}")))
                 .with_help("give the load on the tendon in newtons"),
         ));
@@ -247,9 +247,12 @@ pub(super) fn refuse_assumptions(name: &str, given: &[(&str, Option<f64>)]) -> R
     match given.iter().find_map(|(option, value)| value.map(|value| (*option, value))) {
         None => Ok(()),
         Some((option, value)) => Err(Failure::bad_input(
-            Diagnostic::new(format!("{name} has a joint, whose parts determine links, stops and wrap"))
-                .with_location(Location::field(option, value.to_string()))
-                .with_help("leave the option out, or give a configuration without a joint"),
+            Diagnostic::new(
+                codes::CONFLICTING_SETTINGS,
+                format!("{name} has a joint, whose parts determine links, stops and wrap"),
+            )
+            .with_location(Location::field(option, value.to_string()))
+            .with_help("leave the option out, or give a configuration without a joint"),
         )),
     }
 }

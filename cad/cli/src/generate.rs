@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use super::as_measured::{self, AsMeasured};
 use super::calibrated_curve::calibrated_curve;
@@ -147,7 +147,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
     for changed in place.publish(&set.files, arguments.force).map_err(refused)? {
         let location = Location::file(folder.join(changed).display().to_string());
-        warn(Diagnostic::new("was changed since it was written, and stays").with_location(location));
+        warn(
+            Diagnostic::new(codes::CHANGED_FILE, "was changed since it was written, and stays")
+                .with_location(location),
+        );
     }
     if let Some(fix) = &fix {
         report_fix(fix, &folder);
@@ -170,7 +173,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn report_fix(fix: &Fix, folder: &Path) {
     for change in &fix.changes {
         // The parts are not those of the file: also with --quiet.
-        warn(Diagnostic::new(format!("changed {change}")));
+        warn(Diagnostic::new(codes::CONFIGURATION_CHANGED, format!("changed {change}")));
     }
     match fix.changes.len() {
         0 => log::info!("nothing to fix: the configuration can be built"),
@@ -181,7 +184,7 @@ fn report_fix(fix: &Fix, folder: &Path) {
 /// Reports the set, with its warnings.
 fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Prediction) {
     for warning in &set.manifest.warnings {
-        warn(warning.to_string());
+        warn(warning);
     }
     for part in &set.manifest.parts {
         log::debug!("{}: {:.3} mm3", part.file, part.volume_mm3);

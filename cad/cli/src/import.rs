@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flate2::read::MultiGzDecoder;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_import::{Import, Map, Pattern, Source, import_with_pattern};
 use pinswitch_switch::output::OutputFile;
 
@@ -106,13 +106,14 @@ fn read_sources(arguments: &Arguments, pattern: Option<&Pattern>) -> Result<Vec<
             files.push(source.clone());
             continue;
         }
-        let refused = |problem: &str, help: &str| {
+        let refused = |code: Code, problem: &str, help: &str| {
             let location = Location::file(source.display().to_string());
-            Diagnostic::new(problem).with_location(location).with_help(help)
+            Diagnostic::new(code, problem).with_location(location).with_help(help)
         };
         let entries = std::fs::read_dir(source).map_err(|e| {
             Failure::bad_input(
-                refused("cannot read the folder", "give a folder that can be read").with_source(e),
+                refused(codes::CANNOT_READ, "cannot read the folder", "give a folder that can be read")
+                    .with_source(e),
             )
         })?;
         let mut found: Vec<PathBuf> = entries.filter_map(Result::ok).map(|entry| entry.path()).collect();
@@ -122,7 +123,7 @@ fn read_sources(arguments: &Arguments, pattern: Option<&Pattern>) -> Result<Vec<
         if found.is_empty() || found.len() > MAX_FILES {
             let problem = format!("{} files to import, expected 1 to {MAX_FILES}", found.len());
             let help = "name the files, or give --pattern for their names";
-            return Err(Failure::bad_input(refused(&problem, help)));
+            return Err(Failure::bad_input(refused(codes::FILES_DO_NOT_JOIN, &problem, help)));
         }
         files.append(&mut found);
     }
@@ -164,16 +165,21 @@ fn read_unpacked(path: &Path) -> Result<Vec<u8>, Failure> {
     if !raw.starts_with(b"\x1f\x8b") {
         return Ok(raw);
     }
-    let refused = |problem: String, help: &str| {
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    let refused = |code: Code, problem: String, help: &str| {
+        Diagnostic::new(code, problem)
+            .with_location(Location::file(path.display().to_string()))
+            .with_help(help)
     };
     let mut bytes = Vec::new();
     MultiGzDecoder::new(raw.as_slice()).take(MAX_UNPACKED + 1).read_to_end(&mut bytes).map_err(|e| {
-        Failure::bad_input(refused("cannot unpack".to_owned(), "give a complete gzip file").with_source(e))
+        Failure::bad_input(
+            refused(codes::DAMAGED_FILE, "cannot unpack".to_owned(), "give a complete gzip file")
+                .with_source(e),
+        )
     })?;
     if bytes.len() as u64 > MAX_UNPACKED {
         let problem = format!("unpacks to more than {MAX_UNPACKED} bytes");
-        return Err(Failure::bad_input(refused(problem, "divide the file")));
+        return Err(Failure::bad_input(refused(codes::FILE_TOO_LARGE, problem, "divide the file")));
     }
     Ok(bytes)
 }
@@ -189,7 +195,9 @@ fn is_confirmed(arguments: &Arguments) -> Result<bool, Failure> {
     print_line("write this? [y/N]");
     let mut answer = String::new();
     let read = std::io::stdin().lock().read_line(&mut answer);
-    read.map_err(|e| Failure::failed(Diagnostic::new("cannot read the answer").with_source(e)))?;
+    read.map_err(|e| {
+        Failure::failed(Diagnostic::new(codes::CANNOT_READ, "cannot read the answer").with_source(e))
+    })?;
     let is_yes = matches!(answer.trim().to_lowercase().as_str(), "y" | "yes");
     if !is_yes {
         print_line("nothing is written");

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_switch::templates::{EXAMPLES, RIGS, names};
 
 use super::source::read_text;
@@ -58,14 +58,17 @@ fn unknown(name: &str) -> Failure {
         kinds.join(", ")
     );
     let problem = "no such template or kind of file";
-    Failure::bad_input(Diagnostic::new(problem).with_location(Location::file(name)).with_help(help))
+    Failure::bad_input(
+        Diagnostic::new(codes::FILE_NOT_FOUND, problem).with_location(Location::file(name)).with_help(help),
+    )
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.name.as_str();
     let kind = arguments.kind.as_deref().and_then(|kind| RIGS.iter().find(|rig| rig.0 == kind));
     if kind.is_some() && name != "rig" {
-        let problem = Diagnostic::new("only `rig` has kinds").with_location(Location::file("--kind"));
+        let problem =
+            Diagnostic::new(codes::USAGE, "only `rig` has kinds").with_location(Location::file("--kind"));
         return Err(Failure::bad_input(problem.with_help("use `pinswitch init rig --kind KIND`")));
     }
     let text = match kind.or_else(|| EXAMPLES.iter().find(|starter| starter.0 == name)) {
@@ -77,17 +80,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
     };
     let Some(path) = &arguments.out else { return print_data(text.as_bytes()) };
-    let refused = |problem: &str, help: String| {
+    let refused = |code: Code, problem: &str, help: String| {
         let location = Location::file(path.display().to_string());
-        Err(Failure::bad_input(Diagnostic::new(problem).with_location(location).with_help(help)))
+        Err(Failure::bad_input(Diagnostic::new(code, problem).with_location(location).with_help(help)))
     };
     if path.is_dir() {
         let ending = if name == CONFIGURATIONS { "csv" } else { "toml" };
         let file = path.join(format!("{name}.{ending}"));
-        return refused("is a folder", format!("give the name of a file, such as {}", file.display()));
+        return refused(
+            codes::NOT_A_FILE,
+            "is a folder",
+            format!("give the name of a file, such as {}", file.display()),
+        );
     }
     if path.exists() && !arguments.force {
-        return refused("exists already", "give --force to overwrite it".to_owned());
+        return refused(codes::FILE_IN_THE_WAY, "exists already", "give --force to overwrite it".to_owned());
     }
     write_file(path, text.as_bytes()).map_err(Failure::from)
 }

@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_switch::config::text;
 
 use super::Failure;
@@ -99,7 +99,7 @@ fn manifest_in(folder: &Path) -> Result<Option<Provenance>, Diagnostic> {
         Ok(Some(bytes)) => bytes,
         Ok(None) => return Ok(None),
         Err(e) => {
-            return Err(Diagnostic::new("cannot read")
+            return Err(Diagnostic::new(codes::CANNOT_READ, "cannot read")
                 .with_location(Location::file(path.display().to_string()))
                 .with_help("make it readable, or move it away")
                 .with_source(e));
@@ -158,24 +158,32 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
 /// Reads a file of at most `most` bytes, compares it with the manifest of its folder and records it as input. A file
 /// without an end, such as `/dev/zero`, is too long.
 fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
-    let refused = |problem: &str, help: &str| {
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    let refused = |code: Code, problem: &str, help: &str| {
+        Diagnostic::new(code, problem)
+            .with_location(Location::file(path.display().to_string()))
+            .with_help(help)
     };
     if path.is_dir() {
-        return Err(Failure::bad_input(refused("is a folder", "give a file")));
+        return Err(Failure::bad_input(refused(codes::NOT_A_FILE, "is a folder", "give a file")));
     }
     // A run that was killed may have left the folder between two results.
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     pinswitch_store::recover(folder).map_err(|e| {
         let problem = "cannot complete the changes of an interrupted run in its folder";
-        Failure::bad_input(refused(problem, "run that command again, or restore the folder").with_source(e))
+        Failure::bad_input(
+            refused(codes::CANNOT_WRITE, problem, "run that command again, or restore the folder")
+                .with_source(e),
+        )
     })?;
     let bytes = pinswitch_store::read_at_most(path, most).map_err(|e| {
         Failure::bad_input(match e.kind() {
-            std::io::ErrorKind::FileTooLarge => {
-                refused(&format!("is longer than {most} bytes"), "check that this is the right file")
-            }
-            _ => refused("cannot read", "give a file that exists and can be read").with_source(e),
+            std::io::ErrorKind::FileTooLarge => refused(
+                codes::FILE_TOO_LARGE,
+                &format!("is longer than {most} bytes"),
+                "check that this is the right file",
+            ),
+            _ => refused(codes::CANNOT_READ, "cannot read", "give a file that exists and can be read")
+                .with_source(e),
         })
     })?;
     // A pipe is neither overwritten nor listed.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{Contact, FrictionCurve, Law, LawError, predict, predict_by};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::Prediction;
@@ -33,7 +33,7 @@ impl LawChoice {
             Some(Law::Calibrated) => {
                 let default = Law::DEFAULT.as_str();
                 warn(
-                    Diagnostic::new(format!(
+                    Diagnostic::new(codes::MODEL_BEYOND_RIG, format!(
                         "the curve of that set came from a calibrated model; this curve comes from the {default} law"
                     ))
                     .with_help("give the model with --model to generate the same set"),

@@ -50,9 +50,11 @@ const SEED: u64 = 1;
   design            design
   check meshes      check
   use measurements  import, segment, calibrate, experiment, effects, simulate, power
+  read an error     explain
   set up a shell    completions, man
 
-`pinswitch help COMMAND` explains a command, with examples.")]
+`pinswitch help COMMAND` explains a command, with examples.
+`pinswitch explain CODE` explains the word in brackets at the end of an error or a warning.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -109,6 +111,7 @@ commands! {
     Power: power,
     Completions: completions,
     Man: man,
+    Explain: explain,
     Answer: answer,
     Supervise: supervise,
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
 use clap_mangen::Man;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_switch::output::OutputFile;
 
 use super::{Cli, Failure};
@@ -22,7 +22,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let pages = pages().map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let pages = pages().map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
     SetFolder::lock(&arguments.out)?.replace(&pages)?;
     log::info!("{}: {} pages", arguments.out.display(), pages.len());
     Ok(())

@@ -4,7 +4,7 @@ use clap::Args;
 use pinswitch_batch::{Destination, merge};
 
 use crate::write::lock_policy;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use super::{Failure, print_json};
 
@@ -38,7 +38,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (None, [only]) => only,
         _ => {
             return Err(Failure::bad_input(
-                Diagnostic::new("--out is missing").with_help("give --out DIR to merge several places"),
+                Diagnostic::new(codes::USAGE, "--out is missing")
+                    .with_help("give --out DIR to merge several places"),
             ));
         }
     };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses, weights};
 use pinswitch_friction::physics::{
     Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
@@ -66,6 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
             return Err(Failure::bad_input(
                 Diagnostic::new(
+                    codes::LAW_DOES_NOT_APPLY,
                     "--out draws a tendon over pins on silicone, and this configuration has none",
                 )
                 .with_help("give a configuration with pins and layout.substrate = \"silicone\""),

@@ -1,7 +1,7 @@
 //! `pinswitch predict CONFIG`.
 
 use clap::Args;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::documents::friction_csv;
 use pinswitch_switch::prediction::Prediction;
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = arguments.source.0.as_ref().ok_or_else(|| {
         Failure::bad_input(
-            Diagnostic::new("no configuration and no rows")
+            Diagnostic::new(codes::USAGE, "no configuration and no rows")
                 .with_help("give a configuration, or --model and --rows; see `pinswitch predict --help`"),
         )
     })?;

@@ -11,7 +11,7 @@ use pinswitch_batch::{
 };
 use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::loads_n;
@@ -106,25 +106,28 @@ impl Rows {
 
     /// Decides the meaning of a table by the names of its columns, and checks the other arguments.
     fn meaning(&self, names: &[String], rows: &Path, has_base: bool) -> Result<Meaning, Failure> {
-        let refused = |problem: String, help: &str| {
+        let refused = |code: Code, problem: String, help: &str| {
             let location = Location::file(rows.display().to_string());
-            Err(Failure::bad_input(Diagnostic::new(problem).with_location(location).with_help(help)))
+            Err(Failure::bad_input(Diagnostic::new(code, problem).with_location(location).with_help(help)))
         };
         let parameter =
             names.iter().find(|name| Configuration::PARAMETERS.iter().any(|p| p.path() == **name));
         let plateau = names.iter().find(|name| PLATEAU_COLUMNS.contains(&name.as_str()));
         match (parameter, plateau) {
             (Some(parameter), Some(plateau)) => refused(
+                codes::OTHER_KIND_OF_FILE,
                 format!(
                     "ambiguous table: {parameter} is a parameter, and {plateau} is a column of a plateau table"
                 ),
                 "remove one of both kinds of columns: for curves keep the parameters, for readings the others",
             ),
             (None, Some(_)) if self.model.is_none() => refused(
+                codes::USAGE,
                 "a plateau table needs a calibrated model".to_owned(),
                 "give --model, or a table whose columns are parameters such as layout.pins",
             ),
             (None, Some(_)) if has_base => refused(
+                codes::USAGE,
                 "a plateau table needs no configuration".to_owned(),
                 "omit the configuration, or give a table whose columns are parameters such as layout.pins",
             ),
@@ -161,8 +164,9 @@ impl Rows {
         source: Option<&Source>,
         law: &LawChoice,
     ) -> Result<(), Failure> {
-        let refused =
-            |problem: &str, help: &str| Failure::bad_input(Diagnostic::new(problem).with_help(help));
+        let refused = |problem: &str, help: &str| {
+            Failure::bad_input(Diagnostic::new(codes::USAGE, problem).with_help(help))
+        };
         if self.fitted_session {
             return Err(refused("--fitted-session is for plateau tables", "omit it"));
         }
@@ -216,7 +220,7 @@ fn check_output(out: &Path) -> Result<(), Failure> {
     check_file(out)?;
     if std::fs::metadata(out).is_ok_and(|existing| !existing.is_file()) {
         let location = Location::file(out.display().to_string());
-        let error = Diagnostic::new("not an ordinary file").with_location(location);
+        let error = Diagnostic::new(codes::NOT_A_FILE, "not an ordinary file").with_location(location);
         return Err(Failure::bad_input(error.with_help("give a file, next to which a run can be resumed")));
     }
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -237,7 +241,7 @@ fn failure(error: CurveTableError) -> Failure {
 fn progress_bar(rows: u64) -> Result<ProgressBar, Failure> {
     let bar = ProgressBar::new(rows);
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} rows, {per_sec}, {eta} left");
-    bar.set_style(style.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?);
+    bar.set_style(style.map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?);
     if log::max_level() < log::LevelFilter::Info {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
@@ -256,11 +260,15 @@ fn report(out: &Path, outcome: &CurveOutcome) -> Result<(), Failure> {
     log::info!("{out}: {predicted} of {rows} rows predicted, {refused} refused, {failed} failed{existing}");
     let help = "see columns status and reason";
     if refused > 0 {
-        warn(Diagnostic::new(format!("{refused} of {rows} rows refused")).with_help(help));
+        warn(
+            Diagnostic::new(codes::VARIANTS_FAILED, format!("{refused} of {rows} rows refused"))
+                .with_help(help),
+        );
     }
     if failed > 0 {
         return Err(Failure::failed(
-            Diagnostic::new(format!("{failed} of {rows} rows failed")).with_help(help),
+            Diagnostic::new(codes::VARIANTS_FAILED, format!("{failed} of {rows} rows failed"))
+                .with_help(help),
         ));
     }
     Ok(())

@@ -7,7 +7,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use pinswitch_batch::{has_valid_checksum, with_checksum};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_switch::output::OutputFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,14 +80,21 @@ pub enum ManifestError {
 impl ManifestError {
     /// Returns the diagnostic of the manifest at `path`.
     pub(crate) fn diagnostic(self, path: &Path) -> Diagnostic {
-        let (problem, help) = match self {
+        let (code, problem, help) = match self {
             Self::Damaged => (
+                codes::CHANGED_FILE,
                 "was changed since pinswitch wrote it",
                 "restore it, or remove it to accept the files of its folder as external inputs",
             ),
-            Self::Foreign => ("is not a manifest of pinswitch", "move it away, or give another --out"),
+            Self::Foreign => (
+                codes::FILE_IN_THE_WAY,
+                "is not a manifest of pinswitch",
+                "move it away, or give another --out",
+            ),
         };
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+        Diagnostic::new(code, problem)
+            .with_location(Location::file(path.display().to_string()))
+            .with_help(help)
     }
 }
 
@@ -179,9 +186,12 @@ impl ProvenanceRecord {
 
     /// Returns the warning that `path`, a file of this record, is older than one of its sources.
     pub(crate) fn outdated(&self, path: &Path, source: &Path) -> Diagnostic {
-        Diagnostic::new(format!("was made from {}, which has changed since", source.display()))
-            .with_location(Location::file(path.display().to_string()))
-            .with_help(format!("run `pinswitch {}` again", self.command))
+        Diagnostic::new(
+            codes::OUTDATED_RESULT,
+            format!("was made from {}, which has changed since", source.display()),
+        )
+        .with_location(Location::file(path.display().to_string()))
+        .with_help(format!("run `pinswitch {}` again", self.command))
     }
 }
 
@@ -207,7 +217,9 @@ impl ChangedFile {
             digits(&self.written)
         );
         let help = format!("restore it; to use the changed file, rename it or remove {PROVENANCE}");
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+        Diagnostic::new(codes::CHANGED_FILE, problem)
+            .with_location(Location::file(path.display().to_string()))
+            .with_help(help)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use pinswitch_diagnostic::{Diagnostic, excerpt};
+use pinswitch_diagnostic::{Diagnostic, codes, excerpt};
 
 /// A range that includes both ends, with `from <= to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ impl<T: FromStr + PartialOrd + Display + Copy> FromStr for Range<T> {
             let number = part.trim().parse::<T>().ok();
             // Rust parses "NaN" and "inf" as numbers, but they cannot end a range.
             number.filter(|number| !number.to_string().contains(['N', 'i'])).ok_or_else(|| {
-                Diagnostic::new(format!("{:?} is not a number", excerpt(part, 40)))
+                Diagnostic::new(codes::MALFORMED_VALUE, format!("{:?} is not a number", excerpt(part, 40)))
                     .with_help("give A..B, such as 3..6")
             })
         };
@@ -32,7 +32,8 @@ impl<T: FromStr + PartialOrd + Display + Copy> FromStr for Range<T> {
         if low <= high {
             Ok(Self { from: low, to: high })
         } else {
-            Err(Diagnostic::new("the range runs backwards").with_help("give the smaller number first"))
+            Err(Diagnostic::new(codes::INVALID_RANGE, "the range runs backwards")
+                .with_help("give the smaller number first"))
         }
     }
 }

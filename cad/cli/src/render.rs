@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_solid::render::{View, render};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::output::BuildError;
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (flag, degrees) in [("--turn", arguments.turn_deg()), ("--rise", arguments.rise)] {
         if !degrees.is_finite() {
             return Err(Failure::bad_input(
-                Diagnostic::new("the angle is not finite")
+                Diagnostic::new(codes::OUT_OF_RANGE, "the angle is not finite")
                     .with_location(Location::field(flag, degrees.to_string()))
                     .with_help("give an angle in degrees"),
             ));
@@ -80,6 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let view = View { turn_deg: arguments.turn_deg(), rise_deg: arguments.rise };
     let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);
-    let bytes = picture.png().map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let bytes =
+        picture.png().map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
     write_file(&arguments.out, &bytes).map_err(Failure::from)
 }

@@ -13,7 +13,7 @@ use pinswitch_batch::{
     VariantOutcome, Variants, check_destination, estimate, mesh_file, obstructed_paths, partial_folder,
     run as run_batch,
 };
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use super::second_kernel::requested_kernel;
 use super::terminal::print_line;
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                     }
                 };
                 Err(Failure::failed(
-                    Diagnostic::new(problem)
+                    Diagnostic::new(codes::CANNOT_WRITE, problem)
                         .with_location(Location::file(format!("{out}/{first}")))
                         .with_help("move it away, or give another --out"),
                 ))
@@ -148,7 +148,7 @@ fn count(arguments: &Arguments, sweep: &UncheckedSweep) -> Result<u64, Failure> 
     let file = || Location::file(arguments.sweep.display().to_string());
     let count = sweep.count().ok_or_else(|| {
         Failure::bad_input(
-            Diagnostic::new(format!("more than {} variants", u64::MAX))
+            Diagnostic::new(codes::TOO_MANY_VARIANTS, format!("more than {} variants", u64::MAX))
                 .with_location(file())
                 .with_help("raise a step, or lower a count"),
         )
@@ -157,16 +157,22 @@ fn count(arguments: &Arguments, sweep: &UncheckedSweep) -> Result<u64, Failure> 
     let variants = range.end - range.start;
     if variants > MAX_WITHOUT_YES && !arguments.yes {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("{variants} variants are more than {MAX_WITHOUT_YES}"))
-                .with_location(file())
-                .with_help("allow them with --yes, or make a part of them with --shard"),
+            Diagnostic::new(
+                codes::TOO_MANY_VARIANTS,
+                format!("{variants} variants are more than {MAX_WITHOUT_YES}"),
+            )
+            .with_location(file())
+            .with_help("allow them with --yes, or make a part of them with --shard"),
         ));
     }
     if range.is_empty() {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("no variant is in this shard: the sweep has {count}"))
-                .with_location(Location::field("--shard", arguments.shard.to_string()))
-                .with_help("give fewer shards"),
+            Diagnostic::new(
+                codes::INVALID_SHARD,
+                format!("no variant is in this shard: the sweep has {count}"),
+            )
+            .with_location(Location::field("--shard", arguments.shard.to_string()))
+            .with_help("give fewer shards"),
         ));
     }
     Ok(count)
@@ -194,7 +200,7 @@ fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) 
     log::info!("{new} variants in {seconds:.1} s, {rate:.0} per second; {before} existed before");
     if tally.failed > 0 {
         return Err(Failure::failed(
-            Diagnostic::new(format!("{} variants failed", tally.failed))
+            Diagnostic::new(codes::VARIANTS_FAILED, format!("{} variants failed", tally.failed))
                 .with_help("see column reason of variants.csv; run the same command to try them again"),
         ));
     }
@@ -216,7 +222,7 @@ impl Progress {
         let bar = ProgressBar::new(count);
         let template = "{bar:30} {pos} of {len} variants, {per_sec}, {eta} left {msg}";
         let style = ProgressStyle::with_template(template);
-        bar.set_style(style.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?);
+        bar.set_style(style.map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?);
         if log::max_level() < log::LevelFilter::Info {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
@@ -230,7 +236,7 @@ impl Progress {
             }
             print_line("finishing the variants in progress; press Ctrl-C again to stop now");
         })
-        .map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+        .map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
         Ok(Self {
             bar,
             start: Instant::now(),
@@ -266,7 +272,7 @@ impl Observer for Progress {
 fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
     let threads = usize::from(arguments.threads);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let pool = pool.map_err(|e| Failure::failed(Diagnostic::from_error(codes::CANNOT_START, e)))?;
     let threads = pool.current_num_threads();
     let estimate =
         pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;

@@ -20,7 +20,7 @@ use schemars::schema_for;
 use super::provenance::Provenance;
 use super::report_schema::{perhaps_with_checksum, written, written_with_checksum};
 use super::terminal::FailureReport;
-use super::{Failure, design, finger, layouts, physics, predict, print_json, tolerances};
+use super::{Failure, design, explain, finger, layouts, physics, predict, print_json, tolerances};
 
 /// Print the JSON Schema of a file that you write, or of a report that the program writes.
 ///
@@ -70,6 +70,8 @@ enum Kind {
     DesignReport,
     /// The next runs, from `experiment --json` and experiment.json.
     ExperimentReport,
+    /// The pages of codes, from `explain --json`.
+    ExplainReport,
     /// Why a command stopped, from any command with --json that fails.
     Failure,
     /// A finger with a switch, from `finger --json` and finger.json.
@@ -122,6 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::CheckReport => written::<Vec<Verdict>>("Verdicts on mesh files"),
         Kind::DesignReport => written::<design::Report<'_>>("Designs for a request"),
         Kind::ExperimentReport => written::<Proposal>("Plan of the next runs"),
+        Kind::ExplainReport => written::<explain::Pages>("Pages of codes"),
         Kind::Failure => written::<FailureReport<'_>>("Failure of a command"),
         Kind::FingerReport => written::<finger::Report>("Finger with a friction switch"),
         Kind::ImportReport => written::<Understanding>("Understanding of an import"),

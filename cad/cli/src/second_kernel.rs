@@ -1,6 +1,6 @@
 //! The second kernel of `--verify`.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_solid::verification::{Kernel, second_kernel};
 
 use super::Failure;
@@ -17,9 +17,12 @@ fn available(kernel: Option<Kernel>) -> Result<Kernel, Failure> {
     kernel.ok_or_else(|| {
         let location = Location { field: Some("--verify".to_owned()), ..Location::default() };
         Failure::bad_input(
-            Diagnostic::new("this build has no second kernel to verify meshes with")
-                .with_location(location)
-                .with_help("build it with the default features, or with --features truck"),
+            Diagnostic::new(
+                codes::FEATURE_NOT_BUILT,
+                "this build has no second kernel to verify meshes with",
+            )
+            .with_location(location)
+            .with_help("build it with the default features, or with --features truck"),
         )
     })
 }

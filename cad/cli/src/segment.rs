@@ -7,7 +7,7 @@ use clap::Args;
 use flate2::read::MultiGzDecoder;
 use pinswitch_calibration::segmentation::{RunPlan, RunSegmentation, SegmentedRun};
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_import::Map;
 use pinswitch_report::log_svg;
 use pinswitch_switch::config::Name;
@@ -53,9 +53,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             if !arguments.read_outside && is_outside(&path, folder) {
                 let location = Location::file(&name).with_field("series.file", format!("{file:?}"));
                 return Err(Failure::bad_input(
-                    Diagnostic::new("the log is outside the folder of the description")
-                        .with_location(location)
-                        .with_help("copy it into the folder, or allow it with --read-outside"),
+                    Diagnostic::new(
+                        codes::OUTSIDE_THE_FOLDER,
+                        "the log is outside the folder of the description",
+                    )
+                    .with_location(location)
+                    .with_help("copy it into the folder, or allow it with --read-outside"),
                 ));
             }
             let (bytes, name) = (read_log(&path)?, path.display().to_string());
@@ -80,7 +83,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let SegmentedRun { rows, report } = run.finish(&name).map_err(Failure::bad_input)?;
     // As a value, whose keys are sorted: readers of the file rely on its bytes.
-    let value = serde_json::to_value(&report).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let value = serde_json::to_value(&report)
+        .map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
     files.push(OutputFile { name: format!("{stem}.json"), bytes: to_json(&value)? });
     let table =
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
@@ -116,17 +120,19 @@ fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {
     if path.extension().is_none_or(|e| e != "gz") {
         return Ok(raw);
     }
-    let refused = |problem: String, help: &str| {
-        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    let refused = |code: Code, problem: String, help: &str| {
+        Diagnostic::new(code, problem)
+            .with_location(Location::file(path.display().to_string()))
+            .with_help(help)
     };
     let mut text = Vec::new();
     MultiGzDecoder::new(raw.as_slice()).take(MAX_LOG + 1).read_to_end(&mut text).map_err(|e| {
-        let problem = refused("cannot unpack".to_owned(), "give a complete gzip file");
+        let problem = refused(codes::DAMAGED_FILE, "cannot unpack".to_owned(), "give a complete gzip file");
         Failure::bad_input(problem.with_source(e))
     })?;
     if text.len() as u64 > MAX_LOG {
         let problem = format!("unpacks to more than {MAX_LOG} bytes");
-        return Err(Failure::bad_input(refused(problem, "give a log of one session")));
+        return Err(Failure::bad_input(refused(codes::FILE_TOO_LARGE, problem, "give a log of one session")));
     }
     Ok(text)
 }

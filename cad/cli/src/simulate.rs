@@ -8,7 +8,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_simulation::{
     Case, ExperimentStudy, FormStudy, Group, Plan, RawRun, Study, experiment_cases, next_session, run_case,
     run_experiment_case, run_form_case, simulate, simulate_from_model, simulate_rows, study_cases,
@@ -106,11 +106,13 @@ const COMMAND: &str = "simulate";
 
 /// Parses the factor by which effects are scaled.
 fn scale(text: &str) -> Result<f64, Diagnostic> {
-    let factor = text.parse::<f64>().map_err(|e| Diagnostic::new("not a number").with_source(e))?;
+    let factor = text
+        .parse::<f64>()
+        .map_err(|e| Diagnostic::new(codes::MALFORMED_VALUE, "not a number").with_source(e))?;
     if (0.1..=10.0).contains(&factor) {
         return Ok(factor);
     }
-    Err(Diagnostic::new("the factor is outside 0.1 to 10"))
+    Err(Diagnostic::new(codes::OUT_OF_RANGE, "the factor is outside 0.1 to 10"))
 }
 
 /// Largest seed that a plan can contain: integers of TOML are signed.
@@ -128,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let Some(out) = &arguments.out else {
         return Err(Failure::bad_input(
-            Diagnostic::new("--out is missing").with_help("give --out DIR, or --study"),
+            Diagnostic::new(codes::USAGE, "--out is missing").with_help("give --out DIR, or --study"),
         ));
     };
     let place = SetFolder::lock(out)?;
@@ -208,7 +210,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
             values.split(',').filter(|v| !v.is_empty()).map(|v| v.trim().parse()).collect();
         let values = values.map_err(|e| {
             Failure::bad_input(
-                Diagnostic::new("a value is not a number")
+                Diagnostic::new(codes::MALFORMED_VALUE, "a value is not a number")
                     .with_location(Location::file(format!("--effect {effect}")))
                     .with_help("give ID=VALUE,VALUE, such as coating_ploughing=0.02")
                     .with_source(e),
@@ -224,7 +226,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
 /// Returns the description of a raw run, its logs, their true plateaus, and the faults that were added.
 fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputFile>, Failure> {
     let run = RawRun::new(plan, rows, name).map_err(Failure::bad_input)?;
-    let failed_io = |e: std::io::Error| Failure::failed(Diagnostic::from_error(e));
+    let failed_io = |e: std::io::Error| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e));
     let mut files = Vec::new();
     let mut truth = "file,direction,repetition,force_N\n".to_owned();
     let mut faults = serde_json::Map::new();
@@ -235,7 +237,10 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
             truth.push_str(&format!("{file},{word},{repetition},{force_n:.4}\n"));
         }
         let log_faults = serde_json::to_value(&log.faults);
-        faults.insert(file.clone(), log_faults.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?);
+        faults.insert(
+            file.clone(),
+            log_faults.map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?,
+        );
         let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
         packed.write_all(log.text.as_bytes()).map_err(failed_io)?;
         files.push(OutputFile { name: file, bytes: packed.finish().map_err(failed_io)? });
@@ -284,7 +289,7 @@ fn each_case<T: Send>(
             groups.sort_unstable();
             groups.dedup();
             return Err(Failure::bad_input(
-                Diagnostic::new("no kind of rig in this study has this group or name")
+                Diagnostic::new(codes::UNKNOWN_WORD, "no kind of rig in this study has this group or name")
                     .with_location(Location::field("--only", word))
                     .with_help(format!("give one of the groups {}, or a part of a name", groups.join(", "))),
             ));

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_slicer::{
     LIMIT_VARIABLE, PROGRAM_VARIABLE, PrintSettings, RunLimits, SETTINGS_FILE, SLICING_FILE, Slicer,
     SlicerError, Slicing, find,
@@ -29,7 +29,7 @@ pub(super) fn installed() -> Result<Option<Slicer>, Failure> {
     let slicer = find(variable(PROGRAM_VARIABLE).as_deref(), variable("PATH").as_deref()).map_err(failure)?;
     if slicer.is_none() {
         warn(
-            Diagnostic::new("no slicer is installed: print times are left out, everything else is made").with_help(
+            Diagnostic::new(codes::SLICER_NOT_FOUND, "no slicer is installed: print times are left out, everything else is made").with_help(
                 format!(
                     "install PrusaSlicer (Debian, Ubuntu: apt-get install prusa-slicer; others: \
                      https://www.prusa3d.com/prusaslicer) so that `prusa-slicer` is on PATH, or set {PROGRAM_VARIABLE} \
@@ -57,7 +57,7 @@ fn limit(text: &str) -> Result<Duration, Failure> {
     let seconds = text.trim().parse().ok().filter(|s| (MIN_LIMIT_S..=MAX_LIMIT_S).contains(s));
     let seconds = seconds.ok_or_else(|| {
         Failure::bad_input(
-            Diagnostic::new("not a time for slicing a file")
+            Diagnostic::new(codes::OUT_OF_RANGE, "not a time for slicing a file")
                 .with_location(Location::field(LIMIT_VARIABLE, text))
                 .with_help(format!("give a number of seconds from {MIN_LIMIT_S} to {MAX_LIMIT_S}")),
         )

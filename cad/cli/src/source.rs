@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
     ClampedReading, Configuration, FieldLocations, Name, assign, read, read_clamped, rewritten,
@@ -268,7 +268,7 @@ fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure
         let suggestion =
             nearest.map_or_else(String::new, |name| format!("the nearest template is {name:?}; "));
         Failure::bad_input(
-            Diagnostic::new("no such file or template")
+            Diagnostic::new(codes::FILE_NOT_FOUND, "no such file or template")
                 .with_location(Location::file(name))
                 .with_help(format!("{suggestion}`pinswitch layouts` lists all templates")),
         )
@@ -282,7 +282,7 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
         if text.trim().is_empty() {
             // Valid, since every field has a default, but hardly intended.
             return Err(Failure::bad_input(
-                Diagnostic::new("the file is empty")
+                Diagnostic::new(codes::DAMAGED_FILE, "the file is empty")
                     .with_location(Location::file(file))
                     .with_help("write a configuration with `pinswitch init`, or give a template"),
             ));
@@ -295,7 +295,7 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
     let law = package.law;
     package.configuration.map(|text| (text, Kind::Package(source, law))).ok_or_else(|| {
         Failure::bad_input(
-            Diagnostic::new("the 3MF contains no configuration")
+            Diagnostic::new(codes::OTHER_KIND_OF_FILE, "the 3MF contains no configuration")
                 .with_location(Location::file(file))
                 .with_help("give a TOML file, or an assembly.3mf that pinswitch wrote"),
         )

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_slicer::supervise;
 
 use super::Failure;
@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The caller reads this exit code as that of the program.
         Ok(code) => std::process::exit(code),
         Err(e) => Err(Failure::failed(
-            Diagnostic::new("cannot run")
+            Diagnostic::new(codes::CANNOT_START, "cannot run")
                 .with_location(Location::file(arguments.program.display().to_string()))
                 .with_source(e),
         )),

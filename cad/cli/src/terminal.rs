@@ -9,7 +9,7 @@ use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use log::{Level, LevelFilter};
-use pinswitch_diagnostic::{Diagnostic, neutral, neutral_line};
+use pinswitch_diagnostic::{Diagnostic, codes, neutral, neutral_line};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -47,7 +47,8 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::failed`] if the value has no JSON form.
 pub(super) fn to_json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
     Ok(escaped_json(&(text + "\n")).into_bytes())
 }
 
@@ -105,6 +106,15 @@ pub(super) fn print_line(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", neutral(text));
 }
 
+/// Prints text for a person on standard error, in colours on a terminal that has them. `styled` is the same text with the
+/// escape sequences of the colours.
+pub(super) fn print_styled(plain: &str, styled: &str) {
+    let is_set = |variable| std::env::var_os(variable).is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    let is_styled = std::io::stderr().is_terminal() && !is_set("NO_COLOR") && !is_dumb;
+    let _ = std::io::stderr().write_all(if is_styled { styled } else { plain }.as_bytes());
+}
+
 /// Starts the log on standard error.
 pub(super) fn start_log(level: LevelFilter) {
     env_logger::Builder::new()
@@ -125,9 +135,9 @@ pub(super) fn start_log(level: LevelFilter) {
 fn write_stdout(bytes: &[u8]) -> Result<(), Failure> {
     IS_STDOUT_USED.store(true, Ordering::Relaxed);
     match std::io::stdout().lock().write_all(bytes) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::failed(Diagnostic::new("cannot write to standard output").with_source(e)))
-        }
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::failed(
+            Diagnostic::new(codes::CANNOT_WRITE, "cannot write to standard output").with_source(e),
+        )),
         _ => Ok(()),
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt};
 use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::tolerances::{
     Allocation, Analysis, ChainDimension, Contribution, DEVIATIONS_PER_TOLERANCE, Linear, NORMAL_95,
@@ -84,12 +84,13 @@ impl FromStr for Scatter {
         };
         let help = "give newtons such as 2.5, or a share such as 10%";
         let value = number.trim().parse::<f64>().map_err(|_| {
-            Diagnostic::new(format!("{:?} is not a number", excerpt(text, MAX_QUOTE))).with_help(help)
+            Diagnostic::new(codes::MALFORMED_VALUE, format!("{:?} is not a number", excerpt(text, MAX_QUOTE)))
+                .with_help(help)
         })?;
         if value.is_finite() && value > 0.0 {
             Ok(kind(value * scale))
         } else {
-            Err(Diagnostic::new("the scatter is not positive").with_help(help))
+            Err(Diagnostic::new(codes::OUT_OF_RANGE, "the scatter is not positive").with_help(help))
         }
     }
 }
@@ -114,12 +115,12 @@ impl FromStr for Measured {
         let names = || ChainDimension::ALL.map(ChainDimension::as_str).join(", ");
         let (name, value) = text.split_once('=').unwrap_or((text, ""));
         let dimension = ChainDimension::from_name(name.trim()).ok_or_else(|| {
-            Diagnostic::new(format!("unknown dimension {:?}", excerpt(name, MAX_QUOTE)))
+            Diagnostic::new(codes::UNKNOWN_WORD, format!("unknown dimension {:?}", excerpt(name, MAX_QUOTE)))
                 .with_help(format!("give one of {}", names()))
         })?;
         let value = value.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
         let value = value.ok_or_else(|| {
-            Diagnostic::new("the tolerance is not a number of at least 0")
+            Diagnostic::new(codes::OUT_OF_RANGE, "the tolerance is not a number of at least 0")
                 .with_help(format!("give the half width of the tolerance in {}", dimension.unit()))
         })?;
         Ok(Self(dimension, value))
@@ -243,10 +244,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match report.allocation.as_ref().filter(|allotted| !allotted.possible) {
         None => Ok(()),
         Some(Allotted { allocation, .. }) => Err(Failure::failed(
-            Diagnostic::new(format!(
-                "the best processes reach a scatter of \u{b1}{:.2} N, not \u{b1}{:.2} N",
-                allocation.best_n, allocation.wanted_n
-            ))
+            Diagnostic::new(
+                codes::SCATTER_NOT_REACHED,
+                format!(
+                    "the best processes reach a scatter of \u{b1}{:.2} N, not \u{b1}{:.2} N",
+                    allocation.best_n, allocation.wanted_n
+                ),
+            )
             .with_location(Location::file("--scatter"))
             .with_help(format!(
                 "allow at least {:.2} N, or measure each switch and change its layer",
@@ -267,9 +271,12 @@ fn check_measured(analysis: &Analysis, measured: &[Measured]) -> Result<(), Fail
         let most = if nominal > 0.0 { MAX_RELATIVE * nominal } else { MAX_POSITION_MM };
         if *value > most {
             return Err(Failure::bad_input(
-                Diagnostic::new(format!("the tolerance is above {most} {}", dimension.unit()))
-                    .with_location(Location::field("--measured", format!("{}={value}", dimension.as_str())))
-                    .with_help("give the half width of the tolerance, not the dimension"),
+                Diagnostic::new(
+                    codes::OUT_OF_RANGE,
+                    format!("the tolerance is above {most} {}", dimension.unit()),
+                )
+                .with_location(Location::field("--measured", format!("{}={value}", dimension.as_str())))
+                .with_help("give the half width of the tolerance, not the dimension"),
             ));
         }
     }

@@ -5,13 +5,15 @@ use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use pinswitch_batch::ShardError;
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt, neutral};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt, neutral};
 
 use super::Failure;
-use super::terminal::{print_failure_json, print_line, report_failure};
+use super::terminal::{print_failure_json, print_line, print_styled, report_failure};
 
 /// Most characters of an error of the arguments, which quotes arguments of any length.
 const MAX_CHARACTERS: usize = 590;
+/// Beginning of an error that clap has rendered.
+const ERROR: &str = "error: ";
 /// Arguments that are files, and the kind of file that `init` writes for each.
 const STARTERS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SWEEP>", "sweep")];
 
@@ -28,9 +30,11 @@ pub(super) fn report(error: clap::Error) -> ExitCode {
         print_failure_json(&Failure::bad_input(diagnostic(&text)));
     }
     if error.use_stderr() && (text.chars().count() > MAX_CHARACTERS || quotes_controls(&error)) {
-        print_line(&bounded(text.trim_end()));
+        print_line(&with_code(&bounded(text.trim_end())));
+    } else if text.starts_with(ERROR) {
+        print_styled(&with_code(&text), &with_code(&error.render().ansi().to_string()));
     } else {
-        // In colour on a terminal. The reader may have stopped, as `head` does.
+        // The requested help. The reader may have stopped, as `head` does.
         let _ = error.print();
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
@@ -51,8 +55,14 @@ fn of_value(error: &clap::Error) -> Option<Diagnostic> {
 /// Returns an error that clap has rendered: the first paragraph is the problem, the others are the help.
 fn diagnostic(text: &str) -> Diagnostic {
     let (problem, help) = text.split_once("\n\n").unwrap_or((text, ""));
-    let problem = Diagnostic::new(problem.trim_start_matches("error: ").trim());
+    let problem = Diagnostic::new(codes::USAGE, problem.trim_start_matches(ERROR).trim());
     if help.trim().is_empty() { problem } else { problem.with_help(help.trim()) }
+}
+
+/// Adds the code to the first paragraph, the problem.
+fn with_code(text: &str) -> String {
+    let (problem, rest) = text.split_at(text.find("\n\n").unwrap_or(text.trim_end().len()));
+    format!("{problem} [{}]{rest}", codes::USAGE)
 }
 
 /// Whether the error quotes an argument with control characters.
@@ -102,12 +112,19 @@ mod tests {
         let diagnostic = of_value(&error).unwrap();
         assert_eq!(
             diagnostic.render("error"),
-            "error: --shard = 9/2: invalid shard: expected K/N with 1 <= K <= N\n  help: write a shard such as 2/8"
+            "error: --shard = 9/2: invalid shard: expected K/N with 1 <= K <= N [invalid-shard]\n  help: write a shard such as 2/8"
         );
         let number = clap::arg!(--points <NUMBER>).value_parser(clap::value_parser!(u8));
         let error =
             clap::Command::new("p").arg(number).try_get_matches_from(["p", "--points", "x"]).unwrap_err();
         assert_eq!(of_value(&error), None);
+    }
+
+    #[test]
+    fn problem_has_the_code() {
+        let text = "error: missing:\n  <PLAN>\n\nUsage: p <PLAN>\n";
+        assert_eq!(with_code(text), "error: missing:\n  <PLAN> [usage]\n\nUsage: p <PLAN>\n");
+        assert_eq!(with_code("error: missing\n"), "error: missing [usage]\n");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use pinswitch_app::server::{ConfigurationSource, FieldOverride, Server, ServerError, SourceWriteError};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_store::{RewriteError, rewrite_file};
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
@@ -82,7 +82,7 @@ impl ViewSource {
         let file = self.required_file()?;
         match std::fs::metadata(file) {
             Ok(facts) if !facts.is_file() && !facts.is_dir() => {
-                Err(Diagnostic::new("is not an ordinary file")
+                Err(Diagnostic::new(codes::NOT_A_FILE, "is not an ordinary file")
                     .with_location(Location::file(file.display().to_string()))
                     .with_help("give a file that can be read again"))
             }
@@ -91,7 +91,9 @@ impl ViewSource {
     }
 
     fn required_file(&self) -> Result<&Path, Diagnostic> {
-        self.file.as_deref().ok_or_else(|| Diagnostic::new("the server follows a template, not a file"))
+        self.file
+            .as_deref()
+            .ok_or_else(|| Diagnostic::new(codes::NOT_SAVED, "the server follows a template, not a file"))
     }
 }
 
@@ -153,5 +155,9 @@ impl ConfigurationSource for ViewSource {
 
 /// Returns the diagnostic of a failure.
 fn diagnostic(failure: &Failure) -> Diagnostic {
-    failure.diagnostics().first().cloned().unwrap_or_else(|| Diagnostic::new(failure.to_string()))
+    failure
+        .diagnostics()
+        .first()
+        .cloned()
+        .unwrap_or_else(|| Diagnostic::new(codes::INTERNAL_ERROR, failure.to_string()))
 }

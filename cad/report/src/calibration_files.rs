@@ -2,7 +2,7 @@
 
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{Calibration, ModelFile};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::{page, plots};
 
@@ -20,7 +20,7 @@ pub fn calibration_files(
     calibration: &Calibration,
 ) -> Result<Vec<(String, Vec<u8>)>, Diagnostic> {
     let Calibration { evidence, baseline, augmented, .. } = calibration;
-    let plots = plots(calibration).map_err(Diagnostic::from_error)?;
+    let plots = plots(calibration).map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
     let html = page(title, calibration, &plots);
     let residual = |predicted: &[f64]| -> Vec<f64> {
         table.rows.iter().zip(predicted).map(|(row, predicted)| row.force_n - predicted).collect()

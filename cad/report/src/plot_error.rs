@@ -1,6 +1,6 @@
 //! The error of a figure.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// A figure cannot be drawn, since the drawing library refuses a coordinate.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -16,6 +16,6 @@ impl PlotError {
 
 impl From<PlotError> for Diagnostic {
     fn from(error: PlotError) -> Self {
-        Self::from_error(error)
+        Self::from_error(codes::INTERNAL_ERROR, error)
     }
 }

@@ -1,6 +1,6 @@
 //! A two-link finger with a switch at its joint, for MuJoCo and as URDF.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::published::GRAVITY_M_S2;
 use serde::Serialize;
 
@@ -66,9 +66,11 @@ impl Finger {
         ];
         match values.iter().find(|(_, value, low, high)| !(low..=high).contains(&value)) {
             None => Ok(()),
-            Some((field, value, low, high)) => Err(Diagnostic::new(format!("outside {low} to {high}"))
-                .with_location(Location::field(*field, value.to_string()))
-                .with_help(format!("give a number from {low} to {high}"))),
+            Some((field, value, low, high)) => {
+                Err(Diagnostic::new(codes::OUT_OF_RANGE, format!("outside {low} to {high}"))
+                    .with_location(Location::field(*field, value.to_string()))
+                    .with_help(format!("give a number from {low} to {high}")))
+            }
         }
     }
 

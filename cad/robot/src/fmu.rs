@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write};
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use zip::write::SimpleFileOptions;
 
 use crate::finger::escaped;
@@ -112,10 +112,12 @@ pub fn zip_fmu(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, Diagnostic> {
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in files {
         let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
-        archive.start_file(name.as_str(), options).map_err(Diagnostic::from_error)?;
-        archive.write_all(bytes).map_err(Diagnostic::from_error)?;
+        archive
+            .start_file(name.as_str(), options)
+            .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
+        archive.write_all(bytes).map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
     }
-    archive.finish().map(Cursor::into_inner).map_err(Diagnostic::from_error)
+    archive.finish().map(Cursor::into_inner).map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Tensions of a switch over load and wrap angle.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::FrictionCurve;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -42,7 +42,8 @@ impl Surface {
     /// tension would not be unique.
     pub fn new(name: &str, curves: Vec<(f64, FrictionCurve)>) -> Result<Self, Diagnostic> {
         let Some((_, first)) = curves.first() else {
-            return Err(Diagnostic::new("a switch without curves").with_help("give at least one wrap angle"));
+            return Err(Diagnostic::new(codes::TENSION_NOT_INCREASING, "a switch without curves")
+                .with_help("give at least one wrap angle"));
         };
         let (law, load_n) = (first.law.as_str(), first.load_n.clone());
         for (wrap_rad, curve) in &curves {
@@ -53,9 +54,12 @@ impl Surface {
             {
                 let location =
                     Location::field("layout.wrap_angle_deg", format!("{:.2}", wrap_rad.to_degrees()));
-                return Err(Diagnostic::new("the tension does not grow with the load at this wrap angle")
-                    .with_location(location)
-                    .with_help("give at least two loads, or another law"));
+                return Err(Diagnostic::new(
+                    codes::TENSION_NOT_INCREASING,
+                    "the tension does not grow with the load at this wrap angle",
+                )
+                .with_location(location)
+                .with_help("give at least two loads, or another law"));
             }
         }
         let factors = curves.iter().map(|(_, curve)| factors(curve)).collect();
@@ -124,7 +128,8 @@ impl Surface {
     /// # Errors
     /// A [`Diagnostic`] if a number is not finite.
     pub fn to_json(&self) -> Result<String, Diagnostic> {
-        let text = serde_json::to_string_pretty(self).map_err(Diagnostic::from_error)?;
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
         Ok(text + "\n")
     }
 

@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt, neutral};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt, neutral};
 use tempfile::TempDir;
 
 use crate::bounded::{self, Run, RunError, RunLimits};
@@ -73,22 +73,26 @@ impl SlicerError {
 
     fn diagnostic(&self) -> Diagnostic {
         match self {
-            Self::NoProgram(name) => Diagnostic::new("no such program")
+            Self::NoProgram(name) => Diagnostic::new(codes::SLICER_NOT_FOUND, "no such program")
                 .with_location(Location::field(PROGRAM_VARIABLE, name.as_str()))
                 .with_help("give the path of PrusaSlicer's program, or unset the variable"),
-            Self::Io { program, source } => Diagnostic::new(format!("cannot run {program}: {source}"))
-                .with_help("install PrusaSlicer again, and make room for temporary files"),
+            Self::Io { program, source } => {
+                Diagnostic::new(codes::SLICER_FAILED, format!("cannot run {program}: {source}"))
+                    .with_help("install PrusaSlicer again, and make room for temporary files")
+            }
             Self::Refused { program, file, output } => {
-                Diagnostic::new(format!("{program} did not slice {file}: {output}"))
+                Diagnostic::new(codes::SLICER_FAILED, format!("{program} did not slice {file}: {output}"))
             }
-            Self::Stopped { program, file, limit } => {
-                Diagnostic::new(format!("{program} did not slice {file}: {limit}, and was ended"))
-                    .with_help(format!("repeat it, or give a longer time in {LIMIT_VARIABLE}"))
-            }
-            Self::Gcode { program, file, source } => {
-                Diagnostic::new(format!("{program} sliced {file} without an estimate: {source}"))
-                    .with_help("use PrusaSlicer 2.5 or later")
-            }
+            Self::Stopped { program, file, limit } => Diagnostic::new(
+                codes::SLICER_FAILED,
+                format!("{program} did not slice {file}: {limit}, and was ended"),
+            )
+            .with_help(format!("repeat it, or give a longer time in {LIMIT_VARIABLE}")),
+            Self::Gcode { program, file, source } => Diagnostic::new(
+                codes::SLICER_FAILED,
+                format!("{program} sliced {file} without an estimate: {source}"),
+            )
+            .with_help("use PrusaSlicer 2.5 or later"),
         }
     }
 }

@@ -39,4 +39,4 @@ pub mod scene;
 pub mod set;
 pub mod templates;
 pub mod tolerances;
-mod warnings;
+pub mod warnings;

@@ -1,6 +1,7 @@
 //! Files in memory, and the errors of building and of encoding.
 
 use crate::config::Diagnostic;
+use pinswitch_diagnostic::{Code, codes};
 use pinswitch_report::PlotError;
 use pinswitch_solid::solid::CapError;
 use pinswitch_solid::validity::Fault;
@@ -47,6 +48,15 @@ pub enum BuildError {
 }
 
 impl BuildError {
+    /// Kind of fault.
+    pub fn code(&self) -> Code {
+        match self {
+            Self::Configuration(error) => error.code(),
+            Self::Cap { .. } => codes::SHAPE_CANNOT_BE_BUILT,
+            Self::Invalid { .. } => codes::INVALID_MESH,
+        }
+    }
+
     /// Returns what is wrong, without field and help.
     pub fn problem(&self) -> String {
         match self {
@@ -61,7 +71,9 @@ impl From<BuildError> for Diagnostic {
     fn from(error: BuildError) -> Self {
         match error {
             BuildError::Configuration(error) => error,
-            other => Self::new(other.problem()).with_help("report the configuration").with_source(other),
+            other => Self::new(other.code(), other.problem())
+                .with_help("report the configuration")
+                .with_source(other),
         }
     }
 }
@@ -92,8 +104,12 @@ impl From<SetError> for Diagnostic {
     fn from(error: SetError) -> Self {
         match error {
             SetError::Build(error) => error.into(),
-            SetError::Plot(error) => Self::new("cannot draw the plot of the curve").with_source(error),
-            SetError::Encoding(reason) => Self::new(format!("cannot encode a file: {reason}")),
+            SetError::Plot(error) => {
+                Self::new(codes::INTERNAL_ERROR, "cannot draw the plot of the curve").with_source(error)
+            }
+            SetError::Encoding(reason) => {
+                Self::new(codes::INTERNAL_ERROR, format!("cannot encode a file: {reason}"))
+            }
         }
     }
 }

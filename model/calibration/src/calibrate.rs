@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::confirmation::{trial_of_unseen, trials};
 use crate::discovery::{DrawnForm, draw_form};
@@ -43,11 +43,11 @@ pub enum CalibrationError {
 impl From<&CalibrationError> for Diagnostic {
     fn from(error: &CalibrationError) -> Self {
         match error {
-            CalibrationError::TooFewRows { found, needed } => Self::new(format!(
+            CalibrationError::TooFewRows { found, needed } => Self::new(codes::TOO_FEW_ROWS, format!(
                 "{found} rows are too few to estimate the baseline and its noise; at least {needed} are needed"
             ))
             .with_help("record more loads or repetitions"),
-            CalibrationError::NotFinite { id, values, row, conditions } => Self::new(format!(
+            CalibrationError::NotFinite { id, values, row, conditions } => Self::new(codes::FORMULA_NOT_FINITE, format!(
                 "effect '{id}' is not finite at its start value {values} (row {row}: {conditions})"
             ))
             .with_help("guard its formula with max or min, or narrow the bounds of its constants"),
@@ -167,7 +167,7 @@ pub fn calibrate(
     }
     let not_finite = || {
         CalibrationError::Unfit(
-            Diagnostic::new("the friction model is not finite on this table")
+            Diagnostic::new(codes::MODEL_NOT_FINITE, "the friction model is not finite on this table")
                 .with_help("check loads and readings for values that a rig cannot have"),
         )
     };

@@ -2,7 +2,7 @@
 //!
 //! A model file is copied to other folders and dropped on a page, where no manifest lists it.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use sha2::{Digest, Sha256};
 
 /// Begin of the line.
@@ -32,7 +32,8 @@ pub(crate) fn check_content_hash(text: &str) -> Result<(), Diagnostic> {
         digits(&hash),
         digits(listed)
     );
-    Err(Diagnostic::new(problem).with_help("restore it; to use the changed file, delete its last line"))
+    Err(Diagnostic::new(codes::CHANGED_FILE, problem)
+        .with_help("restore it; to use the changed file, delete its last line"))
 }
 
 /// Returns the SHA-256 in hexadecimal digits, independent of the kind of line ends.

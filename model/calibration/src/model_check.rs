@@ -2,7 +2,7 @@
 //! semidefinite.
 
 use nalgebra::DMatrix;
-use pinswitch_diagnostic::{Diagnostic, Location, short_number};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, short_number};
 
 use crate::model::{Model, Noise};
 use crate::table::Frame;
@@ -22,7 +22,9 @@ pub(crate) fn invalid(
     value: impl ToString,
     problem: impl Into<String>,
 ) -> Diagnostic {
-    Diagnostic::new(problem).with_location(Location::field(field, value.to_string())).with_help(HELP)
+    Diagnostic::new(codes::INVALID_MODEL, problem)
+        .with_location(Location::field(field, value.to_string()))
+        .with_help(HELP)
 }
 
 /// Checks that `value` is within `low..=high`, which NaN is not.
@@ -82,7 +84,7 @@ pub(crate) fn check_friction(loads_n: &[f64], friction_n: &[f64], half_n: &[f64]
             let problem = format!(
                 "the predicted friction is {friction:.3e} N (half band {half:.3e} N) at a load of {load:.2} N, more than {MAX_FRICTION} times the load"
             );
-            return Err(Diagnostic::new(problem).with_help(HELP));
+            return Err(Diagnostic::new(codes::MODEL_NOT_FINITE, problem).with_help(HELP));
         }
     }
     Ok(())
@@ -214,7 +216,7 @@ pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), D
     if needed > 0 && (least.is_nan() || least < -ROUNDING * largest) {
         let problem =
             format!("not positive semidefinite: its smallest eigenvalue is {}", short_number(least));
-        return Err(Diagnostic::new(problem)
+        return Err(Diagnostic::new(codes::INVALID_MODEL, problem)
             .with_location(Location { field: Some("covariance".to_owned()), ..Location::default() })
             .with_help(HELP));
     }

@@ -1,7 +1,7 @@
 //! Model files (`baseline.toml` and `model.toml`): a fitted model that predicts rows later.
 
 use nalgebra::DMatrix;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
@@ -218,9 +218,9 @@ impl ModelFile {
     /// If a value cannot be written as TOML.
     pub fn to_text(&self) -> Result<String, Diagnostic> {
         let own = own_effect_blocks(self.vocabulary.own().map(|own| own.definition()));
-        toml::to_string(self)
-            .map(|text| with_content_hash(text + &own))
-            .map_err(|e| Diagnostic::from_error(e).with_location(Location::file("model.toml")))
+        toml::to_string(self).map(|text| with_content_hash(text + &own)).map_err(|e| {
+            Diagnostic::from_error(codes::INTERNAL_ERROR, e).with_location(Location::file("model.toml"))
+        })
     }
 
     /// Returns the model. `file` is the name of the file in errors.
@@ -282,7 +282,7 @@ impl ModelFile {
                 let (column, id) = (quantity.column(), &term.id);
                 let problem = format!("row {} lacks {column}, which `{id}` of the model needs", row + 1);
                 let help = format!("give {column} in every row, or predict with baseline.toml");
-                return Err(Diagnostic::new(problem).with_help(help));
+                return Err(Diagnostic::new(codes::COVARIATE_MISSING, problem).with_help(help));
             }
         }
         Ok(())
@@ -334,7 +334,9 @@ impl ModelFile {
                 predicted[row],
                 sd[row]
             );
-            return Err(Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP));
+            return Err(Diagnostic::new(codes::MODEL_NOT_FINITE, problem)
+                .with_location(Location::file(file))
+                .with_help(HELP));
         }
         Ok((predicted, sd))
     }

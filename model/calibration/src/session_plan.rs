@@ -1,6 +1,6 @@
 //! Plan of a session, and the answers of the recorded table to its questions.
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt};
 use pinswitch_friction::published;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -81,7 +81,7 @@ impl SessionPlan {
     /// A [`Diagnostic`] of the first invalid field, such as `questions[0].between[1]`.
     pub fn check(&self, is_known: impl Fn(&str) -> bool) -> Result<(), Diagnostic> {
         let refused = |field: String, value: String, problem: &str| {
-            Diagnostic::new(problem).with_location(Location::field(field, value))
+            Diagnostic::new(codes::PLAN_NOT_USABLE, problem).with_location(Location::field(field, value))
         };
         if !(self.minutes > 0.0 && self.minutes.is_finite()) {
             return Err(refused("minutes".to_owned(), self.minutes.to_string(), "must be above 0"));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use crate::{Location, excerpt, neutral_line};
+use crate::{Code, Location, excerpt, neutral_line};
 
 /// Most characters of a problem, of a line of help and of each cause: more would not be read.
 const LONGEST: usize = 520;
@@ -27,16 +27,17 @@ pub struct Change {
     pub value: String,
 }
 
-/// What is wrong, where, and what to do about it.
+/// What is wrong, where, and what to do about it, with the [`Code`] of its kind.
 ///
 /// Its [`Display`](fmt::Display) is one line, `location: problem; help`, for logs and tables; [`Diagnostic::render`] is
 /// what a person reads, and its serialisation what a program does.
-#[derive(Clone, Debug, Default, JsonSchema)]
+#[derive(Clone, Debug, JsonSchema)]
 #[schemars(
     with = "WrittenDiagnostic<'static>",
     description = "What is wrong, where, and what to do about it."
 )]
 pub struct Diagnostic {
+    code: Code,
     location: Option<Box<Location>>,
     problem: String,
     help: Option<String>,
@@ -46,21 +47,22 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A problem, in lower case and without a full stop, with the bound that was broken.
-    pub fn new(problem: impl Into<String>) -> Self {
-        Self { problem: problem.into(), ..Self::default() }
+    pub fn new(code: Code, problem: impl Into<String>) -> Self {
+        let problem = problem.into();
+        Self { code, location: None, problem, help: None, changes: Vec::new(), source: None }
     }
 
-    /// The message of an error of another library, which stays its source. A diagnostic is returned unchanged.
-    pub fn from_error(error: impl Error + Send + Sync + 'static) -> Self {
+    /// The message of an error of another library, which stays its source. A diagnostic is returned unchanged, with its
+    /// own code.
+    pub fn from_error(code: Code, error: impl Error + Send + Sync + 'static) -> Self {
         let error: Box<dyn Error + Send + Sync> = Box::new(error);
         let error = match error.downcast::<Self>() {
             Ok(diagnostic) => return *diagnostic,
             Err(error) => error,
         };
         let source: Arc<dyn Error + Send + Sync> = Arc::from(error);
-        let problem = source.to_string();
         // The error itself is the problem; what caused it follows.
-        Self { problem, source: Some(source), ..Self::default() }
+        Self { source: Some(Arc::clone(&source)), ..Self::new(code, source.to_string()) }
     }
 
     /// The same diagnostic at this location.
@@ -108,6 +110,11 @@ impl Diagnostic {
         self
     }
 
+    /// Kind of fault.
+    pub fn code(&self) -> Code {
+        self.code
+    }
+
     /// Where the problem is.
     pub fn location(&self) -> Option<&Location> {
         self.location.as_deref()
@@ -128,10 +135,10 @@ impl Diagnostic {
         &self.changes
     }
 
-    /// `LABEL: location: problem`, the line of the file with a caret, and `  help: ...`, without control characters and of
-    /// bounded length. The label is `error` or `warning`.
+    /// `LABEL: location: problem [code]`, the line of the file with a caret, and `  help: ...`, without control characters
+    /// and of bounded length. The label is `error` or `warning`.
     pub fn render(&self, label: &str) -> String {
-        let mut text = format!("{label}: {}", self.headline());
+        let mut text = format!("{label}: {} [{}]", self.headline(), self.code);
         if let Some(location) = &self.location {
             text.push_str(&location.shown_snippet());
         }
@@ -206,8 +213,8 @@ impl Error for Diagnostic {
 impl PartialEq for Diagnostic {
     /// Sources are compared by their messages.
     fn eq(&self, other: &Self) -> bool {
-        (&self.location, &self.problem, &self.help, &self.changes)
-            == (&other.location, &other.problem, &other.help, &other.changes)
+        (self.code, &self.location, &self.problem, &self.help, &self.changes)
+            == (other.code, &other.location, &other.problem, &other.help, &other.changes)
             && self.causes() == other.causes()
     }
 }
@@ -215,6 +222,7 @@ impl PartialEq for Diagnostic {
 impl Serialize for Diagnostic {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         WrittenDiagnostic {
+            code: self.code.name(),
             location: self.location(),
             problem: &self.problem,
             help: self.help(),
@@ -229,6 +237,8 @@ impl Serialize for Diagnostic {
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Diagnostic")]
 struct WrittenDiagnostic<'a> {
+    /// Kind of fault, which `pinswitch explain` describes.
+    code: &'a str,
     /// Where the problem is.
     #[serde(skip_serializing_if = "Option::is_none")]
     location: Option<&'a Location>,
@@ -245,30 +255,19 @@ struct WrittenDiagnostic<'a> {
     causes: Vec<String>,
 }
 
-impl From<String> for Diagnostic {
-    fn from(problem: String) -> Self {
-        Self::new(problem)
-    }
-}
-
-impl From<&str> for Diagnostic {
-    fn from(problem: &str) -> Self {
-        Self::new(problem)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codes::{CANNOT_WRITE, GROOVES_OVERLAP, OUT_OF_RANGE};
 
     #[test]
     fn a_diagnostic_is_two_parts() {
-        let diagnostic = Diagnostic::new("grooves overlap")
+        let diagnostic = Diagnostic::new(GROOVES_OVERLAP, "grooves overlap")
             .with_location(Location::field("segment.grooves", "40"))
             .with_help("lower it to 20");
         assert_eq!(
             diagnostic.render("error"),
-            "error: segment.grooves = 40: grooves overlap\n  help: lower it to 20"
+            "error: segment.grooves = 40: grooves overlap [grooves-overlap]\n  help: lower it to 20"
         );
         assert_eq!(diagnostic.to_string(), "segment.grooves = 40: grooves overlap; lower it to 20");
     }
@@ -276,43 +275,60 @@ mod tests {
     #[test]
     fn a_location_is_added_once() {
         let line = Location::in_text("a.toml", "[shell]\nwidth_mm = 1\n", 8..16).with_field("shell", "table");
-        let diagnostic = Diagnostic::new("too narrow").with_location(Location::field("shell.width_mm", "1"));
+        let diagnostic =
+            Diagnostic::new(OUT_OF_RANGE, "too narrow").with_location(Location::field("shell.width_mm", "1"));
         let placed = diagnostic.or_at(&line);
         assert_eq!(placed.to_string(), "a.toml:2:1: shell.width_mm = 1: too narrow");
         assert_eq!(placed.clone().or_at(&Location::line("b.toml", 7)), placed);
-        let without_field = Diagnostic::new("too narrow").or_at(&line);
+        let without_field = Diagnostic::new(OUT_OF_RANGE, "too narrow").or_at(&line);
         assert_eq!(without_field.to_string(), "a.toml:2:1: shell = table: too narrow");
     }
 
     #[test]
     fn causes_follow_the_problem() {
         let cause = std::io::Error::other("disk full");
-        let diagnostic = Diagnostic::new("cannot write shell.stl").with_source(cause);
-        assert_eq!(diagnostic.render("error"), "error: cannot write shell.stl\n  cause: disk full");
-        let same = Diagnostic::from_error(std::io::Error::other("disk full"));
-        assert_eq!(same.render("error"), "error: disk full");
-        let located = Diagnostic::new("is wrong").with_location(Location::file("a")).with_help("drop it");
-        assert_eq!(Diagnostic::from_error(located.clone()), located);
+        let diagnostic = Diagnostic::new(CANNOT_WRITE, "cannot write shell.stl").with_source(cause);
+        assert_eq!(
+            diagnostic.render("error"),
+            "error: cannot write shell.stl [cannot-write]\n  cause: disk full"
+        );
+        let same = Diagnostic::from_error(CANNOT_WRITE, std::io::Error::other("disk full"));
+        assert_eq!(same.render("error"), "error: disk full [cannot-write]");
+        let located =
+            Diagnostic::new(OUT_OF_RANGE, "is wrong").with_location(Location::file("a")).with_help("drop it");
+        assert_eq!(Diagnostic::from_error(CANNOT_WRITE, located.clone()), located);
     }
 
     #[test]
     fn foreign_text_is_short_and_neutral() {
         let problem = format!("\u{1b}[31m{}", "x".repeat(100_000));
-        let diagnostic = Diagnostic::new(problem).with_location(Location::file("\u{7}.csv"));
+        let diagnostic = Diagnostic::new(OUT_OF_RANGE, problem).with_location(Location::file("\u{7}.csv"));
         let text = diagnostic.render("error");
         assert!(text.chars().count() < 600 && !text.contains(char::is_control), "{text}");
     }
 
     #[test]
+    fn a_cut_line_keeps_its_code() {
+        let diagnostic = Diagnostic::new(OUT_OF_RANGE, "x ".repeat(100_000))
+            .with_location(Location::field("y".repeat(100_000), "z".repeat(100_000)))
+            .with_help("lower it");
+        let text = diagnostic.render("warning");
+        let first = text.lines().next().unwrap();
+        assert!(first.ends_with(" [out-of-range]") && first.chars().count() < 1200, "{first}");
+        assert!(!diagnostic.to_string().contains("out-of-range"));
+    }
+
+    #[test]
     fn json_names_every_part() {
         let change = Change { field: "segment.grooves".to_owned(), value: "20".to_owned() };
-        let diagnostic = Diagnostic::new("grooves overlap")
+        let diagnostic = Diagnostic::new(GROOVES_OVERLAP, "grooves overlap")
             .with_location(Location::line("mine.toml", 2).with_field("segment.grooves", "40"))
             .with_help("lower it to 20")
             .with_changes(vec![change]);
         assert_eq!(
             serde_json::to_value(&diagnostic).unwrap(),
             serde_json::json!({
+                "code": "grooves-overlap",
                 "location": {"file": "mine.toml", "line": 2, "field": "segment.grooves", "value": "40"},
                 "problem": "grooves overlap",
                 "help": "lower it to 20",

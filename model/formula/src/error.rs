@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes, excerpt};
 
 use crate::nearest::nearest;
 
@@ -13,6 +13,7 @@ const LONGEST_NAME: usize = 40;
 /// What is wrong in a formula, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulaError {
+    code: Code,
     span: Range<usize>,
     problem: String,
     help: Option<String>,
@@ -20,8 +21,8 @@ pub struct FormulaError {
 
 impl FormulaError {
     /// An error at these bytes of the formula.
-    pub fn new(span: Range<usize>, problem: impl Into<String>) -> Self {
-        Self { span, problem: problem.into(), help: None }
+    pub fn new(code: Code, span: Range<usize>, problem: impl Into<String>) -> Self {
+        Self { code, span, problem: problem.into(), help: None }
     }
 
     /// The same error with a remedy.
@@ -29,6 +30,11 @@ impl FormulaError {
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// Returns the kind of fault.
+    pub fn code(&self) -> Code {
+        self.code
     }
 
     /// Returns the bytes of the formula that are wrong; empty at the end of the formula.
@@ -66,7 +72,7 @@ impl FormulaError {
 impl From<&FormulaError> for Diagnostic {
     /// Returns the problem and the remedy, without a location.
     fn from(error: &FormulaError) -> Self {
-        diagnostic(&error.problem, error.help.as_deref())
+        diagnostic(error.code, &error.problem, error.help.as_deref())
     }
 }
 
@@ -83,14 +89,15 @@ impl std::error::Error for FormulaError {}
 /// Why a name has no meaning in a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
+    pub(crate) code: Code,
     pub(crate) problem: String,
     pub(crate) help: Option<String>,
 }
 
 impl NameError {
     /// An error about a name.
-    pub fn new(problem: impl Into<String>) -> Self {
-        Self { problem: problem.into(), help: None }
+    pub fn new(code: Code, problem: impl Into<String>) -> Self {
+        Self { code, problem: problem.into(), help: None }
     }
 
     /// The same error with a remedy.
@@ -98,6 +105,12 @@ impl NameError {
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// The same error of another kind.
+    #[must_use]
+    pub fn with_code(self, code: Code) -> Self {
+        Self { code, ..self }
     }
 
     /// A name that does not exist, with the nearest of the `known` ones, or all of them; `kind` is
@@ -109,11 +122,11 @@ impl NameError {
             Some(near) => format!("did you mean {near}?"),
             None => format!("use one of {}", known.join(", ")),
         };
-        Self { problem, help: Some(help) }
+        Self { code: codes::UNKNOWN_NAME, problem, help: Some(help) }
     }
 
     pub(crate) fn at(self, span: Range<usize>) -> FormulaError {
-        FormulaError { span, problem: self.problem, help: self.help }
+        FormulaError { code: self.code, span, problem: self.problem, help: self.help }
     }
 }
 
@@ -129,12 +142,12 @@ impl std::error::Error for NameError {}
 
 impl From<NameError> for Diagnostic {
     fn from(error: NameError) -> Self {
-        diagnostic(&error.problem, error.help.as_deref())
+        diagnostic(error.code, &error.problem, error.help.as_deref())
     }
 }
 
-fn diagnostic(problem: &str, help: Option<&str>) -> Diagnostic {
-    let diagnostic = Diagnostic::new(problem);
+fn diagnostic(code: Code, problem: &str, help: Option<&str>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(code, problem);
     match help {
         Some(help) => diagnostic.with_help(help),
         None => diagnostic,
@@ -178,7 +191,7 @@ mod tests {
             let string = 4..text.len();
             let span = span_in_toml(text, string.clone(), &(4..6));
             assert_eq!(&text[span], marked, "{text}");
-            let error = FormulaError::new(4..6, "unknown");
+            let error = FormulaError::new(codes::UNKNOWN_NAME, 4..6, "unknown");
             let location = error.to_diagnostic_in_toml("a.toml", text, string).location().cloned();
             assert!(
                 location.is_some_and(|l| l.file.as_deref() == Some("a.toml") && l.snippet.is_some()),

@@ -46,7 +46,7 @@
 //! let error = Formula::parse("k * laod_n", resolve).unwrap_err();
 //! assert_eq!(
 //!     error.to_diagnostic("k * laod_n").render("error"),
-//!     "error: unknown variable 'laod_n'\n\
+//!     "error: unknown variable 'laod_n' [unknown-name]\n\
 //!      \x20 1 | k * laod_n\n\
 //!      \x20   |     ^^^^^^\n\
 //!      \x20 help: did you mean load_n?"

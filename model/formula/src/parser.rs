@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use pinswitch_diagnostic::codes;
+
 use crate::names::is_function;
 use crate::token::{Token, tokens};
 use crate::tree::{FUNCTIONS, PAIRS, too_deep};
@@ -66,8 +68,12 @@ impl<N> Formula<N> {
     ) -> Result<Self, FormulaError> {
         let root = parsed(text, &mut resolve)?;
         if root.ty() == Type::Truth {
-            return Err(FormulaError::new(root.extent(), "expected a number, found a condition")
-                .with_help("multiply it by a number, such as k*(a < b)"));
+            return Err(FormulaError::new(
+                codes::FORMULA_SYNTAX,
+                root.extent(),
+                "expected a number, found a condition",
+            )
+            .with_help("multiply it by a number, such as k*(a < b)"));
         }
         Ok(Self { root })
     }
@@ -84,8 +90,12 @@ impl<N> Condition<N> {
     ) -> Result<Self, FormulaError> {
         let root = parsed(text, &mut resolve)?;
         if root.ty() == Type::Number {
-            return Err(FormulaError::new(root.extent(), "expected a condition, found a number")
-                .with_help("compare it with a bound, such as a >= 12"));
+            return Err(FormulaError::new(
+                codes::FORMULA_SYNTAX,
+                root.extent(),
+                "expected a condition, found a number",
+            )
+            .with_help("compare it with a bound, such as a >= 12"));
         }
         Ok(Self { root })
     }
@@ -97,7 +107,7 @@ fn parsed<N>(text: &str, resolve: &mut Resolve<'_, N>) -> Result<Node<N>, Formul
     let length = text.chars().count();
     if length > MAX_LENGTH {
         let problem = format!("formula of {length} characters, at most {MAX_LENGTH} are allowed");
-        return Err(FormulaError::new(0..0, problem).with_help("shorten it"));
+        return Err(FormulaError::new(codes::TOO_MANY_ENTRIES, 0..0, problem).with_help("shorten it"));
     }
     let tokens = tokens(text)?;
     let mut parser = Parser { text, tokens: &tokens, next: 0, resolve };
@@ -138,7 +148,7 @@ impl<'a, N> Parser<'a, '_, N> {
                 format!("'{}'", pinswitch_diagnostic::excerpt(text, 40))
             }
         };
-        FormulaError::new(span, format!("expected {expected}, found {found}"))
+        FormulaError::new(codes::FORMULA_SYNTAX, span, format!("expected {expected}, found {found}"))
     }
 
     /// Returns the remedy for an operand that is missing before the next token.
@@ -177,7 +187,7 @@ impl<'a, N> Parser<'a, '_, N> {
                 break;
             }
             if operator.is_comparison() && is_compared {
-                return Err(FormulaError::new(span, "comparisons cannot be chained")
+                return Err(FormulaError::new(codes::FORMULA_SYNTAX, span, "comparisons cannot be chained")
                     .with_help("join them with &&: 5 < x && x < 9"));
             }
             self.next += 1;
@@ -239,7 +249,8 @@ impl<'a, N> Parser<'a, '_, N> {
             Err(_) if is_function(name) => {
                 let values = if PAIRS.iter().any(|(pair, _)| *pair == name) { "a, b" } else { "x" };
                 let problem = format!("the function {name} needs brackets");
-                Err(FormulaError::new(span, problem).with_help(format!("write {name}({values})")))
+                Err(FormulaError::new(codes::FORMULA_SYNTAX, span, problem)
+                    .with_help(format!("write {name}({values})")))
             }
             Err(error) => Err(error.at(span)),
         }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use pinswitch_diagnostic::codes;
+
 use crate::FormulaError;
 
 /// One token.
@@ -56,18 +58,24 @@ fn number(text: &str, at: usize) -> Result<Token<'static>, FormulaError> {
     let value = text.parse().ok().filter(|v: &f64| v.is_finite());
     value.map(Token::Number).ok_or_else(|| {
         let shown = pinswitch_diagnostic::excerpt(text, 40);
-        FormulaError::new(at..at + text.len(), format!("'{shown}' is not a finite number"))
+        FormulaError::new(
+            codes::FORMULA_NOT_FINITE,
+            at..at + text.len(),
+            format!("'{shown}' is not a finite number"),
+        )
     })
 }
 
 fn unexpected(character: char, at: usize) -> FormulaError {
     let problem = format!("unexpected character '{}'", character.escape_debug());
-    FormulaError::new(at..at + character.len_utf8(), problem).with_help(match character {
-        '=' => "compare with ==",
-        '&' => "write && or 'and'",
-        '|' => "write || or 'or'",
-        _ => "use numbers, names, + - * / ^ < > = ! & | ( ) and commas",
-    })
+    FormulaError::new(codes::FORMULA_SYNTAX, at..at + character.len_utf8(), problem).with_help(
+        match character {
+            '=' => "compare with ==",
+            '&' => "write && or 'and'",
+            '|' => "write || or 'or'",
+            _ => "use numbers, names, + - * / ^ < > = ! & | ( ) and commas",
+        },
+    )
 }
 
 fn is_name_start(c: char) -> bool {

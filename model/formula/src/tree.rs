@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use pinswitch_diagnostic::codes;
+
 use crate::{FormulaError, MAX_DEPTH};
 
 /// Type of a value.
@@ -248,16 +250,21 @@ fn check_types<N>(span: &Range<usize>, kind: &Kind<N>) -> Result<(), FormulaErro
             (Type::Number, Type::Number) => Ok(()),
             (Type::Truth, Type::Truth) if matches!(operator, Operator::Equal | Operator::NotEqual) => Ok(()),
             (Type::Truth, Type::Truth) => {
-                Err(FormulaError::new(span.clone(), "truth values have no order").with_help(HELP))
-            }
-            (Type::Number, Type::Truth) => {
-                Err(FormulaError::new(b.extent(), "cannot compare a number with a truth value")
+                Err(FormulaError::new(codes::FORMULA_SYNTAX, span.clone(), "truth values have no order")
                     .with_help(HELP))
             }
-            (Type::Truth, Type::Number) => {
-                Err(FormulaError::new(b.extent(), "cannot compare a truth value with a number")
-                    .with_help(HELP))
-            }
+            (Type::Number, Type::Truth) => Err(FormulaError::new(
+                codes::FORMULA_SYNTAX,
+                b.extent(),
+                "cannot compare a number with a truth value",
+            )
+            .with_help(HELP)),
+            (Type::Truth, Type::Number) => Err(FormulaError::new(
+                codes::FORMULA_SYNTAX,
+                b.extent(),
+                "cannot compare a truth value with a number",
+            )
+            .with_help(HELP)),
         },
         Kind::Number(_) | Kind::Name(_) | Kind::Negated(_) | Kind::Call(..) | Kind::Binary(..) => Ok(()),
     }
@@ -269,11 +276,12 @@ fn expect_truth<N>(operand: &Node<N>, sign: &str) -> Result<(), FormulaError> {
         return Ok(());
     }
     let problem = format!("'{sign}' needs a condition, found a number");
-    Err(FormulaError::new(operand.extent(), problem).with_help("write a comparison, such as (a < b)"))
+    Err(FormulaError::new(codes::FORMULA_SYNTAX, operand.extent(), problem)
+        .with_help("write a comparison, such as (a < b)"))
 }
 
 pub(crate) fn too_deep(span: Range<usize>) -> FormulaError {
-    FormulaError::new(span, format!("more than {MAX_DEPTH} nested operations"))
+    FormulaError::new(codes::FORMULA_SYNTAX, span, format!("more than {MAX_DEPTH} nested operations"))
         .with_help("shorten the formula")
 }
 

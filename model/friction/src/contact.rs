@@ -1,6 +1,6 @@
 //! The contact of a tendon with a switch: the validated input of every prediction.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use crate::bed::Bed;
 use crate::pattern::PinPattern;
@@ -34,14 +34,15 @@ impl From<ContactError> for Diagnostic {
     fn from(error: ContactError) -> Self {
         match error {
             ContactError::WrapAngle { degrees } => {
-                Self::new(format!("must be above 0 and at most {MAX_WRAP_DEG}"))
+                Self::new(codes::OUT_OF_RANGE, format!("must be above 0 and at most {MAX_WRAP_DEG}"))
                     .with_location(Location::field("wrap angle (deg)", degrees.to_string()))
                     .with_help("give the angle over which the tendon touches the pulley")
             }
-            ContactError::NoPinInWrap { degrees } => {
-                Self::new(format!("no pin of the rigid proxy is within the wrap of {degrees:.2} deg"))
-                    .with_help("move a pin into the wrap, or use silicone")
-            }
+            ContactError::NoPinInWrap { degrees } => Self::new(
+                codes::NO_SUPPORT,
+                format!("no pin of the rigid proxy is within the wrap of {degrees:.2} deg"),
+            )
+            .with_help("move a pin into the wrap, or use silicone"),
         }
     }
 }

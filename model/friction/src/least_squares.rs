@@ -2,7 +2,7 @@
 //! differences.
 
 use nalgebra::{DMatrix, DVector};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// Largest number of steps.
 const MAX_STEPS: usize = 60;
@@ -35,8 +35,11 @@ pub enum LeastSquaresError {
 impl From<LeastSquaresError> for Diagnostic {
     fn from(error: LeastSquaresError) -> Self {
         let LeastSquaresError::Undetermined { parameters } = error;
-        Self::new(format!("the data do not determine the {parameters} parameters"))
-            .with_help("add observations, or fit fewer parameters")
+        Self::new(
+            codes::PHYSICS_NOT_CONVERGED,
+            format!("the data do not determine the {parameters} parameters"),
+        )
+        .with_help("add observations, or fit fewer parameters")
     }
 }
 

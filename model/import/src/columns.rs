@@ -16,6 +16,7 @@ use crate::sheet::Sheet;
 use crate::trials::find_trials;
 use crate::unit::{Dimension, Unit};
 use crate::vocabulary;
+use pinswitch_diagnostic::codes;
 
 /// What the cells of a column are.
 #[derive(Clone, Copy, Debug, Default)]
@@ -244,6 +245,7 @@ fn ask_for_loads(columns: &[Column], map: &Map, questions: &mut Vec<Question>) {
         either.iter().map(option).collect::<Vec<_>>().join("\n")
     };
     questions.push(Question::new(
+        codes::AMBIGUOUS_NUMBER,
         format!("the load in the name '{}'", first.name),
         [("a decimal separator".to_owned(), answer(0)), ("thousands".to_owned(), answer(1))],
     ));
@@ -284,6 +286,7 @@ fn ask_for_numbers(columns: &[Column], map: &Map, questions: &mut Vec<Question>)
     // Trials count from 1.
     let rank = |number: u32| 1 + numbers.iter().filter(|other| **other < number).count();
     questions.push(Question::new(
+        codes::AMBIGUOUS_COLUMN,
         format!("the numbers {} in the names of columns", shown.join(", ")),
         [
             (
@@ -342,7 +345,7 @@ fn remove_duplicates(columns: &mut [Column], questions: &mut Vec<Question>) {
                     others.map(|other| format!("column.{}=ignore", reference(other))).collect();
                 (format!("{} is it", shown(column)), option.join("\n"))
             });
-            questions.push(Question::new(problem, readings));
+            questions.push(Question::new(codes::AMBIGUOUS_COLUMN, problem, readings));
         }
     }
 }

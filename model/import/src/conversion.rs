@@ -9,6 +9,7 @@ use crate::quantity::Quantity;
 use crate::question::Question;
 use crate::sheet::Sheet;
 use crate::unit::{Dimension, NEWTON_PER_GRAM, Unit};
+use pinswitch_diagnostic::codes;
 
 /// Shortest usual time between two samples that is assumed to be in seconds: that of 10 kHz, less rounding. Days, as spreadsheets
 /// count them, have shorter ones.
@@ -42,7 +43,7 @@ pub(crate) fn set_factor(
             (format!("it is in {}", row.name), format!("unit.{name}={}", row.name)),
             (format!("it is in {}, as in the map", unit.name), format!("unit.{name}={}", unit.name)),
         ];
-        questions.push(Question::new(problem, readings));
+        questions.push(Question::new(codes::UNKNOWN_UNIT, problem, readings));
         return;
     }
     if quantity.dimensions().is_empty() || column.is_clock {
@@ -73,7 +74,7 @@ pub(crate) fn set_factor(
             ),
             ("the column is not needed".to_owned(), format!("column.{}=ignore", reference(column))),
         ];
-        questions.push(Question::new(problem, readings));
+        questions.push(Question::new(codes::UNKNOWN_UNIT, problem, readings));
         return;
     }
     match (quantity, unit.dimension) {
@@ -90,7 +91,7 @@ pub(crate) fn set_factor(
                 ),
                 ("the column is not needed".to_owned(), format!("column.{}=ignore", reference(column))),
             ];
-            questions.push(Question::new(problem, readings));
+            questions.push(Question::new(codes::UNKNOWN_UNIT, problem, readings));
         }
         (Quantity::Position, Dimension::Angle) => {
             column.ignore("an angle: its millimetres per degree are the option factor.NAME")
@@ -117,7 +118,7 @@ pub(crate) fn set_factor(
                 ("they are shares: 1 is the full speed".to_owned(), format!("factor.{name}=100")),
                 ("they are percent: 1 is a hundredth of the full speed".to_owned(), format!("unit.{name}=%")),
             ];
-            questions.push(Question::new(problem, readings));
+            questions.push(Question::new(codes::UNKNOWN_UNIT, problem, readings));
         }
         (Quantity::Force, Dimension::Mass) => column.factor = unit.factor.times(NEWTON_PER_GRAM),
         _ => column.factor = unit.factor,
@@ -138,6 +139,7 @@ fn unit_and_factor(column: &Column, choice: &ColumnChoice) -> Option<Question> {
     }
     let name = reference(column);
     Some(Question::new(
+        codes::UNKNOWN_UNIT,
         format!("column '{}' has the unit {} and the factor {factor}", column.name, unit.name),
         [
             (
@@ -201,7 +203,7 @@ fn unknown_unit(column: &Column) -> Question {
     };
     if column.quantity == Quantity::Force && column.is_wide() {
         let readings = units.iter().map(|unit| ((*unit).to_owned(), format!("force_unit={unit}")));
-        return Question::new("the columns of forces have no unit", readings);
+        return Question::new(codes::UNKNOWN_UNIT, "the columns of forces have no unit", readings);
     }
     let problem = format!("column '{}' has no unit", column.name);
     let mut readings: Vec<_> =
@@ -213,5 +215,5 @@ fn unknown_unit(column: &Column) -> Question {
     if !matches!(column.quantity, Quantity::Load | Quantity::Force) {
         readings.push(("leave it out".to_owned(), format!("column.{}=ignore", reference(column))));
     }
-    Question::new(problem, readings)
+    Question::new(codes::UNKNOWN_UNIT, problem, readings)
 }

@@ -1,6 +1,6 @@
 //! The delimiter of a text, and its cells.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::clock::{self, DateOrder};
 use crate::number::{is_missing, sign_evidence};
@@ -206,11 +206,10 @@ fn split_line(line: &str, delimiter: Delimiter) -> Vec<String> {
 pub(crate) fn cells(text: &str, delimiter: Delimiter, first_line: usize) -> Result<Sheet, Diagnostic> {
     let longest = text.lines().enumerate().max_by_key(|(_, line)| line.len());
     if let Some((i, line)) = longest.filter(|(_, line)| line.len() > MAX_LINE) {
-        return Err(Diagnostic::new(format!(
-            "line {}: {} bytes, at most {MAX_LINE} are read",
-            first_line + i + 1,
-            line.len()
-        ))
+        return Err(Diagnostic::new(
+            codes::FILE_TOO_LARGE,
+            format!("line {}: {} bytes, at most {MAX_LINE} are read", first_line + i + 1, line.len()),
+        )
         .with_help("give a text with one row in each line"));
     }
     let mut sheet = Sheet::default();
@@ -239,7 +238,7 @@ pub(crate) fn cells(text: &str, delimiter: Delimiter, first_line: usize) -> Resu
     let (mut counted, mut line) = (0, first_line + 1);
     loop {
         let start = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
-        if !reader.read_record(&mut record).map_err(Diagnostic::from_error)? {
+        if !reader.read_record(&mut record).map_err(|e| Diagnostic::from_error(codes::DAMAGED_FILE, e))? {
             return Ok(sheet);
         }
         let bytes = text.as_bytes();

@@ -2,7 +2,7 @@
 
 use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// Bytes in which a text without a mark is examined for UTF-16.
 const SAMPLE: usize = 4096;
@@ -17,7 +17,7 @@ pub(crate) fn decode(bytes: &[u8], label: Option<&str>) -> Result<(String, Strin
     let (encoding, has_mark) = match label {
         Some(label) => {
             let encoding = Encoding::for_label(label.as_bytes()).ok_or_else(|| {
-                Diagnostic::new(format!("encoding: unknown encoding '{label}'"))
+                Diagnostic::new(codes::UNKNOWN_WORD, format!("encoding: unknown encoding '{label}'"))
                     .with_help("use a name such as utf-8, utf-16le, iso-8859-1 or windows-1252")
             })?;
             (encoding, false)
@@ -32,7 +32,7 @@ pub(crate) fn decode(bytes: &[u8], label: Option<&str>) -> Result<(String, Strin
         return Err(binary("contains NUL bytes"));
     }
     if has_errors && label.is_some() {
-        return Err(Diagnostic::new(format!("the text is not {}", encoding.name()))
+        return Err(Diagnostic::new(codes::NOT_A_TEXT, format!("the text is not {}", encoding.name()))
             .with_help("leave out the encoding, or name another one"));
     }
     let name = if has_mark { format!("{} with mark", encoding.name()) } else { encoding.name().to_owned() };
@@ -40,7 +40,7 @@ pub(crate) fn decode(bytes: &[u8], label: Option<&str>) -> Result<(String, Strin
 }
 
 fn binary(problem: &str) -> Diagnostic {
-    Diagnostic::new(format!("{problem}: this is not a text"))
+    Diagnostic::new(codes::NOT_A_TEXT, format!("{problem}: this is not a text"))
         .with_help("export the data as CSV, or give an LVM, Excel, OpenDocument or Parquet file")
 }
 

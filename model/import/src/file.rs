@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use crate::clock::{self, DateOrder};
 use crate::column::{self, Column};
@@ -96,7 +96,7 @@ impl FileReading {
         };
         if let Some((missing, _)) = map.columns.iter().find(|(_, choice)| !is_used(choice)) {
             let known: Vec<&str> = header.names.iter().map(String::as_str).collect();
-            return Err(Diagnostic::new(format!("no column '{missing}'"))
+            return Err(Diagnostic::new(codes::UNKNOWN_COLUMN, format!("no column '{missing}'"))
                 .with_location(Location::file(name))
                 .with_help(format!("the columns are: {}", known.join(", "))));
         }
@@ -221,7 +221,11 @@ impl FileReading {
                     shown(0),
                     shown(1)
                 );
-                self.questions.push(Question::new(problem, sign_answers("decimal comma", "decimal point")));
+                self.questions.push(Question::new(
+                    codes::AMBIGUOUS_NUMBER,
+                    problem,
+                    sign_answers("decimal comma", "decimal point"),
+                ));
                 DecimalSign::Point
             }
             // The sign of one column is not that of another one, which has it before three digits in every number.
@@ -290,7 +294,7 @@ impl FileReading {
             let line = self.recording.sheet.line(first_row + i);
             let count =
                 if bad.len() > 1 { format!(" ({} rows are like this)", bad.len()) } else { String::new() };
-            return Err(Diagnostic::new(format!("{problem}{count}"))
+            return Err(Diagnostic::new(codes::UNUSABLE_CELLS, format!("{problem}{count}"))
                 .with_location(Location::line(&self.name, line).with_field(column.clone(), cell.clone()))
                 .with_help("correct the cell, or leave out such rows with --set bad_rows=skip"));
         }
@@ -326,9 +330,11 @@ impl FileReading {
             } else {
                 format!("no column is the force; the columns are {}", names.join(", "))
             };
-            return Err(Diagnostic::new(problem).with_location(Location::file(&self.name)).with_help(
-                "name the column of the force, as in --set 'column.NAME=force' --set unit.NAME=N",
-            ));
+            return Err(Diagnostic::new(codes::NO_FORCE_COLUMN, problem)
+                .with_location(Location::file(&self.name))
+                .with_help(
+                    "name the column of the force, as in --set 'column.NAME=force' --set unit.NAME=N",
+                ));
         }
         Ok(())
     }
@@ -352,7 +358,7 @@ impl FileReading {
         };
         let problem =
             format!("another header ({}) than the first one ({})", shown(&other), shown(&self.header));
-        Err(Diagnostic::new(problem)
+        Err(Diagnostic::new(codes::SEVERAL_TABLES, problem)
             .with_location(Location::line(&self.name, sheet.line(row)))
             .with_help("give each block of columns in a file of its own; `import` takes several files"))
     }
@@ -376,9 +382,12 @@ impl FileReading {
                     "leave out --set {key}, or the column with --set 'column.{}=ignore'",
                     column::reference(column)
                 );
-                return Err(Diagnostic::new(format!("the column '{}' has other values", column.name))
-                    .with_location(Location::field(key.clone(), value.clone()))
-                    .with_help(help));
+                return Err(Diagnostic::new(
+                    codes::UNUSABLE_CELLS,
+                    format!("the column '{}' has other values", column.name),
+                )
+                .with_location(Location::field(key.clone(), value.clone()))
+                .with_help(help));
             }
         }
         Ok(())
@@ -531,7 +540,7 @@ impl FileReading {
                 ("samples of a log".to_owned(), "kind=log".to_owned()),
                 ("a steady reading in each row".to_owned(), "kind=table".to_owned()),
             ];
-            self.questions.push(Question::new(problem, readings));
+            self.questions.push(Question::new(codes::AMBIGUOUS_COLUMN, problem, readings));
         }
     }
 
@@ -561,7 +570,7 @@ impl FileReading {
             ("minutes and seconds".to_owned(), "clock=mm:ss".to_owned()),
         ];
         let problem = format!("column '{}': '{cell}' has two parts", column.name);
-        self.questions.push(Question::new(problem, readings));
+        self.questions.push(Question::new(codes::AMBIGUOUS_NUMBER, problem, readings));
     }
 
     /// The order of day and month matters only if the date changes within the file.
@@ -583,6 +592,7 @@ impl FileReading {
                 ("the month is first".to_owned(), "date=mdy".to_owned()),
             ];
             self.questions.push(Question::new(
+                codes::AMBIGUOUS_NUMBER,
                 format!("column '{}': the order of day and month in '{cell}'", column.name),
                 readings,
             ));
@@ -603,7 +613,11 @@ fn separator_question(first: Option<&(usize, String)>, separator: &str) -> Quest
         format!("it is {value}")
     };
     let problem = format!("'{cell}' in line {line} has a decimal {separator} or a thousands separator");
-    Question::new(problem, sign_answers(&value(DecimalSign::Comma), &value(DecimalSign::Point)))
+    Question::new(
+        codes::AMBIGUOUS_NUMBER,
+        problem,
+        sign_answers(&value(DecimalSign::Comma), &value(DecimalSign::Point)),
+    )
 }
 
 /// What a row is.
@@ -618,19 +632,22 @@ fn no_header(name: &str, recording: &Recording, map: &Map) -> Diagnostic {
     let sheet = &recording.sheet;
     let location = Location::file(name);
     if let Some(line) = map.header_line {
-        return Diagnostic::new(format!("no names followed by numbers in line {line}"))
-            .with_location(location)
-            .with_help("give the line of the column names");
+        return Diagnostic::new(
+            codes::NO_TABLE_FOUND,
+            format!("no names followed by numbers in line {line}"),
+        )
+        .with_location(location)
+        .with_help("give the line of the column names");
     }
     let has_data = (0..sheet.len()).take(1_000).any(|row| header::is_data(sheet, row));
     if has_data {
         let width =
             (0..sheet.len()).find(|row| header::is_data(sheet, *row)).map_or(0, |row| sheet.width(row));
-        return Diagnostic::new(format!("the {width} columns have no names"))
+        return Diagnostic::new(codes::NO_TABLE_FOUND, format!("the {width} columns have no names"))
             .with_location(location)
             .with_help("name them in their order, as in --set names=time_s,force_N");
     }
-    Diagnostic::new("no line with numbers")
+    Diagnostic::new(codes::NO_TABLE_FOUND, "no line with numbers")
         .with_location(location)
         .with_help("give a file with a line of names and lines of numbers")
 }
@@ -651,5 +668,9 @@ fn too_few_names(name: &str, recording: &Recording, header: &Header) -> Option<D
         "name every cell, as in --set names=index,time_s,force_N"
     };
     let problem = format!("{width} cells, but {count} columns have names");
-    Some(Diagnostic::new(problem).with_location(Location::line(name, sheet.line(row))).with_help(help))
+    Some(
+        Diagnostic::new(codes::NO_TABLE_FOUND, problem)
+            .with_location(Location::line(name, sheet.line(row)))
+            .with_help(help),
+    )
 }

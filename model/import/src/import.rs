@@ -1,6 +1,6 @@
 //! Import of files with a map.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_measurements::table::PlateauTable;
 
 use crate::column::Column;
@@ -92,7 +92,8 @@ pub fn import_with_pattern(
         files.push(read_file(source, map, pattern)?);
     }
     let Some(first) = files.first() else {
-        return Err(Diagnostic::new("no file to import").with_help("name a file, or a folder with files"));
+        return Err(Diagnostic::new(codes::FILES_DO_NOT_JOIN, "no file to import")
+            .with_help("name a file, or a folder with files"));
     };
     let kind = first.kind;
     let mut questions: Vec<Question> = Vec::new();
@@ -103,7 +104,7 @@ pub fn import_with_pattern(
     }
     if let Some(other) = files.iter().find(|file| file.kind != kind).filter(|_| questions.is_empty()) {
         let problem = format!("{} is a {}, and this is a {}", first.name, kind.as_str(), other.kind.as_str());
-        return Err(Diagnostic::new(problem)
+        return Err(Diagnostic::new(codes::FILES_DO_NOT_JOIN, problem)
             .with_location(Location::file(&other.name))
             .with_help("import the two separately"));
     }
@@ -131,7 +132,7 @@ fn read_file(source: &Source<'_>, map: &Map, pattern: Option<&Pattern>) -> Resul
     let base = source.name.rsplit(['/', '\\']).next().unwrap_or(source.name);
     let constants = match pattern.map(|pattern| pattern.values(base)) {
         Some(None) => {
-            return Err(Diagnostic::new("the name does not match the pattern")
+            return Err(Diagnostic::new(codes::PATTERN_MISMATCH, "the name does not match the pattern")
                 .with_location(Location::file(source.name))
                 .with_help("leave the file out, or change --pattern"));
         }
@@ -159,9 +160,12 @@ fn build_table(
     let mut table: Table = table::build(files, map, questions);
     let name = files.first().map_or("", |file| file.name.as_str());
     if table.len() > MAX_READINGS {
-        return Err(Diagnostic::new(format!("{} readings, at most {MAX_READINGS} are a table", table.len()))
-            .with_location(Location::file(name))
-            .with_help("read the file as a log with --set kind=log"));
+        return Err(Diagnostic::new(
+            codes::FILE_TOO_LARGE,
+            format!("{} readings, at most {MAX_READINGS} are a table", table.len()),
+        )
+        .with_location(Location::file(name))
+        .with_help("read the file as a log with --set kind=log"));
     }
     understanding.rows = table.len();
     understanding.preview = table.lines(PREVIEW_ROWS).lines().map(str::to_owned).collect();
@@ -181,9 +185,8 @@ fn build_table(
             .push("the wrap angle is not known: give it with --set wrap_angle_deg=180".to_owned());
     }
     if questions.is_empty() && table.len() == 0 {
-        return Err(
-            Diagnostic::new("no row has a load, a direction and a force").with_location(Location::file(name))
-        );
+        return Err(Diagnostic::new(codes::TABLE_WITHOUT_ROWS, "no row has a load, a direction and a force")
+            .with_location(Location::file(name)));
     }
     // Values outside the bounds of a plateau table, and repeated readings.
     if questions.is_empty() {
@@ -206,7 +209,7 @@ fn build_log(
     let [file] = files else {
         let names: Vec<&str> = files.iter().take(MAX_NAMES).map(|file| file.name.as_str()).collect();
         let more = if files.len() > MAX_NAMES { " and others" } else { "" };
-        return Err(Diagnostic::new(format!("{} logs: {}{more}", files.len(), names.join(", ")))
+        return Err(Diagnostic::new(codes::FILES_DO_NOT_JOIN, format!("{} logs: {}{more}", files.len(), names.join(", ")))
             .with_help(
                 "import each log separately, and list the results in run.toml; for tables whose names have the load, give \
                  --pattern, such as --pattern '{load_g}g_{trial}.csv'",

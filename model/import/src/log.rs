@@ -1,6 +1,6 @@
 //! Logs: force over time.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::Direction;
 
 use crate::decimal::Decimal;
@@ -83,15 +83,16 @@ pub(crate) fn build(
 ) -> Result<LogColumns, Diagnostic> {
     let forces: Vec<_> = file.forces().collect();
     let [force] = forces.as_slice() else {
-        return Err(Diagnostic::new(format!(
-            "a log has one column of forces, and this one has {}",
-            forces.len()
-        ))
+        return Err(Diagnostic::new(
+            codes::NO_FORCE_COLUMN,
+            format!("a log has one column of forces, and this one has {}", forces.len()),
+        )
         .with_location(Location::file(&file.name))
         .with_help("leave out the others, as in --set 'column.NAME=ignore'"));
     };
     let Some((times, is_clock)) = times(file, map) else {
         return Err(Diagnostic::new(
+            codes::NO_FORCE_COLUMN,
             "no column is the time, and no load or direction makes it a plateau table",
         )
         .with_location(Location::file(&file.name))
@@ -143,9 +144,8 @@ pub(crate) fn build(
         log.direction = Some(used.iter().map(|row| of(cell(row))).collect());
     }
     if log.time_s.is_empty() {
-        return Err(
-            Diagnostic::new("no row has a time and a force").with_location(Location::file(&file.name))
-        );
+        return Err(Diagnostic::new(codes::TABLE_WITHOUT_ROWS, "no row has a time and a force")
+            .with_location(Location::file(&file.name)));
     }
     Ok(log)
 }

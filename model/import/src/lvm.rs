@@ -2,7 +2,7 @@
 //!
 //! Source: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)".
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use crate::clock::{self, DateOrder};
 use crate::decimal::Decimal;
@@ -106,7 +106,7 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
                         .find(|cell| !cell.is_empty() && **cell != key)
                 {
                     let problem = format!("channels with different times: {key} and {other}");
-                    return Err(Diagnostic::new(problem)
+                    return Err(Diagnostic::new(codes::SEVERAL_TABLES, problem)
                         .with_location(Location { line: Some(i + 1), ..Location::default() })
                         .with_help("export the channels with one time column: X_Columns One"));
                 }
@@ -177,7 +177,7 @@ pub(crate) fn read(text: &str) -> Result<LvmSheet, Diagnostic> {
         }
     }
     if segments == 0 || sheet.len() < 2 {
-        return Err(Diagnostic::new("the LVM file has no data after its headers")
+        return Err(Diagnostic::new(codes::NO_TABLE_FOUND, "the LVM file has no data after its headers")
             .with_help("export the measurement again, with its column headers"));
     }
     if segments > 1 {

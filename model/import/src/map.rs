@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_friction::Direction;
 
 use crate::clock::DateOrder;
@@ -127,14 +127,15 @@ impl Map {
     /// A [`Diagnostic`] for an unknown key or an invalid value.
     pub fn set(&mut self, assignment: &str) -> Result<(), Diagnostic> {
         let Some((key, value)) = assignment.split_once('=') else {
-            return Err(Diagnostic::new(format!("'{assignment}' is not KEY=VALUE"))
+            return Err(Diagnostic::new(codes::MALFORMED_VALUE, format!("'{assignment}' is not KEY=VALUE"))
                 .with_help(format!("the keys are {KEYS}")));
         };
         self.set_key(key.trim(), value.trim())
     }
 
     pub(crate) fn set_key(&mut self, key: &str, value: &str) -> Result<(), Diagnostic> {
-        let words = |expected: &str| refused(key, value, &format!("expected {expected}"), "");
+        let words =
+            |expected: &str| refused(codes::UNKNOWN_WORD, key, value, &format!("expected {expected}"), "");
         match key {
             "kind" => {
                 self.kind = Some(match value {
@@ -222,7 +223,7 @@ impl Map {
             "factor" => ColumnChoice { factor: Some(parse_number(key, value)?), ..ColumnChoice::default() },
             "fill" => match value {
                 "down" => ColumnChoice { is_filled: true, ..ColumnChoice::default() },
-                _ => return Err(refused(key, value, "expected down", "")),
+                _ => return Err(refused(codes::UNKNOWN_WORD, key, value, "expected down", "")),
             },
             "offset" => ColumnChoice { offset: Some(parse_number(key, value)?), ..ColumnChoice::default() },
             "direction" => {
@@ -234,7 +235,7 @@ impl Map {
             "load" => ColumnChoice { load: Some(value.to_owned()), ..ColumnChoice::default() },
             "repetition" => ColumnChoice {
                 repetition: Some(value.parse().map_err(|_| {
-                    Diagnostic::new("not a whole number")
+                    Diagnostic::new(codes::MALFORMED_VALUE, "not a whole number")
                         .with_location(Location::field(key, value))
                         .with_help("give the number of the trial, from 1 on")
                 })?),
@@ -276,10 +277,10 @@ impl Map {
         let value = if is_number { parse_number(key, value)?.to_string() } else { value.to_owned() };
         match *key {
             "substrate" if !matches!(value.as_str(), "plain" | "silicone" | "abs") => {
-                return Err(refused(key, &value, "expected plain, silicone or abs", ""));
+                return Err(refused(codes::UNKNOWN_WORD, key, &value, "expected plain, silicone or abs", ""));
             }
             "sweep" if !matches!(value.as_str(), "up" | "down") => {
-                return Err(refused(key, &value, "expected up or down", ""));
+                return Err(refused(codes::UNKNOWN_WORD, key, &value, "expected up or down", ""));
             }
             "direction" => {
                 parse_direction(key, &value)?;
@@ -319,8 +320,8 @@ pub(crate) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-pub(crate) fn refused(key: &str, value: &str, problem: &str, help: &str) -> Diagnostic {
-    Diagnostic::new(problem).with_location(Location::field(key, value)).with_help(help)
+pub(crate) fn refused(code: Code, key: &str, value: &str, problem: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(code, problem).with_location(Location::field(key, value)).with_help(help)
 }
 
 pub(crate) fn in_table(table: &str, diagnostic: Diagnostic) -> Diagnostic {
@@ -333,23 +334,36 @@ pub(crate) fn in_table(table: &str, diagnostic: Diagnostic) -> Diagnostic {
 }
 
 fn unknown(key: &str, value: &str) -> Diagnostic {
-    refused(key, value, "unknown key", &format!("the keys are {KEYS}"))
+    refused(codes::UNKNOWN_FIELD, key, value, "unknown key", &format!("the keys are {KEYS}"))
 }
 
 pub(crate) fn parse_quantity(key: &str, word: &str) -> Result<Quantity, Diagnostic> {
-    Quantity::parse(word)
-        .ok_or_else(|| refused(key, word, "unknown quantity", &format!("use one of {}", Quantity::words())))
+    Quantity::parse(word).ok_or_else(|| {
+        refused(
+            codes::UNKNOWN_WORD,
+            key,
+            word,
+            "unknown quantity",
+            &format!("use one of {}", Quantity::words()),
+        )
+    })
 }
 
 pub(crate) fn parse_unit(key: &str, word: &str) -> Result<&'static Unit, Diagnostic> {
     Unit::parse(word).ok_or_else(|| {
-        refused(key, word, "unknown unit", "use a unit such as N, kN, kgf, lbf, kg, ms, mm, deg or counts")
+        refused(
+            codes::UNKNOWN_UNIT,
+            key,
+            word,
+            "unknown unit",
+            "use a unit such as N, kN, kgf, lbf, kg, ms, mm, deg or counts",
+        )
     })
 }
 
 pub(crate) fn parse_number(key: &str, text: &str) -> Result<Decimal, Diagnostic> {
     let number = Decimal::parse(text).filter(|number| number.to_f64().is_finite());
-    number.ok_or_else(|| refused(key, text, "not a number", "write it like 12.5"))
+    number.ok_or_else(|| refused(codes::MALFORMED_VALUE, key, text, "not a number", "write it like 12.5"))
 }
 
 fn positive(key: &str, text: &str) -> Result<Decimal, Diagnostic> {
@@ -357,7 +371,7 @@ fn positive(key: &str, text: &str) -> Result<Decimal, Diagnostic> {
     if number.to_f64() > 0.0 {
         Ok(number)
     } else {
-        Err(refused(key, text, "not above 0", "give a value above 0"))
+        Err(refused(codes::OUT_OF_RANGE, key, text, "not above 0", "give a value above 0"))
     }
 }
 
@@ -365,7 +379,7 @@ pub(crate) fn parse_direction(key: &str, word: &str) -> Result<Direction, Diagno
     match word {
         "concentric" => Ok(Direction::Concentric),
         "eccentric" => Ok(Direction::Eccentric),
-        _ => Err(refused(key, word, "expected concentric or eccentric", "")),
+        _ => Err(refused(codes::UNKNOWN_WORD, key, word, "expected concentric or eccentric", "")),
     }
 }
 

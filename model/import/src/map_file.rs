@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_measurements::{locate_field, toml_error};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -133,7 +133,7 @@ impl Map {
 
     fn from_entries(entries: MapFile) -> Result<Self, Diagnostic> {
         if entries.schema != SCHEMA {
-            return Err(Diagnostic::new("unknown schema")
+            return Err(Diagnostic::new(codes::OTHER_KIND_OF_FILE, "unknown schema")
                 .with_location(Location::field("schema", format!("{:?}", entries.schema)))
                 .with_help(format!("write schema = \"{SCHEMA}\"")));
         }
@@ -168,6 +168,7 @@ impl Map {
                 toml::Value::Float(number) => number.to_string(),
                 other => {
                     return Err(refused(
+                        codes::WRONG_TYPE,
                         &format!("constants.{key}"),
                         &other.to_string(),
                         "expected a string or a number",
@@ -195,7 +196,15 @@ impl Map {
                 is_filled: match entry.fill.as_deref() {
                     None => false,
                     Some("down") => true,
-                    Some(other) => return Err(refused(&at("fill"), &quoted(other), "expected \"down\"", "")),
+                    Some(other) => {
+                        return Err(refused(
+                            codes::UNKNOWN_WORD,
+                            &at("fill"),
+                            &quoted(other),
+                            "expected \"down\"",
+                            "",
+                        ));
+                    }
                 },
                 factor: entry.factor.map(|f| parse_number(&at("factor"), &f.to_string())).transpose()?,
                 offset: entry.offset.map(|f| parse_number(&at("offset"), &f.to_string())).transpose()?,
@@ -212,6 +221,7 @@ impl Map {
             };
             if map.columns.iter().any(|(name, _)| *name == entry.name) {
                 return Err(refused(
+                    codes::DUPLICATE_ENTRY,
                     &at("name"),
                     &format!("{:?}", entry.name),
                     "the column is listed twice",

@@ -3,8 +3,11 @@
 /// Reads the columns of a Parquet file.
 #[cfg(not(feature = "parquet"))]
 pub(crate) fn read(_: &[u8]) -> Result<crate::recording::Recording, pinswitch_diagnostic::Diagnostic> {
-    Err(pinswitch_diagnostic::Diagnostic::new("this program was built without Parquet files")
-        .with_help("export the table as CSV"))
+    Err(pinswitch_diagnostic::Diagnostic::new(
+        pinswitch_diagnostic::codes::FEATURE_NOT_BUILT,
+        "this program was built without Parquet files",
+    )
+    .with_help("export the table as CSV"))
 }
 
 #[cfg(feature = "parquet")]
@@ -16,7 +19,7 @@ mod reader {
     use parquet::errors::ParquetError;
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
-    use pinswitch_diagnostic::Diagnostic;
+    use pinswitch_diagnostic::{Diagnostic, codes};
 
     use crate::number::DecimalSign;
     use crate::recording::Recording;
@@ -32,7 +35,7 @@ mod reader {
     /// A [`Diagnostic`] for a damaged file and for a compression that this program does not have.
     pub(crate) fn read(bytes: &[u8]) -> Result<Recording, Diagnostic> {
         let damaged = |error: ParquetError| {
-            Diagnostic::new("cannot read the Parquet file")
+            Diagnostic::new(codes::DAMAGED_FILE, "cannot read the Parquet file")
                 .with_help("write it without compression or with Snappy, or export the table as CSV")
                 .with_source(error)
         };
@@ -85,7 +88,7 @@ mod reader {
         if cells <= MAX_CELLS && text_bytes <= MAX_TEXT {
             return Ok(());
         }
-        Err(Diagnostic::new("the Parquet file is too large")
+        Err(Diagnostic::new(codes::FILE_TOO_LARGE, "the Parquet file is too large")
             .with_help(format!("write at most {MAX_CELLS} cells with {} MB of text", MAX_TEXT >> 20)))
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use crate::decimal::Decimal;
 use crate::name;
@@ -47,7 +47,7 @@ impl Pattern {
     /// A [`Diagnostic`] for an unknown field and for braces without a partner.
     pub fn parse(text: &str) -> Result<Self, Diagnostic> {
         let refused = |problem: &str| {
-            Diagnostic::new(problem)
+            Diagnostic::new(codes::PATTERN_MISMATCH, problem)
                 .with_location(Location::field("--pattern", text))
                 .with_help("write it like \"{load_g}g_{trial}.csv\"; fields are load_g, load_kg, load_N, direction, trial, \
                     angle_deg, speed_pct, series, session, mount, operator, specimen and _")

@@ -1,6 +1,6 @@
 //! Decisions that only a person can take.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Code, Diagnostic};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -8,6 +8,9 @@ use serde::Serialize;
 /// each.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Question {
+    /// Code of the kind of uncertainty.
+    #[schemars(with = "String")]
+    pub code: Code,
     /// What is uncertain.
     pub problem: String,
     /// Each reading of the file.
@@ -26,6 +29,7 @@ pub struct Answer {
 impl Question {
     /// Creates a question from its readings and the options of each, one a line.
     pub(crate) fn new(
+        code: Code,
         problem: impl Into<String>,
         answers: impl IntoIterator<Item = (String, String)>,
     ) -> Self {
@@ -33,7 +37,7 @@ impl Question {
             reading,
             options: options.lines().map(str::to_owned).collect(),
         });
-        Self { problem: problem.into(), answers: answers.collect() }
+        Self { code, problem: problem.into(), answers: answers.collect() }
     }
 
     /// Returns the question as an error, whose help lists the options.
@@ -46,6 +50,7 @@ impl Question {
                 format!("{} ({})", options.join(" "), answer.reading)
             })
             .collect();
-        Diagnostic::new(self.problem.clone()).with_help(format!("decide with {}", answers.join("\nor with ")))
+        Diagnostic::new(self.code, self.problem.clone())
+            .with_help(format!("decide with {}", answers.join("\nor with ")))
     }
 }

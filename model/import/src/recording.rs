@@ -1,6 +1,6 @@
 //! The cells of a file of any format.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::dialect::{self, Delimiter};
 use crate::encoding;
@@ -32,8 +32,11 @@ impl Recording {
     /// A [`Diagnostic`] for a format that is not read, and for a file that is damaged or too large.
     pub(crate) fn read(bytes: &[u8], map: &Map) -> Result<Self, Diagnostic> {
         if bytes.len() > MAX_BYTES {
-            return Err(Diagnostic::new(format!("{} bytes, at most {MAX_BYTES} are read", bytes.len()))
-                .with_help("divide the file, or leave out columns"));
+            return Err(Diagnostic::new(
+                codes::FILE_TOO_LARGE,
+                format!("{} bytes, at most {MAX_BYTES} are read", bytes.len()),
+            )
+            .with_help("divide the file, or leave out columns"));
         }
         if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xd0\xcf\x11\xe0") {
             return crate::workbook::read(bytes, map.sheet.as_deref());
@@ -49,9 +52,8 @@ impl Recording {
             (b"\x1f\x8b", "a gzip archive"),
         ] {
             if bytes.starts_with(begin) {
-                return Err(
-                    Diagnostic::new(format!("{name} cannot be read")).with_help("export the data as CSV")
-                );
+                return Err(Diagnostic::new(codes::NOT_A_TEXT, format!("{name} cannot be read"))
+                    .with_help("export the data as CSV"));
             }
         }
         Self::read_text(bytes, map)
@@ -75,7 +77,7 @@ impl Recording {
         let notes = declared.iter().map(|_| "line 1: declares the delimiter".to_owned()).collect();
         let sheet = dialect::cells(body, delimiter, skipped)?;
         if sheet.len() == 0 {
-            return Err(Diagnostic::new("the file is empty")
+            return Err(Diagnostic::new(codes::DAMAGED_FILE, "the file is empty")
                 .with_help("give a file with a line of names and lines of numbers"));
         }
         Ok(Self {

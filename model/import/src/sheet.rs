@@ -1,6 +1,6 @@
 //! Cells in rows, without meaning.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::number::is_missing;
 
@@ -39,7 +39,7 @@ impl Sheet {
         let first = self.open as usize;
         let count = self.ends.len() - first;
         let at = |problem: String, help: &str| {
-            Err(Diagnostic::new(format!("line {line}: {problem}")).with_help(help))
+            Err(Diagnostic::new(codes::FILE_TOO_LARGE, format!("line {line}: {problem}")).with_help(help))
         };
         if count > MAX_COLUMNS {
             return at(

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::Direction;
 use pinswitch_measurements::table::push_line;
 
@@ -121,13 +122,13 @@ pub(crate) fn unknown_direction(word: &str, column: Option<&Column>) -> Question
             ("all such readings are eccentric".to_owned(), "eccentric=".to_owned()),
         ];
         let readings = above.into_iter().chain(readings);
-        return Question::new("some readings have no direction", readings);
+        return Question::new(codes::UNKNOWN_DIRECTION, "some readings have no direction", readings);
     }
     let readings = vec![
         ("the load is pulled, and the force is higher".to_owned(), format!("concentric={word}")),
         ("the load is released, and the force is lower".to_owned(), format!("eccentric={word}")),
     ];
-    Question::new(format!("'{word}' is not a known direction"), readings)
+    Question::new(codes::UNKNOWN_DIRECTION, format!("'{word}' is not a known direction"), readings)
 }
 
 /// Makes a table of the rows of files; what is missing or has two readings becomes a question.
@@ -199,7 +200,11 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
             let in_column =
                 columns.iter().map(|name| (format!("in column {name}"), format!("column.{name}=load")));
             let readings = in_column.chain(readings);
-            questions.push(Question::new(format!("{}: the load is not known", file.name), readings));
+            questions.push(Question::new(
+                codes::UNKNOWN_LOAD,
+                format!("{}: the load is not known", file.name),
+                readings,
+            ));
         }
         let is_angle = |c: &&Column| {
             c.quantity == Quantity::Ignore && c.unit.is_some_and(|unit| unit.dimension == Dimension::Angle)
@@ -215,7 +220,11 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
                 ("the wrap angle of the tendon".to_owned(), format!("column.{name}=wrap_angle")),
                 ("another angle, which does not matter".to_owned(), format!("column.{name}=ignore")),
             ];
-            questions.push(Question::new(format!("column '{}' is an angle", column.name), readings));
+            questions.push(Question::new(
+                codes::AMBIGUOUS_COLUMN,
+                format!("column '{}' is an angle", column.name),
+                readings,
+            ));
         }
         let has_direction = has(Quantity::Direction)
             || constant(file, map, "direction").is_some()
@@ -226,7 +235,11 @@ fn has_sources(files: &[FileReading], map: &Map, questions: &mut Vec<Question>) 
                 ("all readings after the load was released".to_owned(), "direction=eccentric".to_owned()),
                 ("in a column".to_owned(), "column.NAME=direction".to_owned()),
             ];
-            questions.push(Question::new(format!("{}: the direction is not known", file.name), readings));
+            questions.push(Question::new(
+                codes::UNKNOWN_DIRECTION,
+                format!("{}: the direction is not known", file.name),
+                readings,
+            ));
         }
         if questions.len() > before {
             return false;
@@ -267,7 +280,7 @@ fn ask_for_empty(table: &mut Table, file: &FileReading, map: &Map, questions: &m
             (format!("the {what} of the row above"), format!("fill.{}=down", reference(column))),
             ("left out".to_owned(), "bad_rows=skip".to_owned()),
         ];
-        questions.push(Question::new(found, readings));
+        questions.push(Question::new(codes::UNKNOWN_LOAD, found, readings));
     }
 }
 
@@ -356,6 +369,7 @@ fn opposite_words(a: &str, b: &str, files: &[FileReading]) -> Question {
         (format!("the mean force is {mean:.3} N with '{word}'"), format!("concentric={word}"))
     };
     Question::new(
+        codes::UNKNOWN_DIRECTION,
         format!("the directions '{a}' and '{b}' are not known; the concentric one pulls the load"),
         vec![reading(a, mean_a), reading(b, mean_b)],
     )
@@ -501,7 +515,7 @@ fn substrate(raw: &str, questions: &mut Vec<Question>) -> String {
                     "one contact of a given material".to_owned(),
                     "column.substrate=ignore\nsubstrate=plain".to_owned(),
                 )];
-                questions.push(Question::new(problem, readings));
+                questions.push(Question::new(codes::UNKNOWN_WORD, problem, readings));
             }
             String::new()
         }
@@ -608,7 +622,7 @@ fn ask_for_sign(table: &Table, map: &Map, questions: &mut Vec<Question>) {
             ("the cell reads a tension as negative".to_owned(), "force_sign=-1".to_owned()),
             ("the forces are negative".to_owned(), "force_sign=1".to_owned()),
         ];
-        questions.push(Question::new("nearly all forces are negative", readings));
+        questions.push(Question::new(codes::NEGATIVE_FORCES, "nearly all forces are negative", readings));
     }
 }
 
@@ -673,7 +687,7 @@ fn check_directions(table: &mut Table, files: &[FileReading], map: &Map, questio
         agreeing + contradicting,
         names.join(" and ")
     );
-    questions.push(Question::new(problem, readings));
+    questions.push(Question::new(codes::DIRECTION_AGAINST_FORCE, problem, readings));
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {

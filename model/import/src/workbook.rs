@@ -6,8 +6,11 @@ pub(crate) fn read(
     _: &[u8],
     _: Option<&str>,
 ) -> Result<crate::recording::Recording, pinswitch_diagnostic::Diagnostic> {
-    Err(pinswitch_diagnostic::Diagnostic::new("this program was built without Excel and OpenDocument files")
-        .with_help("export the sheet as CSV"))
+    Err(pinswitch_diagnostic::Diagnostic::new(
+        pinswitch_diagnostic::codes::FEATURE_NOT_BUILT,
+        "this program was built without Excel and OpenDocument files",
+    )
+    .with_help("export the sheet as CSV"))
 }
 
 #[cfg(feature = "spreadsheets")]
@@ -18,7 +21,7 @@ mod reader {
     use std::io::Cursor;
 
     use calamine::{Data, DataRef, Range, Reader, Sheets, open_workbook_auto_from_rs};
-    use pinswitch_diagnostic::Diagnostic;
+    use pinswitch_diagnostic::{Diagnostic, codes};
 
     use crate::number::DecimalSign;
     use crate::recording::Recording;
@@ -43,10 +46,11 @@ mod reader {
     /// numbers.
     pub(crate) fn read(bytes: &[u8], sheet: Option<&str>) -> Result<Recording, Diagnostic> {
         if bytes.len() > MAX_BYTES || unpacked_bytes(bytes) > MAX_UNPACKED {
-            return Err(Diagnostic::new("the workbook is too large").with_help("export the sheet as CSV"));
+            return Err(Diagnostic::new(codes::FILE_TOO_LARGE, "the workbook is too large")
+                .with_help("export the sheet as CSV"));
         }
         let damaged = |error: calamine::Error| {
-            Diagnostic::new("cannot read the workbook")
+            Diagnostic::new(codes::DAMAGED_FILE, "cannot read the workbook")
                 .with_help("open it and save it again, or export the sheet as CSV")
                 .with_source(error)
         };
@@ -70,7 +74,8 @@ mod reader {
         let Some((name, range)) = first else {
             let problem = sheet
                 .map_or_else(|| "no sheet has numbers".to_owned(), |sheet| format!("no sheet '{sheet}'"));
-            return Err(Diagnostic::new(problem).with_help(format!("the sheets are: {}", names.join(", "))));
+            return Err(Diagnostic::new(codes::UNKNOWN_COLUMN, problem)
+                .with_help(format!("the sheets are: {}", names.join(", "))));
         };
         let others: Vec<&str> = names.iter().filter(|other| **other != name).map(String::as_str).collect();
         let mut notes = vec![format!("sheet '{name}'")];
@@ -146,7 +151,7 @@ mod reader {
                     column = column + 1,
                     row = row + 1
                 );
-                return Err(Diagnostic::new(problem)
+                return Err(Diagnostic::new(codes::FILE_TOO_LARGE, problem)
                     .with_help("remove cells far from the table, or export it as CSV"));
             }
             Ok(())

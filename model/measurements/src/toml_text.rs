@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
@@ -20,7 +20,7 @@ pub fn toml_error(file: &str, text: &str, error: &Error) -> Diagnostic {
         span.clone().map_or_else(|| Location::file(file), |span| Location::in_text(file, text, span));
     let kinds = ["invalid type: ", "invalid length ", "invalid value: ", "unknown variant "];
     if !kinds.iter().any(|kind| message.starts_with(kind)) {
-        return Diagnostic::new(message).with_location(location);
+        return Diagnostic::new(codes::of_toml(&message), message).with_location(location);
     }
     let value = span.clone().and_then(|span| text.get(span)).unwrap_or_default();
     let value = excerpt(value.trim(), LONGEST_VALUE).replace('\n', " ");
@@ -29,12 +29,13 @@ pub fn toml_error(file: &str, text: &str, error: &Error) -> Diagnostic {
         .and_then(|(_, expected)| expected_type(expected, &message, value.starts_with('-')));
     let root = DeTable::parse(text).ok();
     let field = span.zip(root.as_ref()).and_then(|(span, root)| field_in(root.get_ref(), &span, ""));
+    let code = codes::of_toml(&message);
     let problem = expected.map_or(message, |expected| format!("expected {expected}"));
     let location = match field {
         Some(field) => location.with_field(field, value),
         None => location,
     };
-    Diagnostic::new(problem).with_location(location)
+    Diagnostic::new(code, problem).with_location(location)
 }
 
 /// Translates the type that serde expects from Rust's names; `None` where serde's own words are

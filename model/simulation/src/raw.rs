@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use pinswitch_calibration::table::{PlateauRow, substrate_word};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::published;
 use pinswitch_friction::{Direction, Substrate};
 use rand::{RngExt, SeedableRng};
@@ -81,9 +81,12 @@ impl<'a> RawRun<'a> {
     pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, Diagnostic> {
         if plan.dwells_s.len() != 1 || plan.dwells_s[0] < MIN_DWELL_S {
             let location = Location::file(file).with_field("dwells_s", format!("{:?}", plan.dwells_s));
-            return Err(Diagnostic::new(format!("raw logs need one dwell of at least {MIN_DWELL_S} s"))
-                .with_location(location)
-                .with_help("make one plan per dwell, since a run.toml has one dwell_s"));
+            return Err(Diagnostic::new(
+                codes::PLAN_OF_RIG_INCONSISTENT,
+                format!("raw logs need one dwell of at least {MIN_DWELL_S} s"),
+            )
+            .with_location(location)
+            .with_help("make one plan per dwell, since a run.toml has one dwell_s"));
         }
         let mut series: Vec<Vec<PlateauRow>> = Vec::new();
         for row in rows {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::published;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -53,7 +53,7 @@ impl SimulatedSession {
                     rows[at].force_n,
                     at + 1
                 );
-                return Err(Diagnostic::new(problem)
+                return Err(Diagnostic::new(codes::PLAN_OF_RIG_INCONSISTENT, problem)
                     .with_location(Location::file(file))
                     .with_help("lower its constants, effects or noise"));
             }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hyper::body::Bytes;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use serde::Deserialize;
 use tokio::sync::Semaphore;
@@ -165,10 +165,12 @@ impl Configurator {
 
     fn write(&self, request: &[u8]) -> Result<SavedFile, SaveError> {
         let file = self.source.file().filter(|_| self.is_writable).ok_or_else(|| {
-            Diagnostic::new("the server follows no text file").with_help("start `pinswitch view FILE.toml`")
+            Diagnostic::new(codes::NOT_SAVED, "the server follows no text file")
+                .with_help("start `pinswitch view FILE.toml`")
         })?;
         let name = file.display().to_string();
-        let request: SaveRequest = serde_json::from_slice(request).map_err(Diagnostic::from_error)?;
+        let request: SaveRequest =
+            serde_json::from_slice(request).map_err(|e| Diagnostic::from_error(codes::DAMAGED_FILE, e))?;
         let wanted = configuration(&request.values)?;
         let is_missing = !file.exists() && !file.is_symlink();
         if is_missing && !request.create {
@@ -182,7 +184,7 @@ impl Configurator {
             return Err(SaveError::Changed { stamp: current, values: changed_values(&shown) });
         }
         let before = text;
-        let text = rewritten(&before, &name, &shown, &wanted).map_err(Diagnostic::from_error)?;
+        let text = rewritten(&before, &name, &shown, &wanted)?;
         match self.source.write((!is_missing).then_some(&*before), &text) {
             Ok(()) => {}
             Err(SourceWriteError::Failed(diagnostic)) => return Err(SaveError::Other(diagnostic)),

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_store::read_own;
 use tokio::sync::watch;
 
@@ -99,8 +99,10 @@ fn ends_within(content: &[u8], shown: &[u8]) -> bool {
 /// `shown` is the content from which the present state was built.
 pub(super) fn follow(states: &watch::Sender<State>, source: &dyn ConfigurationSource, shown: Vec<u8>) {
     let Some(file) = source.file() else { return };
-    let problem = |problem: &str, help: &str| {
-        Diagnostic::new(problem).with_location(Location::file(file.display().to_string())).with_help(help)
+    let problem = |code: Code, problem: &str, help: &str| {
+        Diagnostic::new(code, problem)
+            .with_location(Location::file(file.display().to_string()))
+            .with_help(help)
     };
     let mut file_watch = FileWatch::new(shown, Instant::now());
     let mut is_lost = false;
@@ -115,11 +117,11 @@ pub(super) fn follow(states: &watch::Sender<State>, source: &dyn ConfigurationSo
             let was_lost = is_lost;
             is_lost = file_watch.is_lost(Instant::now());
             if is_lost && !was_lost {
-                let text = match obstacle {
-                    Some(e) => format!("the file cannot be read: {e}"),
-                    None => "the file is missing".to_owned(),
+                let (code, text) = match obstacle {
+                    Some(e) => (codes::CANNOT_READ, format!("the file cannot be read: {e}")),
+                    None => (codes::FILE_NOT_FOUND, "the file is missing".to_owned()),
                 };
-                report(states, &problem(&text, "restore it; the last valid version is shown"));
+                report(states, &problem(code, &text, "restore it; the last valid version is shown"));
             }
             continue;
         }
@@ -127,7 +129,11 @@ pub(super) fn follow(states: &watch::Sender<State>, source: &dyn ConfigurationSo
         let version = states.borrow().version + 1;
         let state = if file_watch.shown.trim_ascii().is_empty() {
             // As on the command line.
-            Err(problem("the file is empty", "restore it; the last valid version is shown"))
+            Err(problem(
+                codes::DAMAGED_FILE,
+                "the file is empty",
+                "restore it; the last valid version is shown",
+            ))
         } else {
             // From the settled content: another save may have begun.
             State::build(source, &file_watch.shown, version).map_err(Diagnostic::from)

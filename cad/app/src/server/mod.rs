@@ -16,7 +16,7 @@ mod worker;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::watch;
@@ -40,7 +40,7 @@ pub enum ServerError {
 
 impl ServerError {
     fn internal(error: impl std::error::Error + Send + Sync + 'static) -> Self {
-        Self::Internal(Diagnostic::from_error(error))
+        Self::Internal(Diagnostic::from_error(codes::INTERNAL_ERROR, error))
     }
 }
 
@@ -92,7 +92,7 @@ impl Server {
             .build()
             .map_err(ServerError::internal)?;
         let listener = runtime.block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, port))).map_err(|e| {
-            let diagnostic = Diagnostic::new(format!("cannot listen on port {port}"));
+            let diagnostic = Diagnostic::new(codes::CANNOT_START, format!("cannot listen on port {port}"));
             ServerError::Port(
                 diagnostic.with_help("give another port, or 0 for any free port").with_source(e),
             )

@@ -4,7 +4,7 @@ use std::io::{BufRead, Read, Write};
 use std::process::{Child, Command, Stdio};
 
 use hyper::body::Bytes;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// Longest first line of a request in bytes, more than the digits of any length.
 const MAX_LENGTH_LINE: u64 = 32;
@@ -72,17 +72,28 @@ impl Worker {
 /// A [`Diagnostic`] if the length is missing, or if the request is shorter than that or not UTF-8.
 pub fn read_request(input: &mut impl BufRead) -> Result<String, Diagnostic> {
     let mut line = String::new();
-    input.by_ref().take(MAX_LENGTH_LINE).read_line(&mut line).map_err(Diagnostic::from_error)?;
+    input
+        .by_ref()
+        .take(MAX_LENGTH_LINE)
+        .read_line(&mut line)
+        .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
     let length: usize = line.trim().parse().map_err(|e| {
-        Diagnostic::new(format!("the length {:?} of the request is not a number", line.trim())).with_source(e)
+        Diagnostic::new(
+            codes::INTERNAL_ERROR,
+            format!("the length {:?} of the request is not a number", line.trim()),
+        )
+        .with_source(e)
     })?;
     let mut request = Vec::new();
-    input.take(length as u64).read_to_end(&mut request).map_err(Diagnostic::from_error)?;
+    input
+        .take(length as u64)
+        .read_to_end(&mut request)
+        .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
     if request.len() < length {
         let problem = format!("the request ends after {} of {length} bytes", request.len());
-        return Err(Diagnostic::new(problem));
+        return Err(Diagnostic::new(codes::INTERNAL_ERROR, problem));
     }
-    String::from_utf8(request).map_err(Diagnostic::from_error)
+    String::from_utf8(request).map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod values;
 use std::ops::Range;
 use std::sync::Arc;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use toml_edit::{Item, TableLike, Value};
 
 use crate::diagnostics::field_error;
@@ -120,7 +120,8 @@ pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<Sw
     check_fields_differ(&axes).map_err(|e| source.locate(e, None))?;
     if axes.is_empty() {
         let problem = format!("the sweep has no axes ({})", table_names("or"));
-        let error = Diagnostic::new(problem).with_help("add at least one field with its values");
+        let error =
+            Diagnostic::new(codes::INVALID_AXIS, problem).with_help("add at least one field with its values");
         return Err(source.locate(error, None));
     }
     Ok(axes)
@@ -131,7 +132,7 @@ fn check_fields_differ(axes: &[SweepAxis]) -> Result<(), Diagnostic> {
     match all.iter().enumerate().find(|(i, path)| all[..*i].contains(path)) {
         Some((_, path)) => {
             let help = format!("keep it in one of {}, and only once", table_names("and"));
-            Err(field_error(path, None, "the field varies twice", help))
+            Err(field_error(codes::INVALID_AXIS, path, None, "the field varies twice", help))
         }
         None => Ok(()),
     }
@@ -202,7 +203,7 @@ pub(crate) fn field(path: &str) -> Result<ParameterRef, Diagnostic> {
     let all = Configuration::PARAMETERS;
     if path == "switch.name" {
         let problem = "a sweep cannot set the name (each variant's name is its id)";
-        return Err(field_error(path, None, problem, "remove it"));
+        return Err(field_error(codes::INVALID_AXIS, path, None, problem, "remove it"));
     }
     all.iter().find(|p| p.path() == path).ok_or_else(|| {
         let near = all
@@ -211,7 +212,7 @@ pub(crate) fn field(path: &str) -> Result<ParameterRef, Diagnostic> {
             .max_by(|a, b| strsim::jaro_winkler(path, a).total_cmp(&strsim::jaro_winkler(path, b)));
         let near = near.unwrap_or_default();
         let help = format!("did you mean \"{near}\"? templates/reference.toml lists all fields");
-        field_error(path, None, "unknown field", help)
+        field_error(codes::UNKNOWN_FIELD, path, None, "unknown field", help)
     })
 }
 

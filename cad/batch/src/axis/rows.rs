@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use csv::{Position, Reader, ReaderBuilder, StringRecord};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use toml_edit::{Item, Value};
 
 use super::{AxisTable, ParameterRef, SweepAxis};
@@ -69,7 +69,7 @@ impl Rows {
             starts.push(start);
         }
         if starts.is_empty() {
-            let error = Diagnostic::new("the table has no rows");
+            let error = Diagnostic::new(codes::TABLE_WITHOUT_ROWS, "the table has no rows");
             let error = error.with_help("write at least one row below the header");
             return Err(at_row(error, file, text, 0));
         }
@@ -127,7 +127,13 @@ pub(crate) fn column_fields<'a>(
     for (column, name) in names.enumerate() {
         let field = super::field(name).map_err(|e| locate(e, column))?;
         if fields.iter().any(|other| other.path() == field.path()) {
-            let error = field_error(&field.path(), None, "two columns have this name", "remove one of them");
+            let error = field_error(
+                codes::DUPLICATE_ENTRY,
+                &field.path(),
+                None,
+                "two columns have this name",
+                "remove one of them",
+            );
             return Err(locate(error, column));
         }
         fields.push(field);
@@ -146,11 +152,13 @@ fn malformed_row(error: csv::Error) -> Diagnostic {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             let problem = format!("expected {expected_len} cells, found {len}");
             let help = "give one cell per column, and quote a cell with a comma, such as \"[5, 8]\"";
-            Diagnostic::new(problem).with_help(help)
+            Diagnostic::new(codes::TABLE_OF_ROWS_MALFORMED, problem).with_help(help)
         }
         _ => {
             let problem = format!("malformed CSV: {error}");
-            Diagnostic::new(problem).with_help("save the rows as CSV in UTF-8").with_source(error)
+            Diagnostic::new(codes::TABLE_OF_ROWS_MALFORMED, problem)
+                .with_help("save the rows as CSV in UTF-8")
+                .with_source(error)
         }
     }
 }

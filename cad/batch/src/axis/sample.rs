@@ -3,7 +3,7 @@
 
 use std::sync::OnceLock;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -121,13 +121,13 @@ fn axis(table: &dyn TableLike) -> Result<SweepAxis, Diagnostic> {
     let Some((_, method)) = METHODS.into_iter().find(|(known, _)| *known == word) else {
         let value = format!("{word:?}");
         let help = "give \"latin-hypercube\" or \"random\"";
-        return Err(field_error("sample.method", Some(&value), "unknown method", help));
+        return Err(field_error(codes::UNKNOWN_WORD, "sample.method", Some(&value), "unknown method", help));
     };
     let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
     if count > MAX_COUNT {
         let value = count.to_string();
         let problem = format!("more than {MAX_COUNT} points");
-        return Err(field_error("sample.count", Some(&value), problem, "lower it"));
+        return Err(field_error(codes::TOO_MANY_ENTRIES, "sample.count", Some(&value), problem, "lower it"));
     }
     let seed = whole("seed").unwrap_or(0).unsigned_abs();
     let axes = fields(table.get("axes").and_then(Item::as_table_like));
@@ -152,7 +152,7 @@ fn sample<'a>(
         fields.push(field);
     }
     if fields.is_empty() || count == 0 {
-        let error = Diagnostic::new("the sample has no points or no axes");
+        let error = Diagnostic::new(codes::INVALID_AXIS, "the sample has no points or no axes");
         return Err(error.with_help("give sample.count and at least one field under [sample.axes]"));
     }
     let points = UnitPoints::new(method, count, fields.len(), seed);

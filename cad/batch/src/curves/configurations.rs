@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytes::Bytes;
 use parquet::file::reader::FileReader;
 use parquet::record::{Field, Row};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_switch::config::text;
 use sha2::{Digest, Sha256};
 use toml_edit::{Array, Value};
@@ -148,7 +148,8 @@ fn parquet_fields(bytes: &Bytes, file: &str) -> Result<(Vec<ParameterRef>, u64),
     let groups = reader.metadata().row_groups().iter();
     let count = groups.map(|group| u64::try_from(group.num_rows()).unwrap_or_default()).sum();
     if count == 0 || fields.is_empty() {
-        let error = Diagnostic::new("the table has no rows").with_location(Location::file(file));
+        let error = Diagnostic::new(codes::TABLE_WITHOUT_ROWS, "the table has no rows")
+            .with_location(Location::file(file));
         return Err(error.with_help("write at least one row"));
     }
     Ok((fields, count))

@@ -15,7 +15,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use bytes::Bytes;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_store::{LockPolicy, replace_file_with, write_help};
 use pinswitch_switch::config::{Configuration, to_toml};
@@ -81,7 +81,7 @@ impl CurveFormat {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("csv") => Ok(Self::Csv),
             Some("parquet") => Ok(Self::Parquet),
-            _ => Err(Diagnostic::new("unknown format of a table of curves")
+            _ => Err(Diagnostic::new(codes::UNSUPPORTED_FORMAT, "unknown format of a table of curves")
                 .with_location(Location::field("--out", path.display().to_string()))
                 .with_help("give a name that ends with .csv or .parquet")),
         }
@@ -143,12 +143,15 @@ impl CurveTableError {
     fn diagnostic(&self) -> Diagnostic {
         match self {
             Self::Input(error) => error.clone(),
-            Self::File { path, source } => Diagnostic::new(format!("cannot write: {source}"))
-                .with_location(Location::file(path.display().to_string()))
-                .with_help(write_help(path, source)),
+            Self::File { path, source } => {
+                Diagnostic::new(codes::CANNOT_WRITE, format!("cannot write: {source}"))
+                    .with_location(Location::file(path.display().to_string()))
+                    .with_help(write_help(path, source))
+            }
             Self::Table(error) => error.diagnostic(),
             Self::Threads(error) => {
-                Diagnostic::new(format!("cannot start threads: {error}")).with_help("give fewer --threads")
+                Diagnostic::new(codes::CANNOT_START, format!("cannot start threads: {error}"))
+                    .with_help("give fewer --threads")
             }
         }
     }
@@ -382,7 +385,7 @@ impl Predictor<'_> {
     /// Predicts a row; a panic in it does not fail the other rows.
     fn outcome(&self, values: &[Value]) -> (Vec<Value>, RowOutcome) {
         catch_unwind(AssertUnwindSafe(|| self.row(values))).unwrap_or_else(|_| {
-            let bug = Diagnostic::new("internal error (panic)");
+            let bug = Diagnostic::new(codes::INTERNAL_ERROR, "internal error (panic)");
             (values.to_vec(), RowOutcome::Failed(bug.with_help("please report the configuration")))
         })
     }

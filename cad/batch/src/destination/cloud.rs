@@ -9,6 +9,7 @@ use object_store::azure::{AzureConfigKey, MicrosoftAzureBuilder};
 use object_store::gcp::{GoogleCloudStorageBuilder, GoogleConfigKey};
 use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreScheme, RetryConfig};
+use pinswitch_diagnostic::codes;
 use url::Url;
 
 use super::{DestinationError, unknown_store};
@@ -48,14 +49,14 @@ pub(super) fn open(text: &str) -> Result<(Arc<dyn ObjectStore>, Path), Destinati
             store!(GoogleCloudStorageBuilder, GoogleConfigKey, "GOOGLE_", url)
         }
         ObjectStoreScheme::MicrosoftAzure => store!(MicrosoftAzureBuilder, AzureConfigKey, "AZURE_", url),
-        _ => Err(unknown_store(text, "unknown store")),
+        _ => Err(unknown_store(codes::UNKNOWN_WORD, text, "unknown store")),
     };
     Ok((store?, path))
 }
 
 /// The error of a URL or of the settings of its store.
 fn invalid_url(url: &str, error: impl Error + Send + Sync + 'static) -> DestinationError {
-    unknown_store(url, error.to_string()).with_source(error)
+    unknown_store(codes::MALFORMED_VALUE, url, error.to_string()).with_source(error)
 }
 
 fn retry() -> RetryConfig {

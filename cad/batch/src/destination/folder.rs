@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use pinswitch_diagnostic::codes;
 use pinswitch_store::{FolderLock, LockPolicy, is_dangling_symlink, read_own, temporary_file, write_help};
 
 use super::{DestinationError, PARTIAL};
@@ -84,7 +85,8 @@ impl Folder {
             format!("{failed}: {error}")
         };
         let help = write_help(&path, &error);
-        let diagnosed = DestinationError::new(path.display().to_string(), problem, help, is_refusal);
+        let diagnosed =
+            DestinationError::new(codes::CANNOT_WRITE, path.display().to_string(), problem, help, is_refusal);
         DestinationError { is_refusal, ..diagnosed.with_source(error) }
     }
 

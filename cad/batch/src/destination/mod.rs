@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_store::{Busy, LockPolicy};
 
 pub use folder::{DestinationLock, Folder};
@@ -35,8 +35,8 @@ pub struct DestinationError {
 
 impl DestinationError {
     /// An error at a file with its destination; `is_fatal` if every other file would fail, too.
-    fn new(path: String, problem: impl Into<String>, help: &'static str, is_fatal: bool) -> Self {
-        let diagnostic = Diagnostic::new(problem).with_location(Location::file(path)).with_help(help);
+    fn new(code: Code, path: String, problem: impl Into<String>, help: &'static str, is_fatal: bool) -> Self {
+        let diagnostic = Diagnostic::new(code, problem).with_location(Location::file(path)).with_help(help);
         Self { diagnostic, help, is_fatal, is_refusal: false }
     }
 
@@ -44,7 +44,7 @@ impl DestinationError {
     pub(super) fn temporary(error: std::io::Error) -> Self {
         let problem = format!("cannot use the temporary folder: {error}");
         let help = "make room for temporary files on this machine";
-        let diagnostic = Diagnostic::new(problem).with_help(help).with_source(error);
+        let diagnostic = Diagnostic::new(codes::CANNOT_WRITE, problem).with_help(help).with_source(error);
         Self { diagnostic, help, is_fatal: true, is_refusal: true }
     }
 
@@ -109,6 +109,7 @@ impl Destination {
         match text.strip_prefix("file://") {
             Some(path) => folder(&folder_of_url(text, path)?),
             None if text.is_empty() => Err(DestinationError::new(
+                codes::USAGE,
                 text.to_owned(),
                 "the path is empty",
                 "give a folder with --out",
@@ -131,7 +132,7 @@ impl Destination {
 
     #[cfg(not(feature = "cloud"))]
     fn open_store(text: &str) -> Result<Self, DestinationError> {
-        Err(unknown_store(text, "this build supports folders only"))
+        Err(unknown_store(codes::FEATURE_NOT_BUILT, text, "this build supports folders only"))
     }
 
     #[cfg(feature = "cloud")]
@@ -152,8 +153,14 @@ impl Destination {
     ) -> Result<Self, DestinationError> {
         Store::new(url, store, prefix).map(Self::Store).map_err(|e| {
             let problem = format!("cannot start a thread: {e}");
-            DestinationError::new(url.to_owned(), problem, "allow this process to start threads", true)
-                .with_source(e)
+            DestinationError::new(
+                codes::CANNOT_START,
+                url.to_owned(),
+                problem,
+                "allow this process to start threads",
+                true,
+            )
+            .with_source(e)
         })
     }
 
@@ -312,7 +319,7 @@ impl Destination {
             Some(busy) => {
                 let problem = format!("another run is writing the same shard here{}", busy.holder());
                 let help = "wait for it (--wait SECONDS) or end it, or give another --out";
-                DestinationError::new(self.name(), problem, help, true)
+                DestinationError::new(codes::FOLDER_IN_USE, self.name(), problem, help, true)
             }
             None => folder.write_error("", e),
         })
@@ -331,18 +338,22 @@ impl Destination {
 /// Returns the folder of a `file://` URL with this `path`: absolute, with escapes decoded.
 fn folder_of_url(url: &str, path: &str) -> Result<String, DestinationError> {
     if !path.starts_with('/') {
-        return Err(unknown_store(url, "a file:// URL needs an absolute path, such as file:///data/sweep"));
+        return Err(unknown_store(
+            codes::MALFORMED_VALUE,
+            url,
+            "a file:// URL needs an absolute path, such as file:///data/sweep",
+        ));
     }
     let decoded = percent_encoding::percent_decode_str(path).decode_utf8();
-    decoded
-        .map(Into::into)
-        .map_err(|e| unknown_store(url, format!("escapes are not UTF-8: {e}")).with_source(e))
+    decoded.map(Into::into).map_err(|e| {
+        unknown_store(codes::MALFORMED_VALUE, url, format!("escapes are not UTF-8: {e}")).with_source(e)
+    })
 }
 
 /// The error for a URL that is not a destination.
-fn unknown_store(url: &str, problem: impl Into<String>) -> DestinationError {
+fn unknown_store(code: Code, url: &str, problem: impl Into<String>) -> DestinationError {
     let help = "give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://";
-    DestinationError::new(url.to_owned(), problem, help, true)
+    DestinationError::new(code, url.to_owned(), problem, help, true)
 }
 
 #[cfg(test)]

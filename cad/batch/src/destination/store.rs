@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use object_store::path::Path;
 use object_store::{Error, ObjectStore, ObjectStoreExt};
+use pinswitch_diagnostic::codes;
 
 use super::DestinationError;
 
@@ -39,7 +40,7 @@ impl Store {
             None => answer,
         };
         let help = "check that the store is reachable, and its variables (AWS_..., GOOGLE_..., AZURE_...)";
-        DestinationError::new(format!("{}/{name}", self.url), problem, help, true)
+        DestinationError::new(codes::CANNOT_WRITE, format!("{}/{name}", self.url), problem, help, true)
     }
 
     pub(super) fn get(&self, name: &str) -> Result<Option<Vec<u8>>, Error> {

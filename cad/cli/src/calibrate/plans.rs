@@ -6,7 +6,7 @@ use pinswitch_calibration::SessionPlan;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, by_contact, read_runs};
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 use super::super::Failure;
 use super::FORM_FILE;
@@ -30,11 +30,10 @@ pub(super) fn plans(
     let later = tables.get(1..).unwrap_or_default();
     if plans.len() > later.len() {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!(
-                "--plan is given {} times, but {} tables follow the first",
-                plans.len(),
-                later.len()
-            ))
+            Diagnostic::new(
+                codes::USAGE,
+                format!("--plan is given {} times, but {} tables follow the first", plans.len(), later.len()),
+            )
             .with_help("give the tables in order, and at most one plan for each table after the first"),
         ));
     }
@@ -63,13 +62,16 @@ fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<SessionPlan, Failure> 
     let path = if folder.is_file() { folder.to_owned() } else { folder.join("experiment.json") };
     let name = path.display().to_string();
     let file: PlanFile = serde_json::from_str(&read_text_file(&path)?).map_err(|e| {
-        let problem = Diagnostic::new("not a plan").with_location(Location::file(&name));
+        let problem =
+            Diagnostic::new(codes::PLAN_NOT_USABLE, "not a plan").with_location(Location::file(&name));
         Failure::bad_input(problem.with_help(GIVE_PLAN).with_source(e))
     })?;
     if file.schema != SCHEMA {
         let location = Location::file(&name).with_field("schema", format!("\"{}\"", file.schema));
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("is not {SCHEMA}")).with_location(location).with_help(GIVE_PLAN),
+            Diagnostic::new(codes::OTHER_KIND_OF_FILE, format!("is not {SCHEMA}"))
+                .with_location(location)
+                .with_help(GIVE_PLAN),
         ));
     }
     // Missing runs are reported before errors in the questions about them.
@@ -79,7 +81,7 @@ fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<SessionPlan, Failure> 
         vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
     };
     file.plan.check(is_known).map_err(|e| {
-        let error = Diagnostic::from_error(e).or_in_file(&name);
+        let error = e.or_in_file(&name);
         Failure::bad_input(if error.help().is_none() { error.with_help(GIVE_PLAN) } else { error })
     })?;
     Ok(SessionPlan { runs: by_contact(&runs), ..file.plan })
@@ -128,7 +130,7 @@ fn runs_of(folder: &Path) -> Result<(Vec<PlannedRun>, String), Failure> {
     let name = path.display().to_string();
     if !path.is_file() {
         return Err(Failure::bad_input(
-            Diagnostic::new("file not found; it lists the planned runs")
+            Diagnostic::new(codes::PLAN_NOT_USABLE, "file not found; it lists the planned runs")
                 .with_location(Location::file(name))
                 .with_help(GIVE_PLAN),
         ));
@@ -161,7 +163,8 @@ fn table_of(folder: &Path, tables: &[PathBuf]) -> Result<usize, Failure> {
     let Some((at, best)) = best else { return Ok(0) };
     let PlanMatch { planned, made, .. } = best;
     let in_table = |problem: String| {
-        Diagnostic::new(problem).with_location(Location::file(tables[at].display().to_string()))
+        Diagnostic::new(codes::PLAN_NOT_FOLLOWED, problem)
+            .with_location(Location::file(tables[at].display().to_string()))
     };
     if !best.is_by_plan() {
         let problem = match made {

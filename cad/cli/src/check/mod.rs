@@ -5,7 +5,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use rayon::prelude::*;
 
 use super::{Failure, print_json, print_text};
@@ -70,7 +70,7 @@ impl From<PurposeName> for Purpose {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !(arguments.min_wall >= 0.0 && arguments.min_wall.is_finite()) {
         return Err(Failure::bad_input(
-            Diagnostic::new("not a wall thickness")
+            Diagnostic::new(codes::OUT_OF_RANGE, "not a wall thickness")
                 .with_location(Location::field("--min-wall", arguments.min_wall.to_string()))
                 .with_help("give 0 or more mm"),
         ));
@@ -108,10 +108,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     match verdicts.iter().filter(|v| v.status == Status::Invalid).count() {
         0 => Ok(()),
-        invalid => Err(Failure::failed(Diagnostic::new(format!(
-            "{invalid} of {} files are not valid",
-            verdicts.len()
-        )))),
+        invalid => Err(Failure::failed(Diagnostic::new(
+            codes::INVALID_MESH,
+            format!("{invalid} of {} files are not valid", verdicts.len()),
+        ))),
     }
 }
 
@@ -121,17 +121,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// A diagnostic if the file cannot be examined.
 fn check_file(file: &Path, expected: &Expectation, judgement: Judgement) -> Result<Verdict, Diagnostic> {
     let unreadable = |error: std::io::Error| {
-        Diagnostic::new("cannot read the file")
+        Diagnostic::new(codes::CANNOT_READ, "cannot read the file")
             .with_source(error)
             .with_help("give a file that exists and can be read")
     };
     // Opening a pipe or a device could wait for ever.
     let metadata = std::fs::metadata(file).map_err(unreadable)?;
     if metadata.is_dir() {
-        return Err(Diagnostic::new("the path is a folder").with_help("give the files in it"));
+        return Err(
+            Diagnostic::new(codes::NOT_A_FILE, "the path is a folder").with_help("give the files in it")
+        );
     }
     if !metadata.is_file() {
-        return Err(Diagnostic::new("the path is not a regular file").with_help("give an STL or a 3MF"));
+        return Err(Diagnostic::new(codes::NOT_A_FILE, "the path is not a regular file")
+            .with_help("give an STL or a 3MF"));
     }
     let mut reader = BufReader::new(File::open(file).map_err(unreadable)?);
     Verdict::read(&mut reader, metadata.len(), file.display().to_string(), expected, judgement)
@@ -139,6 +142,6 @@ fn check_file(file: &Path, expected: &Expectation, judgement: Judgement) -> Resu
 
 /// The diagnostic of a file whose checks exceed a bound.
 fn bounded(verdict: &Verdict) -> Diagnostic {
-    Diagnostic::new(format!("cannot be judged: {}", verdict.bounds().join("; ")))
+    Diagnostic::new(codes::MESH_NOT_JUDGED, format!("cannot be judged: {}", verdict.bounds().join("; ")))
         .with_help("a coarser mesh, several files or the export of another program may meet it: cad/doc/meshes.md lists the bounds")
 }

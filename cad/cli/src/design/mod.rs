@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pinswitch_app::CalibratedSwitch;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_report::{TargetRegion, pareto_svg};
@@ -153,8 +153,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &found.blocked {
         Some(blocked) => Err(Failure::failed(text::refusal(blocked))),
         None if found.proposals.is_empty() => Err(Failure::failed(
-            Diagnostic::new("no layout of this configuration can be printed, whatever the request")
-                .with_help("start from another configuration"),
+            Diagnostic::new(
+                codes::REQUEST_IMPOSSIBLE,
+                "no layout of this configuration can be printed, whatever the request",
+            )
+            .with_help("start from another configuration"),
         )),
         None => Ok(()),
     }
@@ -164,17 +167,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn check_model_scope(request: &Request, base: &Configuration) -> Result<(), Failure> {
     if request.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
         return Err(Failure::bad_input(
-            Diagnostic::new("a calibrated model covers the wrap angle of its rig only")
-                .with_location(Location::field("--vary", "wrap_deg"))
-                .with_help("leave out wrap_deg or --model"),
+            Diagnostic::new(
+                codes::MODEL_BEYOND_RIG,
+                "a calibrated model covers the wrap angle of its rig only",
+            )
+            .with_location(Location::field("--vary", "wrap_deg"))
+            .with_help("leave out wrap_deg or --model"),
         ));
     }
     let grooves = base.segment.grooves;
     if grooves != GROOVES {
         return Err(Failure::bad_input(
-            Diagnostic::new(format!("a calibrated model covers the {GROOVES} grooves of its rig only"))
-                .with_location(Location::field("segment.grooves", grooves.to_string()))
-                .with_help(format!("set it to {GROOVES}, or leave out --model")),
+            Diagnostic::new(
+                codes::MODEL_BEYOND_RIG,
+                format!("a calibrated model covers the {GROOVES} grooves of its rig only"),
+            )
+            .with_location(Location::field("segment.grooves", grooves.to_string()))
+            .with_help(format!("set it to {GROOVES}, or leave out --model")),
         ));
     }
     Ok(())
@@ -187,7 +196,7 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
     {
         if value == 0 || value > most {
             return Err(Failure::bad_input(
-                Diagnostic::new("out of range")
+                Diagnostic::new(codes::OUT_OF_RANGE, "out of range")
                     .with_location(Location::field(flag, value.to_string()))
                     .with_help(format!("give 1 to {most}")),
             ));
@@ -200,9 +209,12 @@ fn check_pins(request: &Request, base: &Configuration) -> Result<(), Failure> {
     let grooves = base.segment.grooves;
     match request.limits.pins {
         Some((fewest, most)) if most > grooves => Err(Failure::bad_input(
-            Diagnostic::new(format!("a layout of this configuration has 1 to {grooves} pins"))
-                .with_location(Location::field("--pins", format!("{fewest}..{most}")))
-                .with_help("narrow the range, or raise segment.grooves"),
+            Diagnostic::new(
+                codes::OUT_OF_RANGE,
+                format!("a layout of this configuration has 1 to {grooves} pins"),
+            )
+            .with_location(Location::field("--pins", format!("{fewest}..{most}")))
+            .with_help("narrow the range, or raise segment.grooves"),
         )),
         _ => Ok(()),
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_switch::request::{
     DEFAULT_WITHIN, FORMS, Parameter, Quantity, Request, Requirement, Target, Varied, parse_requirement,
     parse_share,
@@ -100,7 +100,7 @@ impl RequestOptions {
         }
         request.vary.pattern &= !self.keep_pins;
         if request.targets.is_empty() {
-            return Err(Failure::bad_input(Diagnostic::new("the request has no target").with_help(
+            return Err(Failure::bad_input(Diagnostic::new(codes::INVALID_REQUIREMENT, "the request has no target").with_help(
                 "give --threshold, --max-friction, --friction, --low-friction, --stiffness or --request FILE",
             )));
         }
@@ -150,8 +150,10 @@ impl RequestOptions {
                 ((_, None), Ok(number)) => bare(number, within),
                 ((requirement, None), Err(_)) => requirement,
                 ((_, Some(load)), _) => {
-                    let problem =
-                        Diagnostic::new(format!("'at {load}' gives a load, which only --friction takes"));
+                    let problem = Diagnostic::new(
+                        codes::INVALID_REQUIREMENT,
+                        format!("'at {load}' gives a load, which only --friction takes"),
+                    );
                     return Err(refused(option, text, problem.with_help("leave it out, or use --friction")));
                 }
             };
@@ -163,7 +165,7 @@ impl RequestOptions {
                     request.targets.push(Target { quantity: Quantity::Friction { load_n }, requirement });
                 }
                 (_, None) => {
-                    let problem = Diagnostic::new("the load is missing")
+                    let problem = Diagnostic::new(codes::INVALID_REQUIREMENT, "the load is missing")
                         .with_help(format!("add a load, such as 'at 50'; {FORMS}, and 'at LOAD'"));
                     return Err(refused("--friction", text, problem));
                 }
@@ -183,7 +185,7 @@ fn varied(text: &str) -> Result<Varied, Failure> {
     let (name, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
     let parameter = Parameter::from_name(name.trim()).ok_or_else(|| {
         let known: Vec<_> = Parameter::ALL.iter().map(|p| p.name()).collect();
-        let problem = Diagnostic::new("unknown parameter");
+        let problem = Diagnostic::new(codes::UNKNOWN_FIELD, "unknown parameter");
         refused("--vary", name, problem.with_help(format!("give some of {}, or none", known.join(", "))))
     })?;
     let Some(range) = range else { return Ok(Varied::by_default(parameter)) };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_switch::design_search::{Blocked, Found, Proposal};
 use pinswitch_switch::request::{Parameter, Request};
 
@@ -108,5 +108,5 @@ fn parameters(p: &Proposal, request: &Request) -> String {
 /// Returns the diagnostic of a request that no design meets: what the nearest design misses, what blocks it, and the
 /// changes that help.
 pub(super) fn refusal(blocked: &Blocked) -> Diagnostic {
-    Diagnostic::new(blocked.problem()).with_help(blocked.help().join("\n"))
+    Diagnostic::new(codes::REQUEST_IMPOSSIBLE, blocked.problem()).with_help(blocked.help().join("\n"))
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_store::{LockPolicy, is_dangling_symlink, replace_file, write_help};
 use pinswitch_switch::output::OutputFile;
 
@@ -74,13 +74,15 @@ impl From<WriteError> for Diagnostic {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::System { path, source } => {
-                let diagnostic = Self::new(format!("cannot write: {}", reason(&path, &source)))
+                let is_busy = source.get_ref().is_some_and(|e| e.is::<pinswitch_store::Busy>());
+                let code = if is_busy { codes::FOLDER_IN_USE } else { codes::CANNOT_WRITE };
+                let diagnostic = Self::new(code, format!("cannot write: {}", reason(&path, &source)))
                     .with_location(Location::file(path.display().to_string()))
                     .with_help(write_help(&path, &source));
                 // An error that was constructed here adds nothing to the reason.
                 if source.raw_os_error().is_some() { diagnostic.with_source(source) } else { diagnostic }
             }
-            WriteError::Input(path) => Self::new("is an input of this command")
+            WriteError::Input(path) => Self::new(codes::OUTPUT_IS_INPUT, "is an input of this command")
                 .with_location(Location::file(path.display().to_string()))
                 .with_help("give another --out"),
             WriteError::Manifest { path, problem } => problem.diagnostic(&path),

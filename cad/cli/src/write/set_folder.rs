@@ -6,7 +6,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt};
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::output::OutputFile;
 
@@ -47,7 +47,7 @@ pub enum PublishError {
 
 impl From<PublishError> for Diagnostic {
     fn from(error: PublishError) -> Self {
-        let (problem, path, help) = match error {
+        let (code, problem, path, help) = match error {
             PublishError::Write(error) => return error.into(),
             PublishError::OtherSource { folder, existing, new } => {
                 let problem = format!(
@@ -55,20 +55,22 @@ impl From<PublishError> for Diagnostic {
                     excerpt(&existing, MAX_SOURCE),
                     excerpt(&new, MAX_SOURCE)
                 );
-                (problem, folder, "give --force to replace it, or another --out")
+                (codes::OTHER_SOURCE, problem, folder, "give --force to replace it, or another --out")
             }
             PublishError::Foreign(path) => (
+                codes::FILE_IN_THE_WAY,
                 "pinswitch did not write this file".to_owned(),
                 path,
                 "give --force to overwrite it, or another --out",
             ),
             PublishError::Changed(path) => (
+                codes::CHANGED_FILE,
                 "was changed since it was written".to_owned(),
                 path,
                 "give --force to overwrite it, or another --out",
             ),
         };
-        Self::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+        Self::new(code, problem).with_location(Location::file(path.display().to_string())).with_help(help)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read, Seek};
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::files::{PlacedMesh, StlFile, read_stl, read_three_mf};
 use crate::validity::{
@@ -66,7 +66,7 @@ impl Format {
 /// The diagnostic of a STEP file. An exact solid needs a CAD kernel to be judged, and this program
 /// has none.
 fn unsupported_step() -> Diagnostic {
-    Diagnostic::new("check does not support STEP").with_help(
+    Diagnostic::new(codes::UNSUPPORTED_FORMAT, "check does not support STEP").with_help(
         "check it in the CAD program that made it, or with FreeCAD or another program based on Open CASCADE; \
          the STEP files that pinswitch writes are tested with independent readers (tests/programs/judges.rs)",
     )
@@ -74,7 +74,7 @@ fn unsupported_step() -> Diagnostic {
 
 /// The diagnostic of a file that cannot be read.
 pub(super) fn unreadable(error: std::io::Error) -> Diagnostic {
-    Diagnostic::new("cannot read the file")
+    Diagnostic::new(codes::CANNOT_READ, "cannot read the file")
         .with_help("give a file that exists and can be read")
         .with_source(error)
 }

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Seek};
 
-use pinswitch_diagnostic::{Diagnostic, excerpt, neutral_line};
+use pinswitch_diagnostic::{Diagnostic, codes, excerpt, neutral_line};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -76,8 +76,11 @@ impl Verdict {
         let format = Format::detect(reader.fill_buf().map_err(unreadable)?)?;
         let most = format.max_bytes();
         if bytes > most {
-            return Err(Diagnostic::new(format!("the file has {bytes} bytes, at most {most} are examined"))
-                .with_help("export it with a coarser mesh"));
+            return Err(Diagnostic::new(
+                codes::MESH_NOT_JUDGED,
+                format!("the file has {bytes} bytes, at most {most} are examined"),
+            )
+            .with_help("export it with a coarser mesh"));
         }
         match format {
             Format::Stl => {

@@ -1,6 +1,6 @@
 //! GLB (glTF 2.0, binary): named bodies with materials, for viewers and web pages.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use serde_json::{Value, json};
 
 use crate::mesh::Mesh;
@@ -36,7 +36,7 @@ pub struct GlbError;
 
 impl From<GlbError> for Diagnostic {
     fn from(error: GlbError) -> Self {
-        Self::new(error.to_string()).with_help("raise the chord tolerance")
+        Self::new(codes::FILE_TOO_LARGE, error.to_string()).with_help("raise the chord tolerance")
     }
 }
 

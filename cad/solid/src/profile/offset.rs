@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use super::arc::Arc;
 use super::contour::{Contour, Edge};
@@ -25,7 +25,8 @@ pub struct OffsetError {
 
 impl From<OffsetError> for Diagnostic {
     fn from(error: OffsetError) -> Self {
-        Self::new(error.to_string()).with_help("lower the offset, or lengthen the edge")
+        Self::new(codes::SHAPE_CANNOT_BE_BUILT, error.to_string())
+            .with_help("lower the offset, or lengthen the edge")
     }
 }
 

@@ -1,6 +1,6 @@
 //! The chord tolerance of flattened curves.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use serde::Serialize;
 
 /// A chord tolerance outside of the supported range.
@@ -14,7 +14,7 @@ pub struct ToleranceError {
 
 impl From<ToleranceError> for Diagnostic {
     fn from(error: ToleranceError) -> Self {
-        Self::new(error.to_string()).with_help("use 0.01 mm, which suits every printer")
+        Self::new(codes::OUT_OF_RANGE, error.to_string()).with_help("use 0.01 mm, which suits every printer")
     }
 }
 

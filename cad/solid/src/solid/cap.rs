@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
 use crate::profile::Point2;
@@ -30,7 +30,8 @@ pub enum CapError {
 
 impl From<CapError> for Diagnostic {
     fn from(error: CapError) -> Self {
-        Self::new(error.to_string()).with_help("move the contours apart, or change one of them")
+        Self::new(codes::SHAPE_CANNOT_BE_BUILT, error.to_string())
+            .with_help("move the contours apart, or change one of them")
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -127,7 +127,7 @@ pub enum VerificationError {
 
 impl From<VerificationError> for Diagnostic {
     fn from(error: VerificationError) -> Self {
-        Self::new(error.to_string())
+        Self::new(codes::KERNELS_DISAGREE, error.to_string())
             .with_help("report the configuration: it is an error of pinswitch or of the kernel")
     }
 }

@@ -1,13 +1,13 @@
 //! Errors of configurations: [`Diagnostic`]s that name a field.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 
 /// The error of a configuration: a [`Diagnostic`] whose location names the field and its value.
 pub type ConfigError = Diagnostic;
 
 /// Returns the error of a text that is not valid TOML, with the parser's `message`.
 pub fn syntax_error(location: Location, message: &str) -> Diagnostic {
-    Diagnostic::new(format!("invalid TOML: {}", message.trim().replace('\n', ", ")))
+    Diagnostic::new(codes::INVALID_TOML, format!("invalid TOML: {}", message.trim().replace('\n', ", ")))
         .with_location(location)
         .with_help("fix this line; templates/reference.toml shows the format")
 }
@@ -21,13 +21,19 @@ pub(crate) fn field_location(field: impl Into<String>) -> Location {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}; {help}")]
 pub struct ValueError {
+    code: Code,
     problem: String,
     help: String,
 }
 
 impl ValueError {
-    pub(crate) fn new(problem: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { problem: problem.into(), help: help.into() }
+    pub(crate) fn new(code: Code, problem: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { code, problem: problem.into(), help: help.into() }
+    }
+
+    /// Kind of fault.
+    pub fn code(&self) -> Code {
+        self.code
     }
 
     /// What is wrong with the value, such as `outside 2 to 100`.
@@ -49,6 +55,6 @@ impl ValueError {
 
 impl From<ValueError> for Diagnostic {
     fn from(error: ValueError) -> Self {
-        Self::new(error.problem).with_help(error.help)
+        Self::new(error.code, error.problem).with_help(error.help)
     }
 }

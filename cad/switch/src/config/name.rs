@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use pinswitch_diagnostic::codes;
 use toml_edit::Value;
 use unicode_ident::is_xid_continue;
 
@@ -38,7 +39,8 @@ impl Name {
     /// # Errors
     /// [`ValueError`] for a text that is not a valid name.
     pub fn new(text: &str) -> Result<Self, ValueError> {
-        let error = || ValueError::new("not a valid name", format!("give {}", Self::form()));
+        let error =
+            || ValueError::new(codes::UNKNOWN_WORD, "not a valid name", format!("give {}", Self::form()));
         if is_name(text) { Ok(Self(text.to_owned())) } else { Err(error()) }
     }
 
@@ -107,7 +109,8 @@ impl ParameterValue for Name {
     type Bounds = ();
 
     fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
-        let error = || ValueError::new("not a text", format!("give {}, in quotes", Self::form()));
+        let error =
+            || ValueError::new(codes::WRONG_TYPE, "not a text", format!("give {}, in quotes", Self::form()));
         value.as_str().map_or_else(|| Err(error()), Self::new)
     }
 

@@ -1,5 +1,6 @@
 //! One parameter: its unit, range, origin and reason, and its conversion from and to TOML.
 
+use pinswitch_diagnostic::codes;
 use schemars::JsonSchema;
 use serde::Serialize;
 use toml_edit::{Array, Value};
@@ -107,7 +108,7 @@ type Range<T> = std::ops::RangeInclusive<T>;
 
 /// The error of a number outside `range`.
 fn outside(range: &str, what: &str) -> ValueError {
-    ValueError::new(format!("outside {range}"), format!("give a {what} from {range}"))
+    ValueError::new(codes::OUT_OF_RANGE, format!("outside {range}"), format!("give a {what} from {range}"))
 }
 
 impl ParameterValue for f64 {
@@ -118,9 +119,11 @@ impl ParameterValue for f64 {
         match number(value) {
             Some(number) if bounds.contains(&number) => Ok(number),
             Some(_) => Err(outside(&range, "number")),
-            None => {
-                Err(ValueError::new("not a number", format!("give a number from {range}, without quotes")))
-            }
+            None => Err(ValueError::new(
+                codes::WRONG_TYPE,
+                "not a number",
+                format!("give a number from {range}, without quotes"),
+            )),
         }
     }
 
@@ -147,7 +150,7 @@ impl ParameterValue for usize {
             Some(_) => Err(outside(&range, "whole number")),
             None => {
                 let help = format!("give a whole number from {range}, without quotes");
-                Err(ValueError::new("not a whole number", help))
+                Err(ValueError::new(codes::WRONG_TYPE, "not a whole number", help))
             }
         }
     }
@@ -170,7 +173,8 @@ impl ParameterValue for bool {
     type Bounds = ();
 
     fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
-        let error = || ValueError::new("not a boolean", "give true or false, without quotes");
+        let error =
+            || ValueError::new(codes::WRONG_TYPE, "not a boolean", "give true or false, without quotes");
         value.as_bool().ok_or_else(error)
     }
 
@@ -193,13 +197,13 @@ impl ParameterValue for String {
 
     fn read(value: &Value, longest: &usize) -> Result<Self, ValueError> {
         let is_printable = |text: &str| text.chars().all(|c| (' '..='~').contains(&c));
-        let problem = match value.as_str() {
-            None => "not a text",
-            Some(text) if text.len() > *longest => "too long",
-            Some(text) if !is_printable(text) => "not printable ASCII",
+        let (code, problem) = match value.as_str() {
+            None => (codes::WRONG_TYPE, "not a text"),
+            Some(text) if text.len() > *longest => (codes::UNKNOWN_WORD, "too long"),
+            Some(text) if !is_printable(text) => (codes::UNKNOWN_WORD, "not printable ASCII"),
             Some(text) => return Ok(text.to_owned()),
         };
-        Err(ValueError::new(problem, format!("give {}, in quotes", Self::describe(longest))))
+        Err(ValueError::new(code, problem, format!("give {}, in quotes", Self::describe(longest))))
     }
 
     fn write(&self) -> Value {
@@ -216,7 +220,13 @@ impl ParameterValue for Vec<usize> {
 
     fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
         let whole = |v: &Value| v.as_integer().and_then(|i| usize::try_from(i).ok());
-        let error = || ValueError::new("not a list of groove numbers", "give a list such as [5, 8, 11]");
+        let error = || {
+            ValueError::new(
+                codes::WRONG_TYPE,
+                "not a list of groove numbers",
+                "give a list such as [5, 8, 11]",
+            )
+        };
         value.as_array().and_then(|list| list.iter().map(whole).collect()).ok_or_else(error)
     }
 
@@ -245,7 +255,7 @@ pub trait Choice: Sized + Copy + PartialEq + 'static {
     /// [`ValueError`] lists the names.
     fn from_name(name: Option<&str>) -> Result<Self, ValueError> {
         let choice = Self::NAMES.iter().find(|(_, n)| Some(*n) == name);
-        let error = || ValueError::new("unknown value", format!("give {}", Self::all()));
+        let error = || ValueError::new(codes::UNKNOWN_WORD, "unknown value", format!("give {}", Self::all()));
         choice.map(|(choice, _)| *choice).ok_or_else(error)
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Change, Diagnostic, Location};
+use pinswitch_diagnostic::{Change, Diagnostic, Location, codes};
 use toml_edit::{Document, Item, TableLike, Value};
 
 use super::error::{ValueError, field_location, syntax_error};
@@ -81,7 +81,7 @@ fn read_into(reading: &mut ClampedReading, text: &str, file: &str) -> Result<(),
             let parameter = find(table, key).map_err(|e| e.or_at(&at(key_span(entries, key))))?;
             let location = at(item.span().or_else(|| key_span(entries, key)));
             let value = item.as_value().ok_or_else(|| {
-                Diagnostic::new("not a single value")
+                Diagnostic::new(codes::WRONG_TYPE, "not a single value")
                     .with_help(format!("give {}", (parameter.range)()))
                     .with_location(Location::field(parameter.path(), item.type_name()))
                     .or_at(&location)
@@ -108,7 +108,7 @@ fn read_into(reading: &mut ClampedReading, text: &str, file: &str) -> Result<(),
 pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(), Diagnostic> {
     let Some((path, value)) = assignment.split_once('=') else {
         let problem = format!("{assignment:?} is not an assignment");
-        return Err(Diagnostic::new(problem).with_help("write TABLE.KEY=VALUE"));
+        return Err(Diagnostic::new(codes::MALFORMED_VALUE, problem).with_help("write TABLE.KEY=VALUE"));
     };
     let (path, value) = (path.trim(), value.trim());
     let (table, key) = path.split_once('.').ok_or_else(|| incomplete_path(path, value))?;
@@ -126,15 +126,24 @@ fn incomplete_path(name: &str, value: &str) -> Diagnostic {
     let path_of = |is_meant: &dyn Fn(&Parameter<Configuration>) -> bool| {
         Configuration::PARAMETERS.iter().find(|p| is_meant(p)).map(Parameter::path)
     };
-    let (problem, help) = match (path_of(&|p| p.section == name), path_of(&|p| p.key == name)) {
-        (Some(path), _) => ("a table, not a value", format!("set one of its values: --set {path}={value}")),
-        (None, Some(path)) => ("key without its table", format!("write --set {path}={value}")),
+    let (code, problem, help) = match (path_of(&|p| p.section == name), path_of(&|p| p.key == name)) {
+        (Some(path), _) => (
+            codes::WRONG_TYPE,
+            "a table, not a value",
+            format!("set one of its values: --set {path}={value}"),
+        ),
+        (None, Some(path)) => {
+            (codes::UNKNOWN_FIELD, "key without its table", format!("write --set {path}={value}"))
+        }
         (None, None) => {
-            let problem = if name.is_empty() { "no field before '='" } else { "unknown field" };
-            (problem, format!("write TABLE.KEY=VALUE; the tables are {}", sections().join(", ")))
+            let (code, problem) = match name {
+                "" => (codes::MALFORMED_VALUE, "no field before '='"),
+                _ => (codes::UNKNOWN_FIELD, "unknown field"),
+            };
+            (code, problem, format!("write TABLE.KEY=VALUE; the tables are {}", sections().join(", ")))
         }
     };
-    let error = Diagnostic::new(problem).with_help(help);
+    let error = Diagnostic::new(code, problem).with_help(help);
     if name.is_empty() { error } else { error.with_location(field_location(name)) }
 }
 
@@ -178,7 +187,10 @@ const REPLACED: [(&str, &str, &str); 1] =
 fn replaced(parameter: &Parameter<Configuration>, value: &Value, error: ValueError) -> ValueError {
     let is_same =
         |(field, word, _): &&(&str, &str, &str)| *field == parameter.path() && value.as_str() == Some(*word);
-    REPLACED.iter().find(is_same).map_or(error, |(_, _, help)| ValueError::new("no longer a kind", *help))
+    REPLACED
+        .iter()
+        .find(is_same)
+        .map_or(error, |(_, _, help)| ValueError::new(codes::UNKNOWN_WORD, "no longer a kind", *help))
 }
 
 fn set(c: &mut Configuration, parameter: &Parameter<Configuration>, value: &Value) -> Result<(), Diagnostic> {
@@ -203,7 +215,7 @@ fn not_a_table(name: &str, item: &Item) -> Diagnostic {
     if !sections().contains(&name) {
         return unknown(name, &sections(), "table");
     }
-    Diagnostic::new("not a table")
+    Diagnostic::new(codes::WRONG_TYPE, "not a table")
         .with_location(Location::field(name, item.type_name()))
         .with_help(format!("write it as a table: [{name}]"))
 }
@@ -250,7 +262,7 @@ fn other_kind_of_file(document: &dyn TableLike, file: &str) -> Option<Diagnostic
     let (key, kind, help) = OTHER_KINDS.iter().find_map(|(keys, kind, help)| {
         keys.iter().find(|key| document.contains_key(key)).map(|key| (key, kind, help))
     })?;
-    let error = Diagnostic::new(format!("not a configuration: this is {kind}"));
+    let error = Diagnostic::new(codes::OTHER_KIND_OF_FILE, format!("not a configuration: this is {kind}"));
     Some(error.with_location(field_location(*key)).with_help(help.replace("FILE", file)))
 }
 
@@ -276,7 +288,9 @@ fn unknown(word: &str, known: &[&str], what: &str) -> Diagnostic {
         Some(near) => format!("did you mean {near:?}? templates/reference.toml lists all"),
         None => format!("known are {}", known.join(", ")),
     };
-    Diagnostic::new(format!("unknown {what}")).with_location(field_location(word)).with_help(help)
+    Diagnostic::new(codes::UNKNOWN_FIELD, format!("unknown {what}"))
+        .with_location(field_location(word))
+        .with_help(help)
 }
 
 fn key_span(table: &dyn TableLike, key: &str) -> Option<Range<usize>> {

@@ -141,7 +141,7 @@ mod tests {
         let error = read("# mine\n[shell]\nwidth_mm = -3 # narrow\n", "a.toml").unwrap_err();
         assert_eq!(
             error.render("error"),
-            "error: a.toml:3:12: shell.width_mm = -3: outside 2 to 100\n\
+            "error: a.toml:3:12: shell.width_mm = -3: outside 2 to 100 [out-of-range]\n\
              \x20 3 | width_mm = -3 # narrow\n\
              \x20   |            ^^\n\
              \x20 help: give a number from 2 to 100"

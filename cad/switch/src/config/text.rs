@@ -1,6 +1,6 @@
 //! Decoding of the bytes of a file.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 
 /// Decodes the bytes of `file` as UTF-8.
 ///
@@ -19,7 +19,7 @@ pub fn text(bytes: Vec<u8>, file: &str) -> Result<String, Diagnostic> {
         let before = e.as_bytes().get(..at).unwrap_or_default();
         let byte = e.as_bytes().get(at).copied().unwrap_or_default();
         let line = 1 + before.iter().filter(|b| **b == b'\n').count();
-        Diagnostic::new(format!("byte 0x{byte:02x} is not valid UTF-8"))
+        Diagnostic::new(codes::NOT_UTF_8, format!("byte 0x{byte:02x} is not valid UTF-8"))
             .with_location(Location::line(file, line))
             .with_help("save the file as UTF-8 text")
     })

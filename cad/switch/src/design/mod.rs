@@ -11,11 +11,13 @@ pub(crate) mod rig;
 pub mod rules;
 mod tendon_ends;
 
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
 use pinswitch_friction::{Contact, ContactError, PinPattern, Substrate};
 
 use crate::config::{Choice, Configuration, Diagnostic, Location};
 use crate::process::Process;
+use crate::warnings::Warning;
 use pinswitch_solid::profile::ChordTolerance;
 
 pub(crate) use clearance::{clearance, clearance_grade};
@@ -85,7 +87,7 @@ impl Design {
     }
 
     /// Returns the warnings of the rules, each with the parameter to change.
-    pub fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<Warning> {
         rules::warnings(&self.dimensions)
     }
 
@@ -126,7 +128,7 @@ fn contact(dimensions: &Dimensions) -> Result<Contact, Diagnostic> {
         })
         .map_err(|e| {
             let error = match e {
-                ContactError::NoPinInWrap { degrees } => Diagnostic::new(format!(
+                ContactError::NoPinInWrap { degrees } => Diagnostic::new(codes::NO_SUPPORT, format!(
                     "no pin within the wrap of {degrees:.2} deg, and the rigid proxy carries load on its pins only"
                 )),
                 other => Diagnostic::from(other),

@@ -1,5 +1,6 @@
 //! `manifest.json`: settings, dimensions, parts, bill, prediction and files of a set, with hashes to verify them.
 
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::{FrictionCurve, Law, PredictionStatus, Transition};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ use crate::output::{OutputFile, SetError};
 use crate::parts::{Part, Touch, touches};
 use crate::prediction::Prediction;
 use crate::process::part_density_g_cm3;
+use crate::warnings::Warning;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_solid::verification::Verification;
 
@@ -209,7 +211,7 @@ pub struct Manifest {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Comparison>,
     /// Warnings, each with the parameter to change.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// All other files of the set.
     pub files: Vec<FileEntry>,
 }
@@ -227,8 +229,9 @@ impl Manifest {
             .into_iter()
             .map(|(part, facts)| {
                 let entry = part_entry(part, facts, design);
-                warnings.extend(entry.notes.iter().map(|note| format!("{}: {note}", part.name)));
-                warnings.extend(part.thin_warning(design));
+                let note = |note| Warning::new(codes::FEATURE_LEFT_OUT, format!("{}: {note}", part.name));
+                warnings.extend(entry.notes.iter().map(note));
+                warnings.extend(part.thin_warning(design).map(|text| Warning::new(codes::THIN_PLACE, text)));
                 entry
             })
             .collect();

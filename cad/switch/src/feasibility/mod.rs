@@ -140,7 +140,7 @@ pub fn explained(error: BuildError, configuration: &Configuration) -> BuildError
     let help = found.iter().map(|c| proposal::instruction(configuration, c, &subject)).collect();
     let diagnostic = match error {
         BuildError::Configuration(diagnostic) => diagnostic,
-        other => Diagnostic::new(other.problem()),
+        other => Diagnostic::new(other.code(), other.problem()),
     };
     let location = Location {
         value: configuration.shown(&subject),

@@ -6,7 +6,7 @@ use crate::built::Built;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_solid::render::{Body, View, render};
 
 pub use curve::curve_files;
@@ -72,7 +72,7 @@ pub const ALL: &str = "all";
 pub fn named(names: &[&str]) -> Result<Vec<&'static Format>, Diagnostic> {
     let known = || FORMATS.iter().filter(|f| f.inclusion != Inclusion::Always).map(|f| f.name);
     if let Some(unknown) = names.iter().find(|n| **n != ALL && !known().any(|k| k == **n)) {
-        return Err(Diagnostic::new(format!("unknown format {unknown}"))
+        return Err(Diagnostic::new(codes::UNSUPPORTED_FORMAT, format!("unknown format {unknown}"))
             .with_help(format!("use {}", known().collect::<Vec<_>>().join(", "))));
     }
     let is_included =

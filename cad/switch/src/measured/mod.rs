@@ -20,7 +20,7 @@ mod advice;
 mod comparison;
 mod quantity;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_friction::physics::Bed;
 use toml_edit::{Document, Item, Value};
 
@@ -57,15 +57,15 @@ impl Measured {
         for (key, item) in document.as_table().iter() {
             let location = at(item.span());
             let Some(quantity) = QUANTITIES.iter().find(|q| q.key == key) else {
-                return Err(Diagnostic::new(format!("unknown quantity {key:?}"))
+                return Err(Diagnostic::new(codes::UNKNOWN_FIELD, format!("unknown quantity {key:?}"))
                     .with_location(location)
                     .with_help(format!("the quantities are {}", keys())));
             };
             let [low, high] = quantity.range;
             let help = format!("give one reading or a list of them, from {low} to {high} {}", quantity.unit);
-            let refuse = |problem: &str| {
+            let refuse = |code: Code, problem: &str| {
                 let location = location.clone().with_field(key, item.to_string().trim());
-                Diagnostic::new(problem).with_location(location).with_help(help.clone())
+                Diagnostic::new(code, problem).with_location(location).with_help(help.clone())
             };
             let values: Vec<f64> = match item {
                 Item::Value(Value::Array(list)) => list.iter().map(number).collect::<Option<Vec<f64>>>(),
@@ -73,14 +73,15 @@ impl Measured {
                 _ => None,
             }
             .filter(|values| !values.is_empty())
-            .ok_or_else(|| refuse("not a reading"))?;
+            .ok_or_else(|| refuse(codes::WRONG_TYPE, "not a reading"))?;
             if values.iter().any(|v| !(low..=high).contains(v)) {
-                return Err(refuse(&format!("outside {low} to {high}")));
+                return Err(refuse(codes::OUT_OF_RANGE, &format!("outside {low} to {high}")));
             }
             readings.push((quantity, values));
         }
         if readings.is_empty() {
-            let problem = Diagnostic::new("nothing is measured").with_location(Location::file(file));
+            let problem = Diagnostic::new(codes::MISSING_FIELD, "nothing is measured")
+                .with_location(Location::file(file));
             return Err(problem.with_help(format!("give at least one of {}", keys())));
         }
         readings.sort_by_key(|(quantity, _)| QUANTITIES.iter().position(|q| q.key == quantity.key));

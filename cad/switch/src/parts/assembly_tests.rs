@@ -550,7 +550,11 @@ fn thin_places_have_position_and_remedy() {
     assert!(warning("support-left").unwrap().contains("a wall of 0.54 mm"));
     // A rule reports the end walls of the shell, so that the part does not.
     assert_eq!(warning("shell"), None);
-    assert!(bare.warnings().iter().any(|w| w.contains("end walls are 0.54 mm")), "{:?}", bare.warnings());
+    assert!(
+        bare.warnings().iter().any(|w| w.text().contains("end walls are 0.54 mm")),
+        "{:?}",
+        bare.warnings()
+    );
     // The wall between funnel and key hole was once 0.61 mm.
     let lid = printed(&design(&[])).unwrap().into_iter().find(|p| p.name == "mould-lid").unwrap();
     let thinnest = lid.solid.thin_places(3.0)[0].thickness_mm;

@@ -4,6 +4,7 @@ use super::{Part, Role, printed, reference_bodies};
 use crate::config::{ConfigError, Location};
 use crate::design::Design;
 use crate::design::rules::Direction::{self, Lower, Raise, Restore, Set};
+use pinswitch_diagnostic::codes;
 use pinswitch_solid::files::{BED_EDGE_MM, Box3, needed_bed_mm};
 
 /// Checks that each of `parts` fits on the bed.
@@ -21,7 +22,7 @@ pub fn fit_on_bed(parts: &[Part], design: &Design) -> Result<(), ConfigError> {
                 high.y - low.y
             );
             let location = Location::field("print.bed_mm", bed_mm.to_string());
-            Err(ConfigError::new(problem).with_location(location))
+            Err(ConfigError::new(codes::PART_EXCEEDS_BED, problem).with_location(location))
         }
         _ => Ok(()),
     }

@@ -8,6 +8,7 @@ use super::mount::left_out;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, field_location};
 use crate::design::{Design, Hole, Joint, Link};
+use pinswitch_diagnostic::codes;
 use pinswitch_solid::profile::{Contour, Point2, hull};
 use pinswitch_solid::solid::{Facing, RingId, Solid};
 
@@ -17,7 +18,9 @@ pub(crate) const PROXIMAL: &str = "link-proximal";
 pub(crate) const DISTAL: &str = "link-distal";
 
 fn joint_of(design: &Design) -> Result<Joint, ConfigError> {
-    design.joint().ok_or_else(|| ConfigError::new("no joint").with_location(field_location("mount.kind")))
+    design.joint().ok_or_else(|| {
+        ConfigError::new(codes::INTERNAL_ERROR, "no joint").with_location(field_location("mount.kind"))
+    })
 }
 
 fn circle(hole: &Hole) -> Contour {
@@ -26,8 +29,9 @@ fn circle(hole: &Hole) -> Contour {
 
 /// The outline of a link: the convex hull of the areas that it carries.
 fn outline(design: &Design, joint: &Joint, is_proximal: bool) -> Result<Contour, ConfigError> {
-    hull(&joint.outline_discs(design, is_proximal))
-        .ok_or_else(|| ConfigError::new("no outline").with_location(field_location("mount.kind")))
+    hull(&joint.outline_discs(design, is_proximal)).ok_or_else(|| {
+        ConfigError::new(codes::INTERNAL_ERROR, "no outline").with_location(field_location("mount.kind"))
+    })
 }
 
 /// Adds the block of guide or anchor: a base from `foot_mm` to `floor_mm`, and two jaws on it up to `top_mm`. Returns the

@@ -23,6 +23,7 @@ mod tendon;
 
 use crate::config::{ConfigError, Configuration, DriveKind, Location, MouldKind, MountKind, field_location};
 use crate::design::Design;
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
@@ -180,7 +181,8 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
 /// Returns the error of `field` when an offset that depends on it leaves nothing of an edge.
 fn offset_error(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
     move |e| {
-        ConfigError::new(format!("too large for this geometry: {e}")).with_location(field_location(field))
+        ConfigError::new(codes::SHAPE_CANNOT_BE_BUILT, format!("too large for this geometry: {e}"))
+            .with_location(field_location(field))
     }
 }
 

@@ -5,6 +5,7 @@ use super::omission::LeftOut;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, Configuration, MountKind, field_location};
 use crate::design::{Design, Hole, SheathStop, pulley_width_mm, stop_recess};
+use pinswitch_diagnostic::codes;
 use pinswitch_solid::profile::{Contour, Point2, Vector2, hull};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -43,7 +44,7 @@ fn face_mm(design: &Design) -> f64 {
 }
 
 fn no_plate() -> ConfigError {
-    ConfigError::new("no mounting plate").with_location(field_location("mount.kind"))
+    ConfigError::new(codes::INTERNAL_ERROR, "no mounting plate").with_location(field_location("mount.kind"))
 }
 
 /// The plate: the convex hull of discs around its holes, printed on its outer face.

@@ -11,7 +11,7 @@ mod target;
 mod tolerance;
 
 use crate::config::{Diagnostic, Location};
-use pinswitch_diagnostic::short_number;
+use pinswitch_diagnostic::{Code, codes, short_number};
 use pinswitch_friction::sort_by_number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -126,13 +126,19 @@ pub struct Tendon {
 }
 
 /// The error of a field with a value.
-fn invalid(field: impl Into<String>, value: impl Into<String>, problem: &str, help: &str) -> Diagnostic {
-    Diagnostic::new(problem).with_help(help).with_location(Location::field(field, value))
+fn invalid(
+    code: Code,
+    field: impl Into<String>,
+    value: impl Into<String>,
+    problem: &str,
+    help: &str,
+) -> Diagnostic {
+    Diagnostic::new(code, problem).with_help(help).with_location(Location::field(field, value))
 }
 
 /// The error of targets that exclude each other.
 fn contradiction(a: &Target, b: &Target, reason: &str) -> Diagnostic {
-    Diagnostic::new(format!("'{a}' and '{b}' contradict each other{reason}"))
+    Diagnostic::new(codes::CONTRADICTORY_TARGETS, format!("'{a}' and '{b}' contradict each other{reason}"))
         .with_help("drop one, or widen it")
 }
 
@@ -143,7 +149,7 @@ impl Request {
     /// A [`Diagnostic`] for a request without targets, two targets that contradict each other, or a value out of range.
     pub fn check(&self) -> Result<(), Diagnostic> {
         if self.targets.is_empty() {
-            let error = Diagnostic::new("the request has no target");
+            let error = Diagnostic::new(codes::INVALID_REQUIREMENT, "the request has no target");
             return Err(error.with_help("give a threshold, a friction or a stiffness"));
         }
         self.targets.iter().try_for_each(Target::check_magnitude)?;
@@ -157,7 +163,13 @@ impl Request {
         {
             let value = format!("{}..{}", short_number(low), short_number(high));
             let problem = format!("not a range within 0 to {HEAVIEST_N} N");
-            return Err(invalid("targets.load_range_n", value, &problem, "give the lightest load first"));
+            return Err(invalid(
+                codes::INVALID_RANGE,
+                "targets.load_range_n",
+                value,
+                &problem,
+                "give the lightest load first",
+            ));
         }
         self.check_limits()?;
         self.check_parameters()?;
@@ -165,6 +177,7 @@ impl Request {
         let is_valid = |sd: f64| (0.0..=LARGEST_DEVIATION).contains(&sd);
         match Tolerances::FIELDS.iter().zip(deviations).find(|(_, sd)| !is_valid(*sd)) {
             Some((field, sd)) => Err(invalid(
+                codes::OUT_OF_RANGE,
                 format!("tolerances.{field}"),
                 short_number(sd),
                 "not a standard deviation",
@@ -184,6 +197,7 @@ impl Request {
             let (low, high) = target.requirement.interval();
             if low > heaviest || high < lightest {
                 return Err(invalid(
+                    codes::OUT_OF_RANGE,
                     "targets.load_range_n",
                     format!("{lightest}..{heaviest}"),
                     &format!("'{target}' is outside the range of loads, in N"),
@@ -223,6 +237,7 @@ impl Request {
         for (field, value) in lengths {
             if let Some(value) = value.filter(|v| !(least..=most).contains(v)) {
                 return Err(invalid(
+                    codes::OUT_OF_RANGE,
                     format!("limits.{field}"),
                     short_number(value),
                     &format!("outside {least} to {most} mm"),
@@ -232,6 +247,7 @@ impl Request {
         }
         match self.limits.pins {
             Some((fewest, most)) if fewest == 0 || fewest > most => Err(invalid(
+                codes::INVALID_RANGE,
                 "limits.pins",
                 format!("{fewest}..{most}"),
                 "not a range of at least 1 pin",
@@ -248,7 +264,13 @@ impl Request {
                 return Ok(());
             }
             let problem = format!("outside {least} to {most}, the range of {}", parameter.field());
-            Err(invalid(field, short_number(value), &problem, "give a value in the range"))
+            Err(invalid(
+                codes::OUT_OF_RANGE,
+                field,
+                short_number(value),
+                &problem,
+                "give a value in the range",
+            ))
         };
         for (i, v) in self.vary.parameters.iter().enumerate() {
             let name = v.parameter.name();
@@ -257,11 +279,23 @@ impl Request {
             let value = || format!("{}..{}", short_number(v.from), short_number(v.to));
             if v.from > v.to {
                 let help = "give the smaller value first";
-                return Err(invalid(format!("vary.{name}"), value(), "the range is reversed", help));
+                return Err(invalid(
+                    codes::INVALID_RANGE,
+                    format!("vary.{name}"),
+                    value(),
+                    "the range is reversed",
+                    help,
+                ));
             }
             if self.vary.parameters[..i].iter().any(|other| other.parameter == v.parameter) {
                 let help = "give one range";
-                return Err(invalid(format!("vary.{name}"), value(), "given twice", help));
+                return Err(invalid(
+                    codes::DUPLICATE_ENTRY,
+                    format!("vary.{name}"),
+                    value(),
+                    "given twice",
+                    help,
+                ));
             }
         }
         let lists = [
@@ -275,7 +309,9 @@ impl Request {
             }
             if !list.is_empty() && self.vary.parameters.iter().any(|v| v.parameter == parameter) {
                 let problem = format!("vary.{name} and materials.{name} exclude each other");
-                return Err(Diagnostic::new(problem).with_help("drop one of them"));
+                return Err(
+                    Diagnostic::new(codes::CONFLICTING_SETTINGS, problem).with_help("drop one of them")
+                );
             }
         }
         for tendon in &self.materials.tendon {
@@ -286,7 +322,13 @@ impl Request {
                     short_number(tendon.coating_mm)
                 );
                 let help = "give 0.1 to 6 mm of rope and 0 to 2 mm of coating";
-                return Err(invalid("materials.tendon", value, "not a tendon that a switch can have", help));
+                return Err(invalid(
+                    codes::OUT_OF_RANGE,
+                    "materials.tendon",
+                    value,
+                    "not a tendon that a switch can have",
+                    help,
+                ));
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::target::Requirement;
 use crate::config::ValueError;
-use pinswitch_diagnostic::short_number;
+use pinswitch_diagnostic::{codes, short_number};
 
 /// Accepted phrases, as the help of errors.
 pub const FORMS: &str =
@@ -27,7 +27,9 @@ pub fn parse_requirement(text: &str, within: f64) -> Result<(Requirement, Option
     let number = |word: &str| {
         let digits = word.strip_suffix("N").unwrap_or(word);
         let value = digits.parse::<f64>();
-        positive(value.map_err(|_| ValueError::new(format!("{word:?} is not a number"), FORMS))?)
+        positive(value.map_err(|_| {
+            ValueError::new(codes::MALFORMED_VALUE, format!("{word:?} is not a number"), FORMS)
+        })?)
     };
     // The last `at N` is the load, unless it belongs to `at most` or `at least`.
     let (words, load_n) = match words.as_slice() {
@@ -44,7 +46,7 @@ pub fn parse_requirement(text: &str, within: f64) -> Result<(Requirement, Option
             if low > high {
                 let problem =
                     format!("the range {} to {} is reversed", short_number(low), short_number(high));
-                return Err(ValueError::new(problem, "give the smaller number first"));
+                return Err(ValueError::new(codes::INVALID_RANGE, problem, "give the smaller number first"));
             }
             Requirement::Between(low, high)
         }
@@ -52,7 +54,13 @@ pub fn parse_requirement(text: &str, within: f64) -> Result<(Requirement, Option
         ["about", value, "within", share] => {
             Requirement::About { value: number(value)?, within: parse_share(share)? }
         }
-        _ => return Err(ValueError::new(format!("{text:?} is not a requirement"), FORMS)),
+        _ => {
+            return Err(ValueError::new(
+                codes::INVALID_REQUIREMENT,
+                format!("{text:?} is not a requirement"),
+                FORMS,
+            ));
+        }
     };
     Ok((requirement, load_n))
 }
@@ -74,6 +82,7 @@ pub(super) fn is_share(value: f64) -> bool {
 
 pub(super) fn not_a_share(value: &str) -> ValueError {
     ValueError::new(
+        codes::OUT_OF_RANGE,
         format!("{value} is not a share"),
         "give a number above 0 and below 1, such as 0.1 or 10%",
     )
@@ -85,6 +94,7 @@ pub(super) fn positive(value: f64) -> Result<f64, ValueError> {
         Ok(value)
     } else {
         Err(ValueError::new(
+            codes::OUT_OF_RANGE,
             format!("{} is not a number above 0", short_number(value)),
             "give a number above 0",
         ))

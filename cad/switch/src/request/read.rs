@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use pinswitch_diagnostic::codes;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use toml::Value;
@@ -120,7 +121,7 @@ impl Request {
             error.or_at(&Location::in_text(file, text, span_of(&field, text)))
         };
         let parsed: File = toml::from_str(text).map_err(|e| {
-            Diagnostic::new(e.message().trim().replace('\n', ", "))
+            Diagnostic::new(codes::of_toml(e.message()), e.message().trim().replace('\n', ", "))
                 .with_help("cad/doc/design.md shows the format")
                 .with_location(Location::in_text(file, text, e.span().unwrap_or(0..0)))
         })?;
@@ -196,6 +197,7 @@ fn requirement_of(value: &Value, within: f64) -> Result<Requirement, ValueError>
         Value::String(text) => match parse_requirement(text, within)? {
             (requirement, None) => Ok(requirement),
             (_, Some(load)) => Err(ValueError::new(
+                codes::INVALID_REQUIREMENT,
                 format!("'at {load}' is only allowed in a friction"),
                 "write it as an entry of targets.friction",
             )),
@@ -204,18 +206,29 @@ fn requirement_of(value: &Value, within: f64) -> Result<Requirement, ValueError>
             const KEYS: [&str; 4] = ["at_most", "at_least", "about", "within"];
             if let Some(key) = table.keys().find(|k| !KEYS.contains(&k.as_str())) {
                 let help = format!("known are {}", KEYS.join(", "));
-                return Err(ValueError::new(format!("unknown key {key}"), help));
+                return Err(ValueError::new(codes::UNKNOWN_FIELD, format!("unknown key {key}"), help));
             }
             let number = |key: &str| {
-                let error =
-                    |v: &Value| ValueError::new(format!("{key} = {v} is not a number"), "give a number");
+                let error = |v: &Value| {
+                    ValueError::new(
+                        codes::WRONG_TYPE,
+                        format!("{key} = {v} is not a number"),
+                        "give a number",
+                    )
+                };
                 table.get(key).map(|v| float(v).ok_or_else(|| error(v))).transpose()
             };
             let [at_most, at_least, about, own_within] = KEYS.map(number);
             requirement([at_most?, at_least?, about?, own_within?], within)
         }
         other => {
-            let error = || ValueError::new("not a requirement", "give a number, a phrase or a table");
+            let error = || {
+                ValueError::new(
+                    codes::INVALID_REQUIREMENT,
+                    "not a requirement",
+                    "give a number, a phrase or a table",
+                )
+            };
             Ok(Requirement::About { value: positive(float(other).ok_or_else(error)?)?, within })
         }
     }
@@ -227,13 +240,18 @@ fn requirement(
     within: f64,
 ) -> Result<Requirement, ValueError> {
     if own_within.is_some() && about.is_none() {
-        return Err(ValueError::new("within without about", "give both or neither"));
+        return Err(ValueError::new(
+            codes::CONFLICTING_SETTINGS,
+            "within without about",
+            "give both or neither",
+        ));
     }
     match (at_most.map(positive).transpose()?, at_least.map(positive).transpose()?, about) {
         (Some(high), None, None) => Ok(Requirement::AtMost(high)),
         (None, Some(low), None) => Ok(Requirement::AtLeast(low)),
         (Some(high), Some(low), None) if low <= high => Ok(Requirement::Between(low, high)),
         (Some(high), Some(low), None) => Err(ValueError::new(
+            codes::CONTRADICTORY_TARGETS,
             format!("at least {low} and at most {high} contradict each other"),
             "drop one, or widen it",
         )),
@@ -244,8 +262,16 @@ fn requirement(
             }
             Ok(Requirement::About { value: positive(value)?, within })
         }
-        (None, None, None) => Err(ValueError::new("no requirement", "give at most, at least or about")),
-        _ => Err(ValueError::new("about excludes at most and at least", "give about, or the other two")),
+        (None, None, None) => Err(ValueError::new(
+            codes::INVALID_REQUIREMENT,
+            "no requirement",
+            "give at most, at least or about",
+        )),
+        _ => Err(ValueError::new(
+            codes::CONFLICTING_SETTINGS,
+            "about excludes at most and at least",
+            "give about, or the other two",
+        )),
     }
 }
 
@@ -254,7 +280,8 @@ fn vary_of(table: &BTreeMap<String, Value>) -> Result<Vary, Diagnostic> {
     let mut vary = Vary { pattern: true, parameters: Vec::new() };
     for (key, value) in table {
         let error = |problem: &str, help: &str| {
-            ValueError::new(problem, help).in_field(format!("vary.{key}"), value.to_string())
+            ValueError::new(codes::WRONG_TYPE, problem, help)
+                .in_field(format!("vary.{key}"), value.to_string())
         };
         if key == "pattern" {
             vary.pattern = value.as_bool().ok_or_else(|| error("not a boolean", "give true or false"))?;

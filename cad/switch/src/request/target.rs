@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::config::Diagnostic;
-use pinswitch_diagnostic::short_number;
+use pinswitch_diagnostic::{codes, short_number};
 
 /// A quantity of a friction curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
@@ -177,8 +177,11 @@ impl Target {
     /// Checks that load and values have a magnitude that is possible for a switch.
     pub(super) fn check_magnitude(&self) -> Result<(), Diagnostic> {
         let invalid = |what: &str, value: f64, (least, most): (f64, f64)| {
-            Diagnostic::new(format!("'{self}': {what}{} is outside {least} to {most}", short_number(value)))
-                .with_help("give a value in the range")
+            Diagnostic::new(
+                codes::OUT_OF_RANGE,
+                format!("'{self}': {what}{} is outside {least} to {most}", short_number(value)),
+            )
+            .with_help("give a value in the range")
         };
         let outside = |value: f64, (least, most): (f64, f64)| !(least..=most).contains(&value);
         if let Quantity::Friction { load_n } = self.quantity

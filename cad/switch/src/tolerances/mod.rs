@@ -18,7 +18,7 @@ mod allocation;
 mod chain;
 mod simulation;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::physics::{Constants, Dimension, MadeDimensions, PhysicsSwitch};
 use pinswitch_friction::{Contact, Substrate};
 use schemars::JsonSchema;
@@ -227,18 +227,27 @@ fn slopes(
 /// Returns the error of a design whose silicone does not reach half of the friction within its loads.
 fn does_not_switch(contact: &Contact, (from, to): (f64, f64)) -> Diagnostic {
     if contact.substrate() != Substrate::Silicone {
-        return Diagnostic::new("a rigid proxy has no silicone, and does not switch")
-            .with_location(Location::field("layout.substrate", contact.substrate().as_str()))
-            .with_help("set layout.substrate to silicone");
+        return Diagnostic::new(
+            codes::SWITCH_WITHOUT_THRESHOLD,
+            "a rigid proxy has no silicone, and does not switch",
+        )
+        .with_location(Location::field("layout.substrate", contact.substrate().as_str()))
+        .with_help("set layout.substrate to silicone");
     }
     if contact.pins().count() == 0 {
-        return Diagnostic::new("without pins in the wrap, the silicone carries all friction at any load")
-            .with_location(Location::field("layout.pins", "[]"))
-            .with_help("set layout.pins to grooves within the wrap");
+        return Diagnostic::new(
+            codes::SWITCH_WITHOUT_THRESHOLD,
+            "without pins in the wrap, the silicone carries all friction at any load",
+        )
+        .with_location(Location::field("layout.pins", "[]"))
+        .with_help("set layout.pins to grooves within the wrap");
     }
-    Diagnostic::new(format!("the silicone does not reach half of the friction from {from:.2} to {to:.2} N"))
-        .with_location(Location::field("friction.load_max_n", to.to_string()))
-        .with_help("raise friction.load_max_n, or use fewer pins")
+    Diagnostic::new(
+        codes::SWITCH_WITHOUT_THRESHOLD,
+        format!("the silicone does not reach half of the friction from {from:.2} to {to:.2} N"),
+    )
+    .with_location(Location::field("friction.load_max_n", to.to_string()))
+    .with_help("raise friction.load_max_n, or use fewer pins")
 }
 
 #[cfg(test)]

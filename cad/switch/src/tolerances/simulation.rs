@@ -1,6 +1,6 @@
 //! Simulated switches: independent draws of all deviations, and the threshold of each by a complete solution.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use schemars::JsonSchema;
@@ -52,8 +52,11 @@ pub(super) fn simulate(
     thresholds_n.sort_by(f64::total_cmp);
     let n = thresholds_n.len();
     if n < 2 {
-        return Err(Diagnostic::new(format!("{n} of {draws} simulated switches have a threshold"))
-            .with_help("raise --draws, or widen friction.load_min_n and friction.load_max_n"));
+        return Err(Diagnostic::new(
+            codes::SWITCH_WITHOUT_THRESHOLD,
+            format!("{n} of {draws} simulated switches have a threshold"),
+        )
+        .with_help("raise --draws, or widen friction.load_min_n and friction.load_max_n"));
     }
     let mean_n = thresholds_n.iter().sum::<f64>() / n as f64;
     let squares: f64 = thresholds_n.iter().map(|t| (t - mean_n).powi(2)).sum();

@@ -2,3 +2,6 @@
 
 mod left_out;
 mod thin_walls;
+mod warning;
+
+pub use warning::Warning;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::sort_by_number;
 
 use super::own::{DefinitionError, OwnEffect, duplicate, read_own_effects, unknown_name};
@@ -104,7 +104,7 @@ impl Vocabulary {
     pub fn unknown(&self, id: &str) -> Diagnostic {
         // User-defined effects come first, since a long list is abridged in the middle.
         let own = self.own().map(|own| own.definition().id.as_str());
-        unknown_name("effect", id, own.chain(CATALOGUE.iter().map(|effect| effect.id())))
+        unknown_name(codes::UNKNOWN_NAME, "effect", id, own.chain(CATALOGUE.iter().map(|effect| effect.id())))
     }
 
     /// Returns all effects in the order of the catalogue, followed by the user-defined ones.

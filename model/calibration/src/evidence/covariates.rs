@@ -1,6 +1,6 @@
 //! Covariates of the rows of a table, in the order of their series.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::sort_by_number;
 
 use crate::table::{Frame, PlateauRow, Point};
@@ -51,7 +51,7 @@ impl Covariates {
         let (series_of, _) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
         let mut source: Vec<usize> = (0..rows.len()).collect();
         sort_by_number(&mut source, |i| series_of[*i] as f64);
-        let missing = || Diagnostic::new("a row has a condition that the table lacks");
+        let missing = || Diagnostic::new(codes::INTERNAL_ERROR, "a row has a condition that the table lacks");
         let all = frame.points(rows).ok_or_else(missing)?;
         let points: Vec<Point> = source.iter().map(|i| all[*i]).collect();
         let series: Vec<usize> = source.iter().map(|i| series_of[*i]).collect();

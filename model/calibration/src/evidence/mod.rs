@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 pub use fitted::Fitted;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::Substrate;
 use pinswitch_inference::{
     Member, Posterior, Prediction, Problem, RandomEffect, Rows, SearchOptions, Space, infer,
@@ -138,9 +138,9 @@ impl Evidence {
         let setup = Setup::new(frame, &rows, vocabulary, forms, unknown);
         let space = setup.space(&rows);
         let problem = Problem::new(space, setup.rows(&rows, Session::Fitted), rows.readings.clone())
-            .map_err(|error| Diagnostic::new(error.to_string()))?;
+            .map_err(|error| Diagnostic::new(codes::MODEL_NOT_FINITE, error.to_string()))?;
         let posterior = infer(&problem, options, seed).ok_or_else(|| {
-            Diagnostic::new("the friction model is not finite on this table")
+            Diagnostic::new(codes::MODEL_NOT_FINITE, "the friction model is not finite on this table")
                 .with_help("check loads and readings for values that a rig cannot have")
         })?;
         let groups = rows
@@ -196,8 +196,11 @@ impl Evidence {
         let known = self.setup.frame.devices();
         let is_new = |c: &&Condition| c.device.is_some_and(|device| device >= known);
         if let Some(new) = frame.conditions.iter().find(is_new) {
-            return Err(Diagnostic::new(format!("no series of {} in the fitted table", new.name()))
-                .with_help("measure the layout, or predict only layouts that were measured"));
+            return Err(Diagnostic::new(
+                codes::MODEL_BEYOND_RIG,
+                format!("no series of {} in the fitted table", new.name()),
+            )
+            .with_help("measure the layout, or predict only layouts that were measured"));
         }
         let setup = Setup {
             conditions: frame.conditions.clone().into(),
@@ -220,7 +223,7 @@ impl Evidence {
         let predicted = self
             .posterior
             .predict(&self.problem, &new_rows)
-            .map_err(|error| Diagnostic::new(error.to_string()))?;
+            .map_err(|error| Diagnostic::new(codes::MODEL_NOT_FINITE, error.to_string()))?;
         let mut in_order = vec![Prediction { mean: 0.0, sd: 0.0 }; rows.len()];
         for (place, prediction) in covariates.source.iter().zip(predicted) {
             in_order[*place] = prediction;

@@ -30,7 +30,7 @@ mod search;
 mod whitening;
 
 use nalgebra::DMatrix;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{published, sort_by_number};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -126,18 +126,21 @@ impl From<&ExperimentError> for Diagnostic {
         match error {
             ExperimentError::Model(error) => error.clone(),
             ExperimentError::Mismatch(name) => Self::new(
+                codes::CALIBRATION_INCOMPLETE,
                 "report.json, model.toml and residuals.csv are incomplete or from different calibrations",
             )
             .with_location(Location::file(name))
             .with_help("calibrate again"),
             ExperimentError::CellTooSmall { limit_n } => Self::new(
+                codes::NO_RUN_FITS,
                 "the load cell would exceed 90 % of its range at every load on every layout of the rig",
             )
             .with_location(Location::field("cell_limit_n", limit_n.to_string()))
             .with_help("raise it, or list lighter weights"),
-            ExperimentError::NoTime { minutes, shortest } => Self::new(format!(
-                "no run fits into {minutes} minutes on this rig (the shortest takes {shortest:.1})"
-            ))
+            ExperimentError::NoTime { minutes, shortest } => Self::new(
+                codes::NO_RUN_FITS,
+                format!("no run fits into {minutes} minutes on this rig (the shortest takes {shortest:.1})"),
+            )
             .with_help("give more --minutes, or shorter times in rig.toml"),
         }
     }

@@ -1,6 +1,6 @@
 //! Limits of a rig and the time that its work takes (`rig.toml`).
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Diagnostic, Location, codes, excerpt};
 use pinswitch_friction::{Substrate, published};
 use schemars::JsonSchema;
 use serde::de::Error;
@@ -115,7 +115,9 @@ impl RigLimits {
     pub fn parse(text: &str, file: &str) -> Result<Self, Diagnostic> {
         let rig: Self = toml::from_str(text).map_err(|e| toml_error(file, text, &e).with_help(HELP))?;
         rig.invalid_field().map_or(Ok(rig), |(field, value, problem)| {
-            let error = Diagnostic::new(problem).with_location(Location::field(field, value)).with_help(HELP);
+            let error = Diagnostic::new(codes::OUT_OF_RANGE, problem)
+                .with_location(Location::field(field, value))
+                .with_help(HELP);
             Err(locate_field(error, file, text))
         })
     }

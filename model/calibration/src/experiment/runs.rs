@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{Direction, Substrate, published};
 
 use super::rig::{Contact, MAX_SPEED_PCT, MIN_SPEED_PCT, RigLimits, WRAPS};
@@ -131,8 +131,9 @@ pub fn write_runs(runs: &[PlannedRun]) -> String {
 /// # Errors
 /// A [`Diagnostic`] of the first invalid cell.
 pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> {
-    let malformed =
-        |problem: String| Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP);
+    let malformed = |problem: String| {
+        Diagnostic::new(codes::PLAN_NOT_USABLE, problem).with_location(Location::file(file)).with_help(HELP)
+    };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| malformed(e.to_string()))?.clone();
     let mut at = [0; COLUMNS.len()];
@@ -152,7 +153,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
         let cell = |column: usize| record.get(at[column]).unwrap_or_default();
         let refuse_cell = |column: &str, index: Option<usize>, value: &str, problem: &str| {
             let location = Location::in_csv(file, text, byte, index).with_field(column, value);
-            Diagnostic::new(problem).with_location(location).with_help(HELP)
+            Diagnostic::new(codes::PLAN_NOT_USABLE, problem).with_location(location).with_help(HELP)
         };
         let refuse = |column: usize, problem: &str| {
             refuse_cell(COLUMNS[column], Some(at[column]), cell(column), problem)
@@ -224,7 +225,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
     }
     if runs.is_empty() {
         let problem = "the plan contains no runs, since `experiment` found none that answers a question";
-        return Err(Diagnostic::new(problem).with_location(Location::file(file)));
+        return Err(Diagnostic::new(codes::PLAN_NOT_USABLE, problem).with_location(Location::file(file)));
     }
     Ok(runs)
 }

@@ -1,7 +1,7 @@
 //! Gains over the flexion of a joint. The flexion determines the wrap, and the wrap the pins under
 //! the tendon.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -41,7 +41,7 @@ pub struct JointPathError {
 impl From<JointPathError> for Diagnostic {
     fn from(error: JointPathError) -> Self {
         let JointPathError { field, value, low, high, help } = error;
-        Self::new(format!("must be from {low} to {high}"))
+        Self::new(codes::OUT_OF_RANGE, format!("must be from {low} to {high}"))
             .with_location(Location::field(field, value.to_string()))
             .with_help(help)
     }
@@ -300,7 +300,8 @@ fn state(
     }
     let contact = contact.at_wrap_about(wrap_rad, middle_rad)?;
     let curve = predict(&contact, &[load_n])?;
-    let tensions = Tensions::from_curve(&curve, 0).ok_or("the law gives no point at this load")?;
+    let tensions = Tensions::from_curve(&curve, 0)
+        .ok_or_else(|| Diagnostic::new(codes::LAW_DOES_NOT_APPLY, "the law gives no point at this load"))?;
     Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
 }
 

@@ -1,6 +1,6 @@
 //! Reasons why a law cannot predict a contact.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 use crate::physics::PhysicsError;
 
@@ -23,7 +23,9 @@ pub enum LawError {
 impl From<LawError> for Diagnostic {
     fn from(error: LawError) -> Self {
         match error {
-            LawError::DoesNotApply { problem, help } => Self::new(problem).with_help(help),
+            LawError::DoesNotApply { problem, help } => {
+                Self::new(codes::LAW_DOES_NOT_APPLY, problem).with_help(help)
+            }
             LawError::Physics(error) => error.into(),
         }
     }

@@ -1,6 +1,6 @@
 //! Reasons why the equilibrium of a tendon cannot be computed.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// Reason why the equilibrium of a tendon cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,15 +29,15 @@ impl From<PhysicsError> for Diagnostic {
     fn from(error: PhysicsError) -> Self {
         let other_law = "choose the layout law (--law layout), and report this configuration";
         match error {
-            PhysicsError::NotConverged { unbalanced_n, steps } => Self::new(format!(
+            PhysicsError::NotConverged { unbalanced_n, steps } => Self::new(codes::PHYSICS_NOT_CONVERGED, format!(
                 "the tendon's shape did not converge: {unbalanced_n:.1e} N are unbalanced after {steps} Newton steps"
             ))
             .with_help(other_law),
-            PhysicsError::TensionNotConverged { load_n, iterations } => Self::new(format!(
+            PhysicsError::TensionNotConverged { load_n, iterations } => Self::new(codes::PHYSICS_NOT_CONVERGED, format!(
                 "shape and tension did not converge in {iterations} iterations at a load of {load_n:.2} N"
             ))
             .with_help(other_law),
-            PhysicsError::NoSupport => Self::new("the tendon touches neither pins nor silicone")
+            PhysicsError::NoSupport => Self::new(codes::NO_SUPPORT, "the tendon touches neither pins nor silicone")
                 .with_help("move a pin into the wrap, or use silicone"),
         }
     }

@@ -1,6 +1,6 @@
 //! Raw logs: samples of time and force, and what else the logger recorded.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{Direction, published};
 
 use super::clock::{LogTime, log_time, parse_stamp};
@@ -119,7 +119,7 @@ impl Log {
             let Some(column) = column else { continue };
             if column.len() != count {
                 let problem = format!("column '{name}' has {} values, 'time_s' has {count}", column.len());
-                return Err(Diagnostic::new(problem)
+                return Err(Diagnostic::new(codes::MALFORMED_TABLE, problem)
                     .with_location(Location::file(file))
                     .with_help("give columns of equal length"));
             }
@@ -146,7 +146,7 @@ impl Log {
         // UTF-16 has a byte order mark, or a zero byte in every Latin letter.
         let has_mark = text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff");
         if has_mark || matches!(text, [0, 1..=127, 0, 1..=127, ..] | [1..=127, 0, 1..=127, 0, ..]) {
-            return Err(Diagnostic::new("the text is UTF-16")
+            return Err(Diagnostic::new(codes::NOT_UTF_8, "the text is UTF-16")
                 .with_location(Location::file(file))
                 .with_help("save it as CSV in UTF-8"));
         }
@@ -157,7 +157,7 @@ impl Log {
         let position = |name: &str| names.iter().position(|n| n == name);
         let missing = |column: &str, help: &str| {
             let line = String::from_utf8_lossy(text.split(|b| *b == b'\n').next().unwrap_or_default());
-            Diagnostic::new(format!("column '{column}' is missing"))
+            Diagnostic::new(codes::MISSING_COLUMN, format!("column '{column}' is missing"))
                 .with_location(Location::in_csv(file, &line, 0, None))
                 .with_help(help)
         };
@@ -216,24 +216,29 @@ impl Log {
         let count = time.time_s.len();
         let descending = stamps.windows(2).filter(|w| w[1] < w[0]).count();
         if 2 * descending > stamps.len() {
-            return Err(Diagnostic::new(format!(
-                "column '{time_column}': the time decreases from line to line"
-            ))
+            return Err(Diagnostic::new(
+                codes::IMPOSSIBLE_CLOCK,
+                format!("column '{time_column}': the time decreases from line to line"),
+            )
             .with_location(Location::file(file))
             .with_help("sort the lines by time"));
         }
         if count < MIN_SAMPLES {
-            return Err(Diagnostic::new(format!(
-                "{count} usable samples, at least {MIN_SAMPLES} are needed"
-            ))
+            return Err(Diagnostic::new(
+                codes::TOO_FEW_SAMPLES,
+                format!("{count} usable samples, at least {MIN_SAMPLES} are needed"),
+            )
             .with_location(Location::file(file))
             .with_help("give a log with a number for time and force in every line"));
         }
         if let Some(period_s) = time.impossible_period_s {
-            return Err(Diagnostic::new(format!(
-                "column '{time_column}': the stamps are {period_s:.1e} s apart, at a rate of {:.3e} Hz",
-                1.0 / period_s
-            ))
+            return Err(Diagnostic::new(
+                codes::IMPOSSIBLE_CLOCK,
+                format!(
+                    "column '{time_column}': the stamps are {period_s:.1e} s apart, at a rate of {:.3e} Hz",
+                    1.0 / period_s
+                ),
+            )
             .with_location(Location::file(file))
             .with_help(
                 "give the time in seconds, or name the column by its unit (time_ms, time_us) and declare \
@@ -241,7 +246,7 @@ impl Log {
             ));
         }
         if let Some(period_s) = either_unit(&time, rate_hz) {
-            return Err(Diagnostic::new(format!(
+            return Err(Diagnostic::new(codes::IMPOSSIBLE_CLOCK, format!(
                 "column '{time_column}': the stamps are {period_s} s apart, or in another unit than its name"
             ))
             .with_location(Location::file(file))
@@ -517,7 +522,11 @@ mod tests {
     fn incomplete_logs_are_refused() {
         let error = Log::parse(b"time_s,power_W\n", "a").unwrap_err();
         assert_eq!(error.problem(), "column 'force_N' is missing");
-        assert!(error.render("error").contains("a:1: column 'force_N' is missing\n  1 | time_s,power_W\n"));
+        assert!(
+            error
+                .render("error")
+                .contains("a:1: column 'force_N' is missing [missing-column]\n  1 | time_s,power_W\n")
+        );
         let empty = Log::parse(b"time_s,force_N,position_mm,power_W\n", "a").unwrap_err();
         assert_eq!(empty.problem(), "0 usable samples, at least 30 are needed");
     }

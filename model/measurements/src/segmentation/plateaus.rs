@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::Direction;
 
 use super::cycles::{HalfCycle, half_cycles, unsettled};
@@ -155,9 +155,10 @@ fn add_plateaus(
         if let (Some((low_n, high_n)), Some(load_n)) = (found.contradicted_levels_n, load_n) {
             return Err(one_sided_levels((low_n, high_n), load_n, (uncertain, count)));
         }
-        return Err(Diagnostic::new(format!(
-            "the direction of {uncertain} of {count} moves is uncertain ({reason})"
-        ))
+        return Err(Diagnostic::new(
+            codes::UNCERTAIN_DIRECTIONS,
+            format!("the direction of {uncertain} of {count} moves is uncertain ({reason})"),
+        )
         .with_help("declare rig.protocol, or add a column position_mm or direction to the log"));
     }
     Ok(())
@@ -170,7 +171,7 @@ fn one_sided_levels(
     (uncertain, count): (usize, usize),
 ) -> Diagnostic {
     let side = if low_n > load_n { "above" } else { "below" };
-    Diagnostic::new(format!(
+    Diagnostic::new(codes::UNCERTAIN_DIRECTIONS, format!(
         "the direction of {uncertain} of {count} moves is uncertain: the levels of the force, {low_n:.2} N and \
          {high_n:.2} N, are both {side} the load of {load_n:.2} N"
     ))
@@ -225,7 +226,7 @@ fn refuse_hidden_moves(
     if source != Source::Force || (is_complete && is_visible) {
         return Ok(());
     }
-    Err(Diagnostic::new(format!(
+    Err(Diagnostic::new(codes::MOVES_NOT_VISIBLE, format!(
         "the force shows {} moves, rig.on_s and rig.dwell_s declare about {scheduled}: the others leave it unchanged",
         moves.len() - placed
     ))
@@ -242,7 +243,7 @@ fn refuse_unexplained(unexplained_s: &[(f64, f64)], moves: usize) -> Result<(), 
     else {
         return Ok(());
     };
-    Err(Diagnostic::new(format!(
+    Err(Diagnostic::new(codes::RESTS_NOT_DISTINGUISHED, format!(
         "the force alone does not distinguish the rests from the moves: it is steady in {count} short intervals \
          before a move (the first from {from_s:.1} s to {to_s:.1} s)"
     ))
@@ -253,7 +254,7 @@ fn refuse_unexplained(unexplained_s: &[(f64, f64)], moves: usize) -> Result<(), 
 /// move at either of them.
 fn refuse_unknown_moves(unknown: Option<UnknownMoves>) -> Result<(), Diagnostic> {
     let Some(UnknownMoves { low_n, high_n }) = unknown else { return Ok(()) };
-    Err(Diagnostic::new(format!(
+    Err(Diagnostic::new(codes::RESTS_NOT_DISTINGUISHED, format!(
         "the force alone does not distinguish the rests from the moves: in one direction it alternates between \
          {low_n:.2} N and {high_n:.2} N"
     ))
@@ -445,9 +446,10 @@ fn loaded(
     let mut forces: Vec<f64> = readings.iter().map(|r| r.evidence.force_n).collect();
     let middle = median(&mut forces);
     if middle < -UNLOADED_SHARE * load_n {
-        return Err(Diagnostic::new(format!(
-            "the force is negative: {middle:.2} N for a load of {load_n:.2} N"
-        ))
+        return Err(Diagnostic::new(
+            codes::FORCE_AGAINST_LOAD,
+            format!("the force is negative: {middle:.2} N for a load of {load_n:.2} N"),
+        )
         .with_help("change the sign of force_N: a tension is positive"));
     }
     let count = readings.len();
@@ -457,8 +459,11 @@ fn loaded(
         findings.push(Finding::Unloaded { plateaus: slack.len() });
     }
     if loaded.is_empty() && count > 0 {
-        return Err(Diagnostic::new(format!("the force is {middle:.2} N for a load of {load_n:.2} N"))
-            .with_help("check the unit of force_N and the load"));
+        return Err(Diagnostic::new(
+            codes::FORCE_AGAINST_LOAD,
+            format!("the force is {middle:.2} N for a load of {load_n:.2} N"),
+        )
+        .with_help("check the unit of force_N and the load"));
     }
     Ok(loaded)
 }
@@ -492,11 +497,14 @@ fn refuse_several_loads(readings: &[Reading]) -> Result<(), Diagnostic> {
         return Ok(());
     }
     let list: Vec<String> = levels.iter().take(8).map(|level| format!("{:.2}", mean(level))).collect();
-    Err(Diagnostic::new(format!(
-        "the plateaus are at {} levels ({} N): a log of one load has two",
-        levels.len(),
-        list.join(", ")
-    ))
+    Err(Diagnostic::new(
+        codes::SEVERAL_LOADS_IN_LOG,
+        format!(
+            "the plateaus are at {} levels ({} N): a log of one load has two",
+            levels.len(),
+            list.join(", ")
+        ),
+    )
     .with_help("add a column load_N or load_mass_g, or split the log by load"))
 }
 

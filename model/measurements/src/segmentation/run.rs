@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::Direction;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -125,7 +125,8 @@ impl<'a> RunSegmentation<'a> {
         }
         let file = logs.first().map_or("", |(_, file)| file);
         let Some((log, start_s)) = joined else {
-            return Err(Diagnostic::new("the series has no log").with_location(Location::file(series.name())));
+            return Err(Diagnostic::new(codes::MISSING_FIELD, "the series has no log")
+                .with_location(Location::file(series.name())));
         };
         let segmented = self.add_parts(series, &log, start_s).map_err(|e| e.or_in_file(file))?;
         let count = |direction| segmented.plateaus.iter().filter(|p| p.direction == direction).count();
@@ -145,7 +146,7 @@ impl<'a> RunSegmentation<'a> {
         let length_s = log.time_s.last().copied().unwrap_or_default();
         let start_s = self.clock.add(log.start_s, length_s).map_err(|overlap| {
             let other = self.files.get(overlap.with).map_or("", String::as_str);
-            Diagnostic::new(format!("the clock overlaps that of '{other}'"))
+            Diagnostic::new(codes::OVERLAPPING_CLOCKS, format!("the clock overlaps that of '{other}'"))
                 .with_location(Location::file(file))
                 .with_help("list each log once, with stamps of one clock")
         })?;
@@ -166,7 +167,7 @@ impl<'a> RunSegmentation<'a> {
         let mut all = Segmented { findings: log.clock.clone(), ..Segmented::default() };
         for (part, load) in &parts {
             if load.is_none() && part.load_n.is_none() {
-                return Err(Diagnostic::new("the load is missing").with_help(
+                return Err(Diagnostic::new(codes::NO_LOAD_IN_LOG, "the load is missing").with_help(
                     "give load_mass_g of the series, or a column load_mass_g, load_N or load_measured_N",
                 ));
             }
@@ -233,7 +234,7 @@ impl<'a> RunSegmentation<'a> {
     /// If no log contains a plateau.
     pub fn finish(mut self, file: &str) -> Result<SegmentedRun, Diagnostic> {
         if self.rows.is_empty() {
-            return Err(Diagnostic::new("no log contains a plateau")
+            return Err(Diagnostic::new(codes::NO_PLATEAU, "no log contains a plateau")
                 .with_location(Location::file(file))
                 .with_help("give logs with moves and rests, or with full cycles, that the power, the position or the force shows"));
         }
@@ -293,8 +294,9 @@ pub fn segment_run<E: Error + Send + Sync + 'static>(
     for series in &plan.series {
         let mut logs = Vec::new();
         for file in series.file_names() {
-            let text =
-                read(file).map_err(|e| Diagnostic::from_error(e).with_location(Location::file(file)))?;
+            let text = read(file).map_err(|e| {
+                Diagnostic::from_error(codes::CANNOT_READ, e).with_location(Location::file(file))
+            })?;
             logs.push((text, file.to_owned()));
         }
         run.add(series, &logs)?;

@@ -1,6 +1,6 @@
 //! Description of a raw run (`run.toml`): the rig and the series.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::{Substrate, published};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -114,7 +114,7 @@ impl RunPlan {
         let plan: Self = toml::from_str(text).map_err(|e| toml_error(file, text, &e).with_help(HELP))?;
         let refuse = |field: String, value: String, bound: &str| {
             let location = field_location(file, text, &field).with_field(field, value);
-            Err(Diagnostic::new(bound).with_location(location).with_help(HELP))
+            Err(Diagnostic::new(codes::OUT_OF_RANGE, bound).with_location(location).with_help(HELP))
         };
         let r = &plan.rig;
         for (field, value) in [

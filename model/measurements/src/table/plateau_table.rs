@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io::Read;
 
-use pinswitch_diagnostic::Location;
+use pinswitch_diagnostic::{Location, codes};
 use pinswitch_friction::published::{self, GROOVES};
 use pinswitch_friction::{Direction, Substrate};
 
@@ -76,6 +76,7 @@ impl PlateauTable {
     fn parse(mut source: impl Read, file: &str, force: Force) -> Result<Self, TableError> {
         let mut text = Vec::new();
         source.read_to_end(&mut text).map_err(|e| TableError::Malformed {
+            code: codes::CANNOT_READ,
             location: Box::new(Location::file(file)),
             problem: e.to_string(),
             help: "",
@@ -85,18 +86,19 @@ impl PlateauTable {
             Location::in_csv(file, &String::from_utf8_lossy(&text), byte, None)
         };
         let malformed = |error: csv::Error| {
-            let (problem, help) = match error.kind() {
+            let (code, problem, help) = match error.kind() {
                 csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
+                    codes::MALFORMED_TABLE,
                     format!("{len} cells, but the header has {expected_len}"),
                     "give a cell for every column, empty without a value, and quote cells that contain a comma",
                 ),
                 csv::ErrorKind::Utf8 { .. } => {
-                    ("the text is not UTF-8".to_owned(), "save the table as CSV in UTF-8")
+                    (codes::NOT_UTF_8, "the text is not UTF-8".to_owned(), "save the table as CSV in UTF-8")
                 }
-                _ => (error.to_string(), ""),
+                _ => (codes::MALFORMED_TABLE, error.to_string(), ""),
             };
             let location = error.position().map_or_else(|| Location::file(file), |p| record_at(p.byte()));
-            TableError::Malformed { location: Box::new(location), problem, help }
+            TableError::Malformed { code, location: Box::new(location), problem, help }
         };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_slice());
         let header: Vec<String> = reader
@@ -490,7 +492,11 @@ mod tests {
         let error = read(&HEADER.replace("direction,", "")).unwrap_err();
         assert!(matches!(error, TableError::MissingColumn { column: "direction", .. }));
         let shown = Diagnostic::from(error).render("error");
-        assert!(shown.contains("t.csv:1: column 'direction' is missing\n  1 | series,substrate,"), "{shown}");
+        assert!(
+            shown
+                .contains("t.csv:1: column 'direction' is missing [missing-column]\n  1 | series,substrate,"),
+            "{shown}"
+        );
         let short = read(&format!("{HEADER}\n0,silicone\n")).unwrap_err().to_string();
         assert!(short.starts_with("t.csv:2: 2 cells, but the header has 13"), "{short}");
     }

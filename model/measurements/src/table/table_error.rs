@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes, excerpt};
 
 use super::columns::COLUMNS;
 
@@ -55,6 +55,8 @@ pub enum TableError {
     },
     /// The file cannot be read, or a line is not CSV of the header's width in UTF-8.
     Malformed {
+        /// Kind of fault: the file cannot be read, is not UTF-8, or is malformed.
+        code: Code,
         /// The file, and the line if it is known.
         location: Box<Location>,
         /// What is wrong.
@@ -239,6 +241,28 @@ impl TableError {
         }
     }
 
+    fn code(&self) -> Code {
+        match self {
+            Self::Empty { .. } => codes::TABLE_WITHOUT_ROWS,
+            Self::Session { .. } => codes::SESSION_IN_TWO_FILES,
+            Self::Copied { .. } | Self::CopiedSeries { .. } => codes::COPIED_READINGS,
+            Self::MissingColumn { .. } => codes::MISSING_COLUMN,
+            Self::Cell { .. } => codes::INVALID_CELL,
+            Self::Malformed { code, .. } => *code,
+            Self::Unrelated { .. } => codes::READINGS_DO_NOT_FOLLOW,
+            Self::SwappedColumns { .. } => codes::SWAPPED_COLUMNS,
+            Self::SwappedDirections { .. } | Self::WrongSide { .. } | Self::ExchangedSeries { .. } => {
+                codes::SWAPPED_DIRECTIONS
+            }
+            Self::NoFriction { .. } => codes::NO_FRICTION,
+            Self::LoadUnit { .. } | Self::ImplausibleLoads { .. } => codes::LOAD_UNIT,
+            Self::ReadingUnit { .. } => codes::READING_UNIT,
+            Self::MixedSeries { .. } => codes::MIXED_SERIES,
+            Self::ScatteredWraps { .. } => codes::SCATTERED_WRAPS,
+            Self::TooFewLoads { .. } => codes::TOO_FEW_LOADS,
+        }
+    }
+
     fn problem(&self) -> String {
         let name = |text: &str| excerpt(text, LONGEST_NAME);
         let range = |bounds: &RangeInclusive<f64>| format!("{} to {}", bounds.start(), bounds.end());
@@ -365,7 +389,7 @@ impl TableError {
 
 impl From<&TableError> for Diagnostic {
     fn from(error: &TableError) -> Self {
-        Self::new(error.problem()).with_location(error.location()).with_help(error.help())
+        Self::new(error.code(), error.problem()).with_location(error.location()).with_help(error.help())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use pinswitch_calibration::effects::{Effect, Vocabulary};
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{pluralise, published};
 
 use super::noise::NoisePlan;
@@ -41,7 +41,9 @@ fn require(
     if is_valid {
         return Ok(());
     }
-    Err(Diagnostic::new(problem).with_location(Location::field(field, value())).with_help(help))
+    Err(Diagnostic::new(codes::OUT_OF_RANGE, problem)
+        .with_location(Location::field(field, value()))
+        .with_help(help))
 }
 
 /// Returns an error at the field unless the value is within the range.
@@ -286,13 +288,16 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
             values => at("values", format!("{values:?}")),
         };
         let problem = format!("{} needs {needed} ({})", effect.id(), names.join(", "));
-        return Err(Diagnostic::new(format!("{problem}, found {}", planned.values.len()))
-            .with_location(location)
-            .with_help("give its constants in this order"));
+        return Err(Diagnostic::new(
+            codes::PLAN_OF_RIG_INCONSISTENT,
+            format!("{problem}, found {}", planned.values.len()),
+        )
+        .with_location(location)
+        .with_help("give its constants in this order"));
     }
     for (i, value) in planned.values.iter().enumerate() {
         if let Some(problem) = constant_problem(&*effect, i, *value) {
-            return Err(Diagnostic::new(problem)
+            return Err(Diagnostic::new(codes::OUT_OF_RANGE, problem)
                 .with_location(at(&format!("values[{i}]"), value.to_string()))
                 .with_help("see model/doc/effect-catalogue.md for typical values"));
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::toml_error;
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use toml::de::{DeTable, DeValue};
 
 use super::rig_plan::Plan;
@@ -34,8 +34,9 @@ impl Plan {
     /// # Errors
     /// A [`Diagnostic`] if TOML cannot represent a value.
     pub fn to_text(&self) -> Result<String, Diagnostic> {
-        toml::to_string(self)
-            .map_err(|error| Diagnostic::new("the plan has no form in TOML").with_source(error))
+        toml::to_string(self).map_err(|error| {
+            Diagnostic::new(codes::INTERNAL_ERROR, "the plan has no form in TOML").with_source(error)
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! `{ from = 10, to = 12, count = 5, spacing = "log" }`: a number of values with equal steps, or
 //! equal ratios.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use toml_edit::Item;
 
 use super::range::{Range, has_key};
@@ -23,7 +23,13 @@ fn series(field: ParameterRef, item: &Item) -> Result<Series, Diagnostic> {
     let range = Range::read(field, item)?;
     let count = range.count.unwrap_or(1);
     let refused = |problem: String, help: String| {
-        Err(field_error(&format!("{}.count", field.path()), Some(&count.to_string()), problem, help))
+        Err(field_error(
+            codes::TOO_MANY_ENTRIES,
+            &format!("{}.count", field.path()),
+            Some(&count.to_string()),
+            problem,
+            help,
+        ))
     };
     if count > MAX_COUNT {
         return refused(format!("more than {MAX_COUNT} values"), "lower count".to_owned());
@@ -46,5 +52,5 @@ fn sampler(field: ParameterRef, item: &Item) -> Result<Sampler, Diagnostic> {
     Range::read(field, item)?;
     let path = format!("{}.count", field.path());
     let help = "give the number of points as sample.count";
-    Err(field_error(&path, None, "range with a count in a sample", help))
+    Err(field_error(codes::INVALID_AXIS, &path, None, "range with a count in a sample", help))
 }

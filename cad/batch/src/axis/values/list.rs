@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use toml_edit::{Array, Item, Value};
 
 use super::{Notation, Sampler, Series};
@@ -23,14 +23,26 @@ fn values(field: ParameterRef, item: &Item) -> Result<Vec<Value>, Diagnostic> {
     let path = field.path();
     let written: Vec<&Value> = item.as_array().into_iter().flat_map(Array::iter).collect();
     if written.is_empty() {
-        return Err(field_error(&path, Some("[]"), "empty axis", "give at least one value"));
+        return Err(field_error(
+            codes::INVALID_AXIS,
+            &path,
+            Some("[]"),
+            "empty axis",
+            "give at least one value",
+        ));
     }
     let values: Vec<_> = written.into_iter().map(|v| accepted(field, v)).collect::<Result<_, _>>()?;
     let mut seen = HashSet::new();
     for value in &values {
         let text = value.to_string();
         if !seen.insert(text.clone()) {
-            return Err(field_error(&path, Some(&text), "duplicate value", "list each value once"));
+            return Err(field_error(
+                codes::DUPLICATE_ENTRY,
+                &path,
+                Some(&text),
+                "duplicate value",
+                "list each value once",
+            ));
         }
     }
     Ok(values)

@@ -1,6 +1,6 @@
 //! Ranges in every notation: their ends, and the keys between them.
 
-use pinswitch_diagnostic::{Diagnostic, short_number};
+use pinswitch_diagnostic::{Diagnostic, codes, short_number};
 use toml_edit::{Item, TableLike, Value};
 
 use crate::axis::{ParameterRef, accepted, is_whole};
@@ -35,7 +35,7 @@ pub(super) fn has_key(item: &Item, key: &str) -> bool {
 pub(super) fn unknown_notation(field: ParameterRef, item: &Item) -> Diagnostic {
     match Range::read(field, item) {
         Err(e) => e,
-        Ok(_) => field_error(&field.path(), None, "neither a list nor a range", FORM),
+        Ok(_) => field_error(codes::INVALID_AXIS, &field.path(), None, "neither a list nor a range", FORM),
     }
 }
 
@@ -49,16 +49,34 @@ impl Range {
         let path = field.path();
         let is_whole = is_whole(field).ok_or_else(|| {
             let help = format!("give a list of values; it takes {}", (field.range)());
-            field_error(&path, None, "range over a field that does not take numbers", help)
+            field_error(
+                codes::INVALID_AXIS,
+                &path,
+                None,
+                "range over a field that does not take numbers",
+                help,
+            )
         })?;
-        let table = item
-            .as_table_like()
-            .ok_or_else(|| field_error(&path, Some(&item.to_string()), "neither a list nor a range", FORM))?;
+        let table = item.as_table_like().ok_or_else(|| {
+            field_error(
+                codes::INVALID_AXIS,
+                &path,
+                Some(&item.to_string()),
+                "neither a list nor a range",
+                FORM,
+            )
+        })?;
         if let Some((key, _)) = table.iter().find(|(key, _)| !KEYS.contains(key)) {
-            return Err(field_error(&format!("{path}.{key}"), None, "unknown key of a range", FORM));
+            return Err(field_error(
+                codes::INVALID_AXIS,
+                &format!("{path}.{key}"),
+                None,
+                "unknown key of a range",
+                FORM,
+            ));
         }
         let (Some(from), Some(to)) = (number(table, &path, "from")?, number(table, &path, "to")?) else {
-            return Err(field_error(&path, None, "range without from or to", FORM));
+            return Err(field_error(codes::INVALID_AXIS, &path, None, "range without from or to", FORM));
         };
         let range = Self {
             from,
@@ -81,18 +99,36 @@ impl Range {
         if from > to {
             let value = format!("{} to {}", short_number(from), short_number(to));
             let help = format!("write from = {}, to = {}", short_number(to), short_number(from));
-            return Err(field_error(path, Some(&value), "from is above to", help));
+            return Err(field_error(codes::INVALID_RANGE, path, Some(&value), "from is above to", help));
         }
         if let Some(step) = step.filter(|s| *s <= 0.0) {
             let field = format!("{path}.step");
-            return Err(field_error(&field, Some(&short_number(step)), "not above 0", "give a step above 0"));
+            return Err(field_error(
+                codes::INVALID_AXIS,
+                &field,
+                Some(&short_number(step)),
+                "not above 0",
+                "give a step above 0",
+            ));
         }
         if is_logarithmic && (from <= 0.0 || step.is_some()) {
             let problem = "logarithmic range with a step, or not above 0";
-            return Err(field_error(path, None, problem, "start above 0, and give count instead of step"));
+            return Err(field_error(
+                codes::INVALID_AXIS,
+                path,
+                None,
+                problem,
+                "start above 0, and give count instead of step",
+            ));
         }
         if step.is_some() && count.is_some() {
-            return Err(field_error(path, None, "range with step and count", "keep one of them"));
+            return Err(field_error(
+                codes::INVALID_AXIS,
+                path,
+                None,
+                "range with step and count",
+                "keep one of them",
+            ));
         }
         Ok(())
     }
@@ -142,7 +178,13 @@ fn number(table: &dyn TableLike, path: &str, key: &str) -> Result<Option<f64>, D
     let number = item.as_float().or_else(|| item.as_integer().map(|i| i as f64));
     number.filter(|x| x.is_finite()).map(Some).ok_or_else(|| {
         let field = format!("{path}.{key}");
-        field_error(&field, Some(&item.to_string()), "not a finite number", "give a finite number")
+        field_error(
+            codes::WRONG_TYPE,
+            &field,
+            Some(&item.to_string()),
+            "not a finite number",
+            "give a finite number",
+        )
     })
 }
 
@@ -151,7 +193,13 @@ fn count(table: &dyn TableLike, path: &str) -> Result<Option<usize>, Diagnostic>
     let count = item.as_integer().and_then(|n| usize::try_from(n).ok()).filter(|n| *n >= 1);
     count.map(Some).ok_or_else(|| {
         let field = format!("{path}.count");
-        field_error(&field, Some(&item.to_string()), "not a positive whole number", "give 1 or more")
+        field_error(
+            codes::WRONG_TYPE,
+            &field,
+            Some(&item.to_string()),
+            "not a positive whole number",
+            "give 1 or more",
+        )
     })
 }
 
@@ -161,7 +209,13 @@ fn is_logarithmic(table: &dyn TableLike, path: &str) -> Result<bool, Diagnostic>
         Some(Some("log")) => Ok(true),
         Some(_) => {
             let field = format!("{path}.spacing");
-            Err(field_error(&field, None, "unknown spacing", "give \"linear\" or \"log\""))
+            Err(field_error(
+                codes::UNKNOWN_WORD,
+                &field,
+                None,
+                "unknown spacing",
+                "give \"linear\" or \"log\"",
+            ))
         }
     }
 }

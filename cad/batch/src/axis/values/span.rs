@@ -1,6 +1,6 @@
 //! `{ from = 10, to = 12 }`: every value between two ends, for samples only.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use toml_edit::Item;
 
 use super::range::{Range, has_key};
@@ -14,7 +14,7 @@ pub(super) const NOTATION: Notation = Notation { matches: |item| has_key(item, "
 fn series(field: ParameterRef, item: &Item) -> Result<Series, Diagnostic> {
     Range::read(field, item)?;
     let help = "add step = ... or count = ...";
-    Err(field_error(&field.path(), None, "range without step or count", help))
+    Err(field_error(codes::INVALID_AXIS, &field.path(), None, "range without step or count", help))
 }
 
 fn sampler(field: ParameterRef, item: &Item) -> Result<Sampler, Diagnostic> {

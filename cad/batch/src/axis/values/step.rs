@@ -1,6 +1,6 @@
 //! `{ from = 10, to = 12, step = 0.5 }`: a range on a grid that starts at its first value.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use toml_edit::Item;
 
 use super::range::{Range, has_key, without_float_noise};
@@ -21,7 +21,7 @@ fn series(field: ParameterRef, item: &Item) -> Result<Series, Diagnostic> {
     if last > MAX_STEPS {
         let value = format!("{} to {} by {step}", range.from, range.to);
         let problem = format!("more than {MAX_STEPS} values");
-        return Err(field_error(&field.path(), Some(&value), problem, "raise step"));
+        return Err(field_error(codes::TOO_MANY_ENTRIES, &field.path(), Some(&value), problem, "raise step"));
     }
     #[allow(clippy::cast_precision_loss)]
     let number = move |i: u64| without_float_noise(range.from + step * i as f64);

@@ -1,6 +1,6 @@
 //! Errors of the STL reader.
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes, excerpt};
 
 use super::binary::HEADER;
 
@@ -49,6 +49,16 @@ pub enum StlError {
 }
 
 impl StlError {
+    /// Kind of fault.
+    fn code(&self) -> Code {
+        match self {
+            Self::Unreadable(_) => codes::CANNOT_READ,
+            Self::OtherFormat(_) => codes::UNSUPPORTED_FORMAT,
+            Self::NoBytes | Self::TooShort(_) => codes::DAMAGED_FILE,
+            Self::Line { .. } | Self::Length { .. } | Self::NoTriangle => codes::MALFORMED_MESH_FILE,
+        }
+    }
+
     /// The way out.
     fn help(&self) -> &'static str {
         match self {
@@ -64,9 +74,9 @@ impl StlError {
 impl From<StlError> for Diagnostic {
     fn from(error: StlError) -> Self {
         let diagnostic = match &error {
-            StlError::Line { line, problem } => Self::new(problem.clone())
+            StlError::Line { line, problem } => Self::new(codes::MALFORMED_MESH_FILE, problem.clone())
                 .with_location(Location { line: Some(*line), ..Location::default() }),
-            other => Self::new(other.to_string()),
+            other => Self::new(other.code(), other.to_string()),
         };
         diagnostic.with_help(error.help())
     }
@@ -82,7 +92,7 @@ mod tests {
         let diagnostic = Diagnostic::from(error).or_in_file("a.stl");
         assert_eq!(
             diagnostic.render("error"),
-            "error: a.stl:3: expected 'outer loop'\n  help: export the part again"
+            "error: a.stl:3: expected 'outer loop' [malformed-mesh-file]\n  help: export the part again"
         );
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of the 3MF reader.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 
 /// A file that cannot be read as a 3MF.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +29,14 @@ pub enum ThreeMfReadError {
 }
 
 impl ThreeMfReadError {
+    /// Kind of fault.
+    fn code(&self) -> Code {
+        match self {
+            Self::Bound(_) | Self::Unsupported(_) => codes::MESH_NOT_JUDGED,
+            Self::Archive(_) | Self::NoModel | Self::Malformed { .. } => codes::MALFORMED_MESH_FILE,
+        }
+    }
+
     /// The way out.
     fn help(&self) -> &'static str {
         match self {
@@ -44,11 +52,11 @@ impl From<ThreeMfReadError> for Diagnostic {
     fn from(error: ThreeMfReadError) -> Self {
         let in_part = |problem: String, part: &str| {
             let location = Location { field: Some(part.to_owned()), ..Location::default() };
-            Self::new(problem).with_location(location)
+            Self::new(codes::MALFORMED_MESH_FILE, problem).with_location(location)
         };
         let diagnostic = match &error {
             ThreeMfReadError::Malformed { part, problem } => in_part(problem.clone(), part),
-            other => Self::new(other.to_string()),
+            other => Self::new(other.code(), other.to_string()),
         };
         diagnostic.with_help(error.help())
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -57,7 +57,7 @@ pub struct ThreeMfError(#[from] zip::result::ZipError);
 
 impl From<ThreeMfError> for Diagnostic {
     fn from(error: ThreeMfError) -> Self {
-        Self::from_error(error)
+        Self::from_error(codes::INTERNAL_ERROR, error)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Direction::{self, Lower, OneOf, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::design::joint::AXLES_MM;
+use pinswitch_diagnostic::codes;
 
 /// Least wall of the hub around the axle, mm.
 const HUB_WALL_MM: f64 = 2.0;
@@ -14,16 +15,66 @@ const STOP_AIR_MM: f64 = 1.0;
 const ROUNDING_DEG: f64 = 1e-9;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: joint_without_sheath },
-    Rule { field: "mount.axle_mm", severity: Severity::Error, assess: axle_is_available },
-    Rule { field: "mount.axle_mm", severity: Severity::Error, assess: hub_around_axle },
-    Rule { field: "mount.flexion_max_deg", severity: Severity::Error, assess: stops_are_apart },
-    Rule { field: "mount.flexion_max_deg", severity: Severity::Error, assess: layout_between_stops },
-    Rule { field: "mount.flexion_max_deg", severity: Severity::Error, assess: wrap_on_segment },
-    Rule { field: "mount.flexion_max_deg", severity: Severity::Error, assess: stops_beside_switch },
-    Rule { field: "mount.proximal_mm", severity: Severity::Error, assess: proximal_link_is_long_enough },
-    Rule { field: "mount.distal_mm", severity: Severity::Error, assess: distal_link_is_long_enough },
-    Rule { field: "mount.axle_mm", severity: Severity::Error, assess: axle_is_long_enough },
+    Rule {
+        code: codes::JOINT_WITH_SHEATH,
+        field: "tendon.sheath_diameter_mm",
+        severity: Severity::Error,
+        assess: joint_without_sheath,
+    },
+    Rule {
+        code: codes::AXLE_NOT_SOLD,
+        field: "mount.axle_mm",
+        severity: Severity::Error,
+        assess: axle_is_available,
+    },
+    Rule {
+        code: codes::HUB_TOO_SMALL,
+        field: "mount.axle_mm",
+        severity: Severity::Error,
+        assess: hub_around_axle,
+    },
+    Rule {
+        code: codes::STOPS_TOO_CLOSE,
+        field: "mount.flexion_max_deg",
+        severity: Severity::Error,
+        assess: stops_are_apart,
+    },
+    Rule {
+        code: codes::WRAP_OUTSIDE_STOPS,
+        field: "mount.flexion_max_deg",
+        severity: Severity::Error,
+        assess: layout_between_stops,
+    },
+    Rule {
+        code: codes::FLEXION_LEAVES_SEGMENT,
+        field: "mount.flexion_max_deg",
+        severity: Severity::Error,
+        assess: wrap_on_segment,
+    },
+    Rule {
+        code: codes::STOPS_DO_NOT_FIT,
+        field: "mount.flexion_max_deg",
+        severity: Severity::Error,
+        assess: stops_beside_switch,
+    },
+    Rule {
+        code: codes::LINK_TOO_SHORT,
+        field: "mount.proximal_mm",
+        severity: Severity::Error,
+        assess: proximal_link_is_long_enough,
+    },
+    Rule {
+        code: codes::LINK_TOO_SHORT,
+        field: "mount.distal_mm",
+        severity: Severity::Error,
+        assess: distal_link_is_long_enough,
+    },
+    Rule {
+        code: codes::AXLE_NOT_SOLD,
+        field: "mount.axle_mm",
+        severity: Severity::Error,
+        assess: axle_is_long_enough,
+    },
 ];
 
 const NO_MOUNT: Direction = Set("mount.kind", "\"none\"");

@@ -16,6 +16,8 @@ mod support;
 
 use super::Dimensions;
 use crate::config::{Configuration, Diagnostic, Location, field_location};
+use crate::warnings::Warning;
+use pinswitch_diagnostic::Code;
 
 pub use direction::Direction;
 
@@ -89,6 +91,8 @@ impl std::ops::Deref for Inspection<'_> {
 /// One rule.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
+    /// The code of a broken rule, with the page that explains it.
+    pub code: Code,
     /// The parameter that the rule is about.
     pub field: &'static str,
     /// The consequence of breaking it.
@@ -113,6 +117,8 @@ pub struct Check {
 /// A broken rule of severity error.
 #[derive(Clone, Debug)]
 pub(crate) struct Violation {
+    /// The code of the rule.
+    pub(crate) code: Code,
     /// The field to blame: that of the rule, unless it has its default and another one is a likely cause.
     pub(crate) field: &'static str,
     /// The problem, with the bound.
@@ -153,7 +159,7 @@ pub(crate) fn violations(dimensions: &Dimensions) -> impl Iterator<Item = Violat
             };
             let c = inspection.configuration();
             let field = if departs(c, rule.field) { rule.field } else { cause(c, directions, rule.field) };
-            Some(Violation { field, problem, directions })
+            Some(Violation { code: rule.code, field, problem, directions })
         }
         _ => None,
     })
@@ -177,7 +183,7 @@ pub(super) fn check(dimensions: &Dimensions) -> Result<(), Diagnostic> {
     let Some(violation) = violations(dimensions).next() else { return Ok(()) };
     let value = dimensions.configuration().shown(violation.field);
     let location = Location { value, ..field_location(violation.field) };
-    Err(Diagnostic::new(violation.problem).with_location(location))
+    Err(Diagnostic::new(violation.code, violation.problem).with_location(location))
 }
 
 /// Whether no rule of severity error is broken. Cheaper than [`check`], for searches.
@@ -187,12 +193,14 @@ pub(super) fn are_satisfied(dimensions: &Dimensions) -> bool {
 }
 
 /// Returns the warnings, each with its remedy.
-pub(super) fn warnings(dimensions: &Dimensions) -> Vec<String> {
+pub(super) fn warnings(dimensions: &Dimensions) -> Vec<Warning> {
     let inspection = Inspection::of_dimensions(dimensions);
     rules()
         .filter(|rule| rule.severity == Severity::Warning)
         .filter_map(|rule| match (rule.assess)(&inspection) {
-            Assessment::Broken { problem, remedy: Remedy::Text(help) } => Some(format!("{problem}: {help}")),
+            Assessment::Broken { problem, remedy: Remedy::Text(help) } => {
+                Some(Warning::new(rule.code, format!("{problem}: {help}")))
+            }
             _ => None,
         })
         .collect()
@@ -306,7 +314,7 @@ mod tests {
     fn the_default_configuration_breaks_no_rule() {
         let dimensions = Dimensions::new(Configuration::default());
         assert_eq!(check(&dimensions), Ok(()));
-        assert_eq!(warnings(&dimensions), Vec::<String>::new());
+        assert_eq!(warnings(&dimensions), Vec::<Warning>::new());
         assert!(checklist(&dimensions, 3.0).iter().all(|c| c.is_satisfied));
         assert!(
             checklist(&dimensions, 12.0)

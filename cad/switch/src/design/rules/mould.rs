@@ -5,6 +5,7 @@ use super::shell::MIN_INNER_RADIUS_MM;
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::MouldKind;
 use crate::design::{mould_keys as keys, mould_tray as tray};
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::Substrate;
 
 /// Largest shift of the ends of a sector as a share of its inner radius: beyond 1 they would miss the circle.
@@ -15,15 +16,55 @@ const MOULD_MARGIN_MM: f64 = 1.0;
 const MIN_GAP_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: ends_in_sector },
-    Rule { field: "segment.span_deg", severity: Severity::Error, assess: ends_apart },
-    Rule { field: "mould.wall_mm", severity: Severity::Error, assess: room_in_tray },
-    Rule { field: "mould.wall_mm", severity: Severity::Error, assess: mould_ends_in_sector },
-    Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
-    Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
-    Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
-    Rule { field: "mould.draft_deg", severity: Severity::Warning, assess: draft_without_basin },
-    Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
+    Rule {
+        code: codes::ENDS_BEYOND_SECTOR,
+        field: "segment.end_margin_mm",
+        severity: Severity::Error,
+        assess: ends_in_sector,
+    },
+    Rule { code: codes::ENDS_MEET, field: "segment.span_deg", severity: Severity::Error, assess: ends_apart },
+    Rule {
+        code: codes::MOULD_INNER_RADIUS,
+        field: "mould.wall_mm",
+        severity: Severity::Error,
+        assess: room_in_tray,
+    },
+    Rule {
+        code: codes::ENDS_BEYOND_SECTOR,
+        field: "mould.wall_mm",
+        severity: Severity::Error,
+        assess: mould_ends_in_sector,
+    },
+    Rule {
+        code: codes::ENDS_MEET,
+        field: "segment.span_deg",
+        severity: Severity::Error,
+        assess: mould_ends_apart,
+    },
+    Rule {
+        code: codes::MOULD_KEYS_CROWDED,
+        field: "mould.key_diameter_mm",
+        severity: Severity::Error,
+        assess: keys_apart,
+    },
+    Rule {
+        code: codes::MOULD_KEY_TOO_HIGH,
+        field: "mould.key_height_mm",
+        severity: Severity::Error,
+        assess: keys_in_ring,
+    },
+    Rule {
+        code: codes::DRAFT_WITHOUT_BASIN,
+        field: "mould.draft_deg",
+        severity: Severity::Warning,
+        assess: draft_without_basin,
+    },
+    Rule {
+        code: codes::EMPTY_LOAD_RANGE,
+        field: "friction.load_min_n",
+        severity: Severity::Error,
+        assess: load_range,
+    },
 ];
 
 /// The ends of a sector, shifted outwards from radial planes. They reach furthest around the axis at the inner radius,

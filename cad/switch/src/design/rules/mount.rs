@@ -6,6 +6,7 @@ use crate::config::MountKind;
 use crate::design::fastening::{HEAD_BELOW_MM, axle_recess, stop_recess};
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
+use pinswitch_diagnostic::codes;
 
 /// Least wall between two holes of the plate, mm.
 const HOLE_WALL_MM: f64 = 1.0;
@@ -15,14 +16,54 @@ const LEAST_PIECE_MM: f64 = 1.0;
 const SHEATH_WALL_MM: f64 = 0.4;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: sheath_on_plate },
-    Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: sheath_around_tendon },
-    Rule { field: "mount.kind", severity: Severity::Error, assess: plate_is_fastened },
-    Rule { field: "mount.kind", severity: Severity::Error, assess: holes_clear_each_other },
-    Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
-    Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
-    Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: stop_out_of_the_way },
-    Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
+    Rule {
+        code: codes::SHEATH_WITHOUT_PLATE,
+        field: "tendon.sheath_diameter_mm",
+        severity: Severity::Error,
+        assess: sheath_on_plate,
+    },
+    Rule {
+        code: codes::SHEATH_DOES_NOT_FIT,
+        field: "tendon.sheath_diameter_mm",
+        severity: Severity::Error,
+        assess: sheath_around_tendon,
+    },
+    Rule {
+        code: codes::PLATE_WITHOUT_SCREWS,
+        field: "mount.kind",
+        severity: Severity::Error,
+        assess: plate_is_fastened,
+    },
+    Rule {
+        code: codes::PLATE_HOLES_CROWDED,
+        field: "mount.kind",
+        severity: Severity::Error,
+        assess: holes_clear_each_other,
+    },
+    Rule {
+        code: codes::PULLEY_NEAR_SWITCH,
+        field: "mount.pulley_distance_mm",
+        severity: Severity::Error,
+        assess: pulley_beside_switch,
+    },
+    Rule {
+        code: codes::PULLEY_NEAR_PLATE,
+        field: "mount.kind",
+        severity: Severity::Error,
+        assess: pulley_over_plate,
+    },
+    Rule {
+        code: codes::SHEATH_STOP_IN_THE_WAY,
+        field: "tendon.sheath_diameter_mm",
+        severity: Severity::Error,
+        assess: stop_out_of_the_way,
+    },
+    Rule {
+        code: codes::PLATE_TOO_THIN,
+        field: "mount.plate_mm",
+        severity: Severity::Error,
+        assess: heads_within_plate,
+    },
 ];
 
 const NO_MOUNT: Direction = Set("mount.kind", "\"none\"");

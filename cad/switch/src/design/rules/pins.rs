@@ -2,6 +2,7 @@
 
 use super::Direction::{Lower, Raise, Restore};
 use super::{Assessment, Inspection, Rule, Severity, advise, require};
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::PinPattern;
 
 /// Least gap on both sides of the tendon, mm.
@@ -14,19 +15,84 @@ const GOOD_BEND_RATIO: f64 = 20.0;
 const MIN_LAYER_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "layout.pins", severity: Severity::Error, assess: pins_in_grooves },
-    Rule { field: "layout.pins", severity: Severity::Error, assess: one_pin_per_groove },
-    Rule { field: "pins.diameter_mm", severity: Severity::Error, assess: pin_fits_groove },
-    Rule { field: "silicone.thickness_mm", severity: Severity::Error, assess: layer_thickness },
-    Rule { field: "shell.width_mm", severity: Severity::Error, assess: layer_width },
-    Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: wrap_within_segment },
-    Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: ends_keep_clear },
-    Rule { field: "layout.wrap_angle_deg", severity: Severity::Warning, assess: ends_meet },
-    Rule { field: "layout.pins", severity: Severity::Warning, assess: pins_within_wrap },
-    Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_in_channel },
-    Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_bend },
-    Rule { field: "tendon.length_mm", severity: Severity::Warning, assess: tendon_reaches },
-    Rule { field: "shell.outer_radius_mm", severity: Severity::Warning, assess: early_wear },
+    Rule {
+        code: codes::PIN_OUTSIDE_GROOVES,
+        field: "layout.pins",
+        severity: Severity::Error,
+        assess: pins_in_grooves,
+    },
+    Rule {
+        code: codes::GROOVE_OCCUPIED_TWICE,
+        field: "layout.pins",
+        severity: Severity::Error,
+        assess: one_pin_per_groove,
+    },
+    Rule {
+        code: codes::PIN_WIDER_THAN_GROOVE,
+        field: "pins.diameter_mm",
+        severity: Severity::Error,
+        assess: pin_fits_groove,
+    },
+    Rule {
+        code: codes::SILICONE_TOO_THIN,
+        field: "silicone.thickness_mm",
+        severity: Severity::Error,
+        assess: layer_thickness,
+    },
+    Rule {
+        code: codes::SILICONE_TOO_NARROW,
+        field: "shell.width_mm",
+        severity: Severity::Error,
+        assess: layer_width,
+    },
+    Rule {
+        code: codes::WRAP_EXCEEDS_SEGMENT,
+        field: "layout.wrap_angle_deg",
+        severity: Severity::Error,
+        assess: wrap_within_segment,
+    },
+    Rule {
+        code: codes::TENDON_ENDS_COLLIDE,
+        field: "layout.wrap_angle_deg",
+        severity: Severity::Error,
+        assess: ends_keep_clear,
+    },
+    Rule {
+        code: codes::TENDON_ENDS_MEET,
+        field: "layout.wrap_angle_deg",
+        severity: Severity::Warning,
+        assess: ends_meet,
+    },
+    Rule {
+        code: codes::PINS_OUTSIDE_WRAP,
+        field: "layout.pins",
+        severity: Severity::Warning,
+        assess: pins_within_wrap,
+    },
+    Rule {
+        code: codes::TENDON_TOO_THICK,
+        field: "tendon.rope_diameter_mm",
+        severity: Severity::Error,
+        assess: tendon_in_channel,
+    },
+    Rule {
+        code: codes::TENDON_BENT_TOO_SHARPLY,
+        field: "tendon.rope_diameter_mm",
+        severity: Severity::Error,
+        assess: tendon_bend,
+    },
+    Rule {
+        code: codes::TENDON_TOO_SHORT,
+        field: "tendon.length_mm",
+        severity: Severity::Warning,
+        assess: tendon_reaches,
+    },
+    Rule {
+        code: codes::TENDON_WEARS_EARLY,
+        field: "shell.outer_radius_mm",
+        severity: Severity::Warning,
+        assess: early_wear,
+    },
 ];
 
 fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {

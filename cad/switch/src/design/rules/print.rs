@@ -4,6 +4,7 @@ use super::Direction::{Lower, Raise};
 use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
 use crate::config::MountKind;
 use crate::design::axle_recess;
+use pinswitch_diagnostic::codes;
 
 /// Least chamfer of a bottom edge.
 const MIN_CHAMFER_MM: f64 = 0.02;
@@ -17,16 +18,66 @@ const MIN_GAP_MM: f64 = 0.1;
 const GOOD_RIM_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "print.elephant_foot_mm", severity: Severity::Error, assess: chamfer_prints },
-    Rule { field: "label.stroke_mm", severity: Severity::Warning, assess: label_stroke },
-    Rule { field: "print.layer_mm", severity: Severity::Warning, assess: layers_per_groove },
-    Rule { field: "print.line_mm", severity: Severity::Checklist, assess: line_of_nozzle },
-    Rule { field: "print.layer_mm", severity: Severity::Checklist, assess: layer_of_nozzle },
-    Rule { field: "support.slot_clearance_mm", severity: Severity::Checklist, assess: open_slots },
-    Rule { field: "support.slot_floor_mm", severity: Severity::Checklist, assess: slot_floor },
-    Rule { field: "pins.diameter_mm", severity: Severity::Checklist, assess: bridges },
-    Rule { field: "shell.outer_radius_mm", severity: Severity::Checklist, assess: lands },
-    Rule { field: "shell.wall_mm", severity: Severity::Checklist, assess: rim_of_holes },
+    Rule {
+        code: codes::CHAMFER_TOO_SMALL,
+        field: "print.elephant_foot_mm",
+        severity: Severity::Error,
+        assess: chamfer_prints,
+    },
+    Rule {
+        code: codes::LABEL_STROKE_TOO_THIN,
+        field: "label.stroke_mm",
+        severity: Severity::Warning,
+        assess: label_stroke,
+    },
+    Rule {
+        code: codes::GROOVES_UNDER_FOUR_LAYERS,
+        field: "print.layer_mm",
+        severity: Severity::Warning,
+        assess: layers_per_groove,
+    },
+    Rule {
+        code: codes::LINE_UNDER_NOZZLE,
+        field: "print.line_mm",
+        severity: Severity::Checklist,
+        assess: line_of_nozzle,
+    },
+    Rule {
+        code: codes::LAYER_TOO_THICK,
+        field: "print.layer_mm",
+        severity: Severity::Checklist,
+        assess: layer_of_nozzle,
+    },
+    Rule {
+        code: codes::SLOTS_CLOSE_WHEN_SLICED,
+        field: "support.slot_clearance_mm",
+        severity: Severity::Checklist,
+        assess: open_slots,
+    },
+    Rule {
+        code: codes::SLOT_FLOOR_TOO_THIN,
+        field: "support.slot_floor_mm",
+        severity: Severity::Checklist,
+        assess: slot_floor,
+    },
+    Rule {
+        code: codes::BRIDGE_TOO_LONG,
+        field: "pins.diameter_mm",
+        severity: Severity::Checklist,
+        assess: bridges,
+    },
+    Rule {
+        code: codes::NARROW_LAND,
+        field: "shell.outer_radius_mm",
+        severity: Severity::Checklist,
+        assess: lands,
+    },
+    Rule {
+        code: codes::THIN_RIM_OF_HOLES,
+        field: "shell.wall_mm",
+        severity: Severity::Checklist,
+        assess: rim_of_holes,
+    },
 ];
 
 /// A line of the checklist, with the same statement whether it is satisfied or not.

@@ -4,20 +4,61 @@ use super::Direction::{Lower, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, advise, require};
 use crate::config::{Choice, MouldKind};
 use crate::process::{Coating, Process, nearest_pin_mm, pin_is_sold};
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::Substrate;
 
 /// Coldest cure that counts as one, °C; 0 leaves it to the shrinkage.
 const LEAST_CURE_C: f64 = 18.0;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "process.cure_c", severity: Severity::Error, assess: cure_is_warm },
-    Rule { field: "process.cure_c", severity: Severity::Error, assess: cure_agrees_with_the_mould },
-    Rule { field: "process.coating", severity: Severity::Error, assess: bare_rope_has_no_coating },
-    Rule { field: "mould.shrinkage_pct", severity: Severity::Warning, assess: shrinkage_can_be_made },
-    Rule { field: "silicone.hardness_shore_a", severity: Severity::Warning, assess: hardness_can_be_made },
-    Rule { field: "silicone.mix_ratio", severity: Severity::Warning, assess: ratio_of_the_product },
-    Rule { field: "process.material", severity: Severity::Warning, assess: mould_lets_silicone_cure },
-    Rule { field: "pins.diameter_mm", severity: Severity::Warning, assess: pins_are_sold },
+    Rule {
+        code: codes::CURE_TOO_COLD,
+        field: "process.cure_c",
+        severity: Severity::Error,
+        assess: cure_is_warm,
+    },
+    Rule {
+        code: codes::CURE_AGAINST_SHRINKAGE,
+        field: "process.cure_c",
+        severity: Severity::Error,
+        assess: cure_agrees_with_the_mould,
+    },
+    Rule {
+        code: codes::COATING_CONTRADICTION,
+        field: "process.coating",
+        severity: Severity::Error,
+        assess: bare_rope_has_no_coating,
+    },
+    Rule {
+        code: codes::CURE_AGAINST_SHRINKAGE,
+        field: "mould.shrinkage_pct",
+        severity: Severity::Warning,
+        assess: shrinkage_can_be_made,
+    },
+    Rule {
+        code: codes::HARDNESS_NOT_REACHED,
+        field: "silicone.hardness_shore_a",
+        severity: Severity::Warning,
+        assess: hardness_can_be_made,
+    },
+    Rule {
+        code: codes::MIX_RATIO_WITHOUT_EFFECT,
+        field: "silicone.mix_ratio",
+        severity: Severity::Warning,
+        assess: ratio_of_the_product,
+    },
+    Rule {
+        code: codes::CURE_INHIBITED,
+        field: "process.material",
+        severity: Severity::Warning,
+        assess: mould_lets_silicone_cure,
+    },
+    Rule {
+        code: codes::PIN_NOT_SOLD,
+        field: "pins.diameter_mm",
+        severity: Severity::Warning,
+        assess: pins_are_sold,
+    },
 ];
 
 /// Whether the set casts a layer of a silicone whose data are known.

@@ -3,6 +3,7 @@
 use super::Direction::{self, Lower, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::config::{CellKind, DriveKind, MountKind};
+use pinswitch_diagnostic::codes;
 use pinswitch_friction::published;
 
 /// Largest wrap at which the tendon leaves the switch toward a guide pulley that lets the load hang, degrees.
@@ -16,13 +17,48 @@ const MEASURING_MM: f64 = 10.0;
 const ACTUATOR_ENDS_MM: f64 = 45.0;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: load_hangs },
-    Rule { field: "rig.cell_limit_n", severity: Severity::Error, assess: cell_in_range },
-    Rule { field: "rig.s_beam_thread_mm", severity: Severity::Error, assess: thread_in_s_beam },
-    Rule { field: "rig.bar_length_mm", severity: Severity::Error, assess: bar_holes_apart },
-    Rule { field: "rig.bar_hole_spacing_mm", severity: Severity::Error, assess: slots_apart },
-    Rule { field: "rig.bar_screw_mm", severity: Severity::Error, assess: threads_in_bar },
-    Rule { field: "rig.retracted_mm", severity: Severity::Error, assess: actuator_holds_stroke },
+    Rule {
+        code: codes::LOAD_CANNOT_HANG,
+        field: "layout.wrap_angle_deg",
+        severity: Severity::Error,
+        assess: load_hangs,
+    },
+    Rule {
+        code: codes::CELL_TOO_WEAK,
+        field: "rig.cell_limit_n",
+        severity: Severity::Error,
+        assess: cell_in_range,
+    },
+    Rule {
+        code: codes::CELL_THREAD_TOO_WIDE,
+        field: "rig.s_beam_thread_mm",
+        severity: Severity::Error,
+        assess: thread_in_s_beam,
+    },
+    Rule {
+        code: codes::BAR_CELL_TOO_SHORT,
+        field: "rig.bar_length_mm",
+        severity: Severity::Error,
+        assess: bar_holes_apart,
+    },
+    Rule {
+        code: codes::BAR_HOLES_TOO_CLOSE,
+        field: "rig.bar_hole_spacing_mm",
+        severity: Severity::Error,
+        assess: slots_apart,
+    },
+    Rule {
+        code: codes::CELL_THREAD_TOO_WIDE,
+        field: "rig.bar_screw_mm",
+        severity: Severity::Error,
+        assess: threads_in_bar,
+    },
+    Rule {
+        code: codes::ACTUATOR_TOO_SHORT,
+        field: "rig.retracted_mm",
+        severity: Severity::Error,
+        assess: actuator_holds_stroke,
+    },
 ];
 
 const NO_MOUNT: Direction = Set("mount.kind", "\"none\"");

@@ -2,17 +2,43 @@
 
 use super::Direction::{Lower, Raise, Restore};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
+use pinswitch_diagnostic::codes;
 
 /// Least inner radius of the shell, mm: leaves room for the core of a mould.
 pub(super) const MIN_INNER_RADIUS_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "shell.wall_mm", severity: Severity::Error, assess: inner_radius },
-    Rule { field: "shell.wall_mm", severity: Severity::Error, assess: wall_under_grooves },
-    Rule { field: "segment.grooves", severity: Severity::Error, assess: land },
-    Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: end_walls },
-    Rule { field: "shell.outer_radius_mm", severity: Severity::Warning, assess: thin_land },
-    Rule { field: "segment.end_margin_mm", severity: Severity::Warning, assess: thin_end_walls },
+    Rule {
+        code: codes::SHELL_INNER_RADIUS,
+        field: "shell.wall_mm",
+        severity: Severity::Error,
+        assess: inner_radius,
+    },
+    Rule {
+        code: codes::WALL_UNDER_GROOVES,
+        field: "shell.wall_mm",
+        severity: Severity::Error,
+        assess: wall_under_grooves,
+    },
+    Rule { code: codes::GROOVES_OVERLAP, field: "segment.grooves", severity: Severity::Error, assess: land },
+    Rule {
+        code: codes::END_WALL_TOO_THIN,
+        field: "segment.end_margin_mm",
+        severity: Severity::Error,
+        assess: end_walls,
+    },
+    Rule {
+        code: codes::NARROW_LAND,
+        field: "shell.outer_radius_mm",
+        severity: Severity::Warning,
+        assess: thin_land,
+    },
+    Rule {
+        code: codes::NARROW_END_WALL,
+        field: "segment.end_margin_mm",
+        severity: Severity::Warning,
+        assess: thin_end_walls,
+    },
 ];
 
 fn inner_radius(i: &Inspection<'_>) -> Assessment {

@@ -6,27 +6,108 @@ use crate::config::{FastenerKind, SlotKind};
 use crate::design::fastening::{
     CLEARANCE_HOLES_MM, DOWELS_MM, HOLE_EDGE_MM, INSERT_SHOULDER_MM, INSERT_TIP_MM,
 };
+use pinswitch_diagnostic::codes;
 
 /// Clearance above which pins have noticeable play (cad/doc/print-limits.md), mm.
 const WIDE_CLEARANCE_MM: f64 = 0.3;
 
 pub(super) const RULES: &[Rule] = &[
-    Rule { field: "support.rise_mm", severity: Severity::Error, assess: slots_in_plate },
-    Rule { field: "support.slot_clearance_mm", severity: Severity::Error, assess: land_between_slots },
-    Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: wall_beyond_slots },
-    Rule { field: "support.corner_radius_mm", severity: Severity::Error, assess: corners_in_plate },
-    Rule { field: "support.slot_floor_mm", severity: Severity::Error, assess: blind_slot_depth },
-    Rule { field: "support.travel_margin_mm", severity: Severity::Error, assess: slot_travel },
-    Rule { field: "support.plate_mm", severity: Severity::Error, assess: pin_engagement },
-    Rule { field: "fasteners.hole_diameter_mm", severity: Severity::Error, assess: holes_in_wall },
-    Rule { field: "fasteners.end_distance_mm", severity: Severity::Error, assess: holes_in_sector },
-    Rule { field: "fasteners.count", severity: Severity::Error, assess: holes_apart },
-    Rule { field: "fasteners.kind", severity: Severity::Error, assess: inserts_in_shell },
-    Rule { field: "fasteners.hole_diameter_mm", severity: Severity::Error, assess: screws_are_sold },
-    Rule { field: "fasteners.dowel_diameter_mm", severity: Severity::Error, assess: dowels_are_sold },
-    Rule { field: "fasteners.dowel_diameter_mm", severity: Severity::Error, assess: dowels_in_wall },
-    Rule { field: "support.slot_kind", severity: Severity::Warning, assess: loose_pins },
-    Rule { field: "support.slot_clearance_mm", severity: Severity::Warning, assess: wide_clearance },
+    Rule {
+        code: codes::PLATE_OUTSIDE_SLOTS,
+        field: "support.rise_mm",
+        severity: Severity::Error,
+        assess: slots_in_plate,
+    },
+    Rule {
+        code: codes::SLOTS_TOO_CLOSE,
+        field: "support.slot_clearance_mm",
+        severity: Severity::Error,
+        assess: land_between_slots,
+    },
+    Rule {
+        code: codes::WALL_BEYOND_SLOTS,
+        field: "segment.end_margin_mm",
+        severity: Severity::Error,
+        assess: wall_beyond_slots,
+    },
+    Rule {
+        code: codes::CORNERS_TOO_ROUND,
+        field: "support.corner_radius_mm",
+        severity: Severity::Error,
+        assess: corners_in_plate,
+    },
+    Rule {
+        code: codes::SLOT_TOO_SHALLOW,
+        field: "support.slot_floor_mm",
+        severity: Severity::Error,
+        assess: blind_slot_depth,
+    },
+    Rule {
+        code: codes::PIN_REACHES_SHELL,
+        field: "support.travel_margin_mm",
+        severity: Severity::Error,
+        assess: slot_travel,
+    },
+    Rule {
+        code: codes::PIN_ENGAGES_TOO_LITTLE,
+        field: "support.plate_mm",
+        severity: Severity::Error,
+        assess: pin_engagement,
+    },
+    Rule {
+        code: codes::SCREW_HOLES_TOO_LARGE,
+        field: "fasteners.hole_diameter_mm",
+        severity: Severity::Error,
+        assess: holes_in_wall,
+    },
+    Rule {
+        code: codes::SCREW_HOLE_NEAR_END,
+        field: "fasteners.end_distance_mm",
+        severity: Severity::Error,
+        assess: holes_in_sector,
+    },
+    Rule {
+        code: codes::SCREW_HOLES_CROWDED,
+        field: "fasteners.count",
+        severity: Severity::Error,
+        assess: holes_apart,
+    },
+    Rule {
+        code: codes::INSERT_DOES_NOT_FIT,
+        field: "fasteners.kind",
+        severity: Severity::Error,
+        assess: inserts_in_shell,
+    },
+    Rule {
+        code: codes::SCREW_NOT_SOLD,
+        field: "fasteners.hole_diameter_mm",
+        severity: Severity::Error,
+        assess: screws_are_sold,
+    },
+    Rule {
+        code: codes::DOWEL_NOT_SOLD,
+        field: "fasteners.dowel_diameter_mm",
+        severity: Severity::Error,
+        assess: dowels_are_sold,
+    },
+    Rule {
+        code: codes::DOWEL_WALL_TOO_THIN,
+        field: "fasteners.dowel_diameter_mm",
+        severity: Severity::Error,
+        assess: dowels_in_wall,
+    },
+    Rule {
+        code: codes::LOOSE_PINS,
+        field: "support.slot_kind",
+        severity: Severity::Warning,
+        assess: loose_pins,
+    },
+    Rule {
+        code: codes::SLOTS_TOO_WIDE,
+        field: "support.slot_clearance_mm",
+        severity: Severity::Warning,
+        assess: wide_clearance,
+    },
 ];
 
 fn slots_in_plate(i: &Inspection<'_>) -> Assessment {

@@ -64,7 +64,7 @@ pub(super) fn print(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) ->
             false => format!("**attention**: {}; {}", escape(&check.statement), escape(&check.remedy)),
         })
         .collect();
-    checks.extend(manifest.warnings.iter().map(|warning| format!("**warning**: {}", escape(warning))));
+    checks.extend(manifest.warnings.iter().map(|warning| format!("**warning**: {}", escape(warning.text()))));
     if !checks.is_empty() {
         blocks.push(Block::List(checks));
     }

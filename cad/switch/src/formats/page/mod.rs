@@ -81,6 +81,8 @@ mod tests {
     use crate::design::Design;
     use crate::formats::named;
     use crate::set::Set;
+    use crate::warnings::Warning;
+    use pinswitch_diagnostic::codes;
 
     /// The text between `start` and the next `end`, and the rest.
     fn between<'a>(text: &'a str, start: &str, end: &str) -> (&'a str, &'a str) {
@@ -94,7 +96,8 @@ mod tests {
         let built = Built::new(Design::new(configuration).unwrap()).unwrap();
         let prediction = Prediction::of(built.design());
         let mut manifest = Set::new(&built, &prediction, &named(&["stl"]).unwrap()).unwrap().manifest;
-        manifest.warnings.push("<!--<script>{{JS}}{{DATA}}</script>".to_owned());
+        let text = "<!--<script>{{JS}}{{DATA}}</script>";
+        manifest.warnings.push(Warning::new(codes::THIN_PLACE, text));
         let data = PageData::new(&built, &prediction, &manifest, None);
         let page = page_html(&data, "").unwrap();
         let (json, rest) = between(&page, "id=\"data\">", "</script>");

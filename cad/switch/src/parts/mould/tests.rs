@@ -111,7 +111,7 @@ fn draft_changes_the_basin_only() {
     // Without a basin, a warning reports that draft is ineffective.
     let flush = with(&["mould.draft_deg=3", "mould.overfill_mm=0"]);
     assert!(
-        flush.warnings().iter().any(|w| w.contains("mould.draft_deg = 3 has no effect")),
+        flush.warnings().iter().any(|w| w.text().contains("mould.draft_deg = 3 has no effect")),
         "{:?}",
         flush.warnings()
     );

@@ -4,6 +4,7 @@ use super::super::{Part, Pose, Role, fastening, mount, offset_error};
 use super::layout;
 use crate::config::{ConfigError, field_location};
 use crate::design::{Design, Hole, axle_recess, stop_recess};
+use pinswitch_diagnostic::codes;
 use pinswitch_solid::profile::{Contour, Disc, hull};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -18,7 +19,7 @@ pub(in crate::parts) fn right_board(design: &Design) -> Result<Part, ConfigError
 }
 
 fn no_board() -> ConfigError {
-    ConfigError::new("no board").with_location(field_location("mount.kind"))
+    ConfigError::new(codes::INTERNAL_ERROR, "no board").with_location(field_location("mount.kind"))
 }
 
 fn hole(h: &Hole) -> Contour {

@@ -13,6 +13,7 @@ pub(crate) use drive::front_mm;
 use drive::{AXLE_HOLE_MM, LOCK_HOLE_MM};
 pub(super) use drive::{actuator_foot, crank_drum, crank_foot, crank_knob};
 pub(super) use foot::{left as left_foot, right as right_foot};
+use pinswitch_diagnostic::codes;
 
 use crate::config::{CellKind, ConfigError, Configuration, DriveKind, MountKind, field_location};
 use crate::design::rig::{LOCK_MM, M6_HOLE_MM};
@@ -43,7 +44,9 @@ pub(super) fn has_drive(c: &Configuration, drive: DriveKind) -> bool {
 }
 
 fn layout(design: &Design) -> Result<RigLayout, ConfigError> {
-    design.rig_layout().ok_or_else(|| ConfigError::new("no rig").with_location(field_location("mount.kind")))
+    design.rig_layout().ok_or_else(|| {
+        ConfigError::new(codes::INTERNAL_ERROR, "no rig").with_location(field_location("mount.kind"))
+    })
 }
 
 /// Height of the middle of the switch in the assembly, mm: that of the tendon.

@@ -1,5 +1,6 @@
 //! Formulas of effects: what their names mean, and their values in a row.
 
+use pinswitch_diagnostic::codes;
 use pinswitch_formula::{Formula, FormulaError, Kind, NameError, Node};
 
 use super::variable::{Moment, TENSION, VARIABLES, Variable, variable};
@@ -32,7 +33,7 @@ impl EffectFormula {
             }
             if name == TENSION && !knows_tension {
                 let problem = "tension_n is known only where acts_on is \"tension\" or \"reading\"";
-                return Err(NameError::new(problem).with_help("use load_n"));
+                return Err(NameError::new(codes::UNKNOWN_NAME, problem).with_help("use load_n"));
             }
             let known = constants.iter().copied().chain(VARIABLES.iter().map(|v| v.name));
             variable(name).map(Symbol::Variable).ok_or_else(|| NameError::unknown("variable", name, known))

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes, excerpt};
 use pinswitch_formula::{FormulaError, is_reserved};
 
 use super::probe::probes;
@@ -114,7 +114,7 @@ fn require(is_met: bool, part: Part, diagnostic: impl FnOnce() -> Diagnostic) ->
 
 /// Returns a diagnostic with a help.
 fn advised(problem: impl Into<String>, help: impl Into<String>) -> Diagnostic {
-    Diagnostic::new(problem).with_help(help)
+    Diagnostic::new(codes::INVALID_EFFECT, problem).with_help(help)
 }
 
 impl EffectDefinition {
@@ -209,19 +209,28 @@ impl EffectDefinition {
             advised("id 'none' means the absence of every effect in reports", "give yours another one")
         })?;
         require(self.experiment.len() <= MAX_EXPERIMENT, Part::Experiment, || {
-            Diagnostic::new(format!(
-                "the experiment has {} characters, at most {MAX_EXPERIMENT} are possible",
-                self.experiment.len()
-            ))
+            Diagnostic::new(
+                codes::INVALID_EFFECT,
+                format!(
+                    "the experiment has {} characters, at most {MAX_EXPERIMENT} are possible",
+                    self.experiment.len()
+                ),
+            )
         })?;
         require(self.confused_with.len() <= MAX_RIVALS, Part::ConfusedWith, || {
             let count = self.confused_with.len();
-            Diagnostic::new(format!("confused_with has {count} ids, at most {MAX_RIVALS} are possible"))
+            Diagnostic::new(
+                codes::INVALID_EFFECT,
+                format!("confused_with has {count} ids, at most {MAX_RIVALS} are possible"),
+            )
         })?;
         let drawn_from = self.drawn_from.as_deref().unwrap_or_default();
         require(drawn_from.len() <= MAX_SESSIONS, Part::DrawnFrom, || {
             let count = drawn_from.len();
-            Diagnostic::new(format!("drawn_from has {count} sessions, at most {MAX_SESSIONS} are possible"))
+            Diagnostic::new(
+                codes::INVALID_EFFECT,
+                format!("drawn_from has {count} sessions, at most {MAX_SESSIONS} are possible"),
+            )
         })?;
         for fingerprint in drawn_from {
             require(is_fingerprint(fingerprint), Part::DrawnFrom, || {
@@ -236,7 +245,10 @@ impl EffectDefinition {
         })?;
         let count = self.parameters.len();
         require((1..=MAX_PARAMETERS).contains(&count), Part::Parameters, || {
-            Diagnostic::new(format!("{count} parameters, 1 to {MAX_PARAMETERS} are possible"))
+            Diagnostic::new(
+                codes::INVALID_EFFECT,
+                format!("{count} parameters, 1 to {MAX_PARAMETERS} are possible"),
+            )
         })?;
         require(self.parameters.iter().any(|p| p.bounds.is_none()), Part::Parameters, || {
             advised("no parameter is a size", "set size = true for the one that cancels the effect at zero")
@@ -272,9 +284,12 @@ impl EffectDefinition {
             usable(*start) && bounds.is_none_or(|(low, high)| usable(low) && usable(high)),
             part(),
             || {
-                Diagnostic::new(format!(
-                    "start, low and high of '{name}' must be numbers from -{MAX_VALUE} to {MAX_VALUE}"
-                ))
+                Diagnostic::new(
+                    codes::INVALID_EFFECT,
+                    format!(
+                        "start, low and high of '{name}' must be numbers from -{MAX_VALUE} to {MAX_VALUE}"
+                    ),
+                )
             },
         )?;
         let Some((low, high)) = bounds else {
@@ -289,9 +304,10 @@ impl EffectDefinition {
             });
         };
         require(low < start && start < high, part(), || {
-            Diagnostic::new(format!(
-                "start = {start} of '{name}' must be between low = {low} and high = {high}"
-            ))
+            Diagnostic::new(
+                codes::INVALID_EFFECT,
+                format!("start = {start} of '{name}' must be between low = {low} and high = {high}"),
+            )
         })
     }
 
@@ -316,7 +332,7 @@ impl EffectDefinition {
     /// Checks on probe rows that the formula is zero if all sizes are, and finite and not always
     /// zero at the start values.
     fn check_values(&self, formula: &EffectFormula) -> Result<(), DefinitionError> {
-        let whole = |problem: String| FormulaError::new(0..0, problem);
+        let whole = |code: Code, problem: String| FormulaError::new(code, 0..0, problem);
         let pick = |size: f64, shape: fn(f64, (f64, f64)) -> f64| -> Vec<f64> {
             self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |b| shape(p.start, b))).collect()
         };
@@ -335,7 +351,9 @@ impl EffectDefinition {
             if !value.is_finite() {
                 let problem =
                     format!("the formula is not finite at its start values {}", probe.description());
-                return Err(self.formula_error(&whole(problem).with_help("guard it with max or min")));
+                return Err(self.formula_error(
+                    &whole(codes::FORMULA_NOT_FINITE, problem).with_help("guard it with max or min"),
+                ));
             }
             acts |= value.abs() > 1e-12;
             if let Some(left) =
@@ -346,13 +364,13 @@ impl EffectDefinition {
                     probe.description()
                 );
                 let help = "mark every constant that cancels the effect as a size, or subtract the remainder";
-                return Err(self.formula_error(&whole(problem).with_help(help)));
+                return Err(self.formula_error(&whole(codes::EFFECT_WITHOUT_ZERO, problem).with_help(help)));
             }
         }
         if acts {
             return Ok(());
         }
         let problem = "the formula is zero at its start values in every row, so the effect does nothing";
-        Err(self.formula_error(&whole(problem.to_owned())))
+        Err(self.formula_error(&whole(codes::EFFECT_WITHOUT_ZERO, problem.to_owned())))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_diagnostic::{Code, Diagnostic, Location, codes, excerpt};
 use pinswitch_friction::sort_by_number;
 use schemars::{Schema, json_schema};
 use toml::Spanned;
@@ -34,8 +34,8 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn error(&self, at: usize, problem: impl Into<String>) -> Diagnostic {
-        self.locate(at, Diagnostic::new(problem))
+    fn error(&self, code: Code, at: usize, problem: impl Into<String>) -> Diagnostic {
+        self.locate(at, Diagnostic::new(code, problem))
     }
 
     /// Returns the diagnostic at a byte of the text.
@@ -75,7 +75,7 @@ pub fn read_own_effects(
     let source = Source { text, file };
     if text.len() > MAX_BYTES {
         let problem = format!("the file has {} bytes, at most {MAX_BYTES} are possible", text.len());
-        return Err(source.error(0, problem).with_help("split it into several files"));
+        return Err(source.error(codes::FILE_TOO_LARGE, 0, problem).with_help("split it into several files"));
     }
     let root = document(&source)?;
     let table = Table { source: &source, table: root.get_ref(), at: 0, what: "the file" };
@@ -83,11 +83,13 @@ pub fn read_own_effects(
     let (schema, at) = table.string("schema", &format!("start with schema = \"{SCHEMA}\""))?;
     if schema != SCHEMA {
         let problem = format!("unknown schema '{}'", excerpt(schema, 80));
-        return Err(source.error(at.start, problem).with_help(format!("write schema = \"{SCHEMA}\"")));
+        return Err(source
+            .error(codes::OTHER_KIND_OF_FILE, at.start, problem)
+            .with_help(format!("write schema = \"{SCHEMA}\"")));
     }
     if !root.get_ref().contains_key("effect") {
         return Err(source
-            .error(0, "the file contains no effect")
+            .error(codes::MISSING_FIELD, 0, "the file contains no effect")
             .with_help("start one with [[effect]]; `pinswitch init effects` writes an example"));
     }
     let effects = blocks(&source, root.get_ref())?;
@@ -97,7 +99,7 @@ pub fn read_own_effects(
         let is_repeated = effects[..i].iter().any(|other| other.own.definition().id == *id);
         if is_repeated || vocabulary.named(id).is_some() {
             return Err(source
-                .error(effect.id_at, format!("duplicate id '{id}'"))
+                .error(codes::DUPLICATE_ENTRY, effect.id_at, format!("duplicate id '{id}'"))
                 .with_help("give each effect its own id"));
         }
         for (rival, at) in effect.own.definition().confused_with.iter().zip(&effect.rivals_at) {
@@ -105,7 +107,7 @@ pub fn read_own_effects(
             if !is_here && vocabulary.named(rival).is_none() {
                 let own = effects.iter().map(|other| other.own.definition().id.as_str());
                 let known = own.chain(vocabulary.acting_order().iter().map(|effect| effect.id()));
-                return Err(source.locate(*at, unknown_name("effect", rival, known)));
+                return Err(source.locate(*at, unknown_name(codes::UNKNOWN_NAME, "effect", rival, known)));
             }
         }
     }
@@ -119,18 +121,24 @@ fn check_formula(source: &Source<'_>, effect: &Placed) -> Result<(), Diagnostic>
             "constants {} are not identifiable: a change of one is compensated by the others",
             names.join(" and ")
         );
-        return Err(source.error(effect.formula_at, problem).with_help("leave out one of them"));
+        return Err(source
+            .error(codes::CONSTANTS_NOT_IDENTIFIABLE, effect.formula_at, problem)
+            .with_help("leave out one of them"));
     }
     if let Some(name) = effect.own.step_parameter() {
         let problem = format!("the effect changes only in steps with '{name}', which a fit cannot follow");
         let help = format!(
             "replace the comparison by a narrow slope, such as 0.5*(1 + tanh((time - {name})/0.004)), or the parameter by a number"
         );
-        return Err(source.error(effect.formula_at, problem).with_help(help));
+        return Err(source.error(codes::EFFECT_IN_STEPS, effect.formula_at, problem).with_help(help));
     }
     if effect.own.is_nonlinear_in_sizes() {
         return Err(source
-            .error(effect.formula_at, "the effect is not linear in its sizes near zero")
+            .error(
+                codes::EFFECT_NOT_LINEAR,
+                effect.formula_at,
+                "the effect is not linear in its sizes near zero",
+            )
             .with_help("write k*f or exp(k*f) - 1 in place of k^2, abs(k) or sqrt(k)"));
     }
     Ok(())
@@ -144,7 +152,7 @@ pub(crate) fn effects_of_model(text: &str, file: &str) -> Result<Vec<OwnEffect>,
     for (i, effect) in effects.iter().enumerate() {
         let id = &effect.own.definition().id;
         if effects[..i].iter().any(|other| other.own.definition().id == *id) {
-            return Err(source.error(effect.id_at, format!("duplicate id '{id}'")));
+            return Err(source.error(codes::DUPLICATE_ENTRY, effect.id_at, format!("duplicate id '{id}'")));
         }
     }
     Ok(effects.into_iter().map(|effect| effect.own).collect())
@@ -168,12 +176,12 @@ fn blocks(source: &Source<'_>, root: &DeTable<'_>) -> Result<Vec<Placed>, Diagno
     let Some(value) = root.get("effect") else { return Ok(Vec::new()) };
     let Some(all) = value.get_ref().as_array() else {
         return Err(source
-            .error(value.span().start, "effect is not a list of tables")
+            .error(codes::WRONG_TYPE, value.span().start, "effect is not a list of tables")
             .with_help("start each effect with [[effect]]"));
     };
     if all.len() > MAX_EFFECTS {
         let problem = format!("{} effects, at most {MAX_EFFECTS} are possible", all.len());
-        return Err(source.error(value.span().start, problem));
+        return Err(source.error(codes::TOO_MANY_ENTRIES, value.span().start, problem));
     }
     all.iter().map(|value| effect(source, value)).collect()
 }
@@ -191,7 +199,7 @@ impl<'a> Table<'a> {
         let at = value.span().start;
         match value.get_ref().as_table() {
             Some(table) => Ok(Self { source, table, at, what }),
-            None => Err(source.error(at, format!("{what} is not a table"))),
+            None => Err(source.error(codes::WRONG_TYPE, at, format!("{what} is not a table"))),
         }
     }
 
@@ -199,17 +207,17 @@ impl<'a> Table<'a> {
     fn only(&self, keys: &[&str]) -> Result<(), Diagnostic> {
         let mut others = self.table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
         others.next().map_or(Ok(()), |key| {
-            let error = unknown_name("key", key.get_ref(), keys.iter().copied());
+            let error = unknown_name(codes::UNKNOWN_FIELD, "key", key.get_ref(), keys.iter().copied());
             Err(self.source.locate(key.span().start, error))
         })
     }
 
     fn missing(&self, key: &str, help: &str) -> Diagnostic {
-        self.source.error(self.at, format!("{} lacks {key}", self.what)).with_help(help)
+        self.source.error(codes::MISSING_FIELD, self.at, format!("{} lacks {key}", self.what)).with_help(help)
     }
 
     fn wrong(&self, key: &str, value: &Value<'_>, expected: &str) -> Diagnostic {
-        self.source.error(value.span().start, format!("{key}: expected {expected}"))
+        self.source.error(codes::WRONG_TYPE, value.span().start, format!("{key}: expected {expected}"))
     }
 
     fn string(&self, key: &str, help: &str) -> Result<(&'a str, Range<usize>), Diagnostic> {
@@ -224,7 +232,7 @@ impl<'a> Table<'a> {
         let (text, at) = self.string(key, &help)?;
         words.iter().find(|w| w.0 == text).map(|w| w.1).ok_or_else(|| {
             self.source
-                .error(at.start, format!("unknown {key} '{}'", excerpt(text, 60)))
+                .error(codes::UNKNOWN_WORD, at.start, format!("unknown {key} '{}'", excerpt(text, 60)))
                 .with_help(help.as_str())
         })
     }
@@ -392,7 +400,11 @@ fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), Dia
             (true, ..) => {
                 return Err(effect
                     .source
-                    .error(table.at, format!("{what}: a size cannot have bounds"))
+                    .error(
+                        codes::CONFLICTING_SETTINGS,
+                        table.at,
+                        format!("{what}: a size cannot have bounds"),
+                    )
                     .with_help("leave out low and high; one_sided = true keeps the first size positive"));
             }
             (false, ..) => {

@@ -24,7 +24,7 @@ pub use writer::{own_effect_blocks, own_effects_text};
 
 use std::borrow::Cow;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::sort_by_number;
 
 use super::formula::{EffectFormula, TENSION, VARIABLES, stage};
@@ -243,7 +243,8 @@ impl Effect for OwnEffect {
 
 /// Returns the error of a repeated id.
 pub(super) fn duplicate(id: &str) -> DefinitionError {
-    let diagnostic = Diagnostic::new(format!("duplicate id '{id}'")).with_help("give each effect its own id");
+    let diagnostic = Diagnostic::new(codes::DUPLICATE_ENTRY, format!("duplicate id '{id}'"))
+        .with_help("give each effect its own id");
     DefinitionError { part: definition::Part::Id, diagnostic }
 }
 

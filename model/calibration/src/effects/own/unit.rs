@@ -1,6 +1,6 @@
 //! Units of constants and variables, as powers of base units.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 
 /// The base units, as written in files.
 const BASE: [&str; 5] = ["N", "%", "s", "mm", "rad"];
@@ -35,8 +35,11 @@ impl Unit {
         for word in spaced.split_whitespace() {
             if word == "/" {
                 if sign < 0.0 || factors == 0 {
-                    return Err(Diagnostic::new(format!("misplaced '/' in unit '{text}'"))
-                        .with_help("use '/' once, after a factor, as in 1/N"));
+                    return Err(Diagnostic::new(
+                        codes::UNKNOWN_UNIT,
+                        format!("misplaced '/' in unit '{text}'"),
+                    )
+                    .with_help("use '/' once, after a factor, as in 1/N"));
                 }
                 sign = -1.0;
                 continue;
@@ -45,20 +48,25 @@ impl Unit {
             let (name, power) = word.split_once('^').unwrap_or((word, "1"));
             let power: f64 = power.parse().unwrap_or(f64::NAN);
             if !(-MAX_POWER..=MAX_POWER).contains(&power) {
-                return Err(Diagnostic::new(format!("invalid power in '{word}' of unit '{text}'"))
-                    .with_help(format!("give a number from -{MAX_POWER} to {MAX_POWER}")));
+                return Err(Diagnostic::new(
+                    codes::UNKNOWN_UNIT,
+                    format!("invalid power in '{word}' of unit '{text}'"),
+                )
+                .with_help(format!("give a number from -{MAX_POWER} to {MAX_POWER}")));
             }
             if name == "1" {
                 continue;
             }
             let Some(base) = BASE.iter().position(|b| *b == name) else {
-                return Err(Diagnostic::new(format!("unknown unit '{text}'"))
+                return Err(Diagnostic::new(codes::UNKNOWN_UNIT, format!("unknown unit '{text}'"))
                     .with_help(format!("use 1, {} and their products", BASE.join(", "))));
             };
             unit.0[base] += sign * power;
         }
         if factors == 0 || text.trim_end().ends_with('/') {
-            return Err(Diagnostic::new("missing unit").with_help("write \"1\" for none"));
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_UNIT, "missing unit").with_help("write \"1\" for none")
+            );
         }
         Ok(unit)
     }

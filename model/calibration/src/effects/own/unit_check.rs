@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_formula::{FormulaError, Function, Kind, Operator};
 
 use super::unit::Unit;
@@ -18,7 +18,7 @@ type Node = pinswitch_formula::Node<Symbol>;
 
 /// Returns the error for a diagnostic about these bytes of the formula.
 pub(super) fn located(span: Range<usize>, diagnostic: &Diagnostic) -> FormulaError {
-    let error = FormulaError::new(span, diagnostic.problem());
+    let error = FormulaError::new(diagnostic.code(), span, diagnostic.problem());
     match diagnostic.help() {
         Some(help) => error.with_help(help),
         None => error,
@@ -77,7 +77,7 @@ pub(super) fn check_units(
     }
     let unit = solver.shown(&unit);
     let problem = format!("the formula has unit {unit}, but {what} needs {needed}");
-    Err(FormulaError::new(formula.extent(), problem)
+    Err(FormulaError::new(codes::FORMULA_UNITS, formula.extent(), problem)
         .with_help("divide by a reference, as in load_n/50, or give a constant another unit"))
 }
 
@@ -135,7 +135,8 @@ impl Solver {
         }
         let unit = self.shown(quantity);
         let problem = format!("{what} has unit {unit}, but must be dimensionless");
-        Err(FormulaError::new(at, problem).with_help("divide by a reference, as in load_n/50"))
+        Err(FormulaError::new(codes::FORMULA_UNITS, at, problem)
+            .with_help("divide by a reference, as in load_n/50"))
     }
 
     fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
@@ -205,7 +206,8 @@ impl Solver {
                 if !self.equal(&left, &right) {
                     let (left, right) = (self.shown(&left), self.shown(&right));
                     let problem = format!("the operands have different units, {left} and {right}");
-                    return Err(FormulaError::new(at, problem).with_help("divide each by a reference"));
+                    return Err(FormulaError::new(codes::FORMULA_UNITS, at, problem)
+                        .with_help("divide each by a reference"));
                 }
                 let joins =
                     matches!(operator, Operator::Add | Operator::Subtract | Operator::Min | Operator::Max);

@@ -7,7 +7,7 @@ use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use numpy::{PyArrayMethods, PyReadonlyArray1};
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
@@ -42,8 +42,9 @@ pub(crate) fn arrow_stream<'py>(
         arrays.push(array);
     }
     let schema = Arc::new(Schema::new(fields));
-    let batch =
-        RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(Diagnostic::from_error).or_raise(py)?;
+    let batch = RecordBatch::try_new(Arc::clone(&schema), arrays)
+        .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))
+        .or_raise(py)?;
     let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
     PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
 }

@@ -10,7 +10,7 @@ use pinswitch::calibration::table::PlateauTable;
 use pinswitch::calibration::{
     self as library, Calibration as Found, ModelFile, Report, calibrate as calibrate_rows, calibrate_below,
 };
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pinswitch::report::{calibration_files, run_sheet};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -205,7 +205,7 @@ pub(crate) fn calibrate(
         }
         let name = read.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(" + ");
         let mut table = match read.len() {
-            0 => return Err(Diagnostic::new("no plateau table").with_help("give at least one")),
+            0 => return Err(Diagnostic::new(codes::USAGE, "no plateau table").with_help("give at least one")),
             1 => read.remove(0).0,
             _ => PlateauTable::joined(read)?,
         };

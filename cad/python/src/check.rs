@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pinswitch::solid::file_check::{Judgement, Purpose, Verdict};
 use pinswitch::solid::validity::{Expectation, Level};
 use pyo3::prelude::*;
@@ -27,13 +27,16 @@ pub(crate) fn check(
         Some("print") => Some(Purpose::Print),
         Some("spec") => Some(Purpose::Spec),
         Some(other) => {
-            let error =
-                Diagnostic::new(format!("unknown purpose {other:?}")).with_help("give \"print\" or \"spec\"");
+            let error = Diagnostic::new(codes::UNKNOWN_WORD, format!("unknown purpose {other:?}"))
+                .with_help("give \"print\" or \"spec\"");
             return Err(exception(py, error));
         }
     };
     if !(min_wall_mm >= 0.0 && min_wall_mm.is_finite()) {
-        let error = Diagnostic::new(format!("min_wall_mm = {min_wall_mm} is not a wall thickness"));
+        let error = Diagnostic::new(
+            codes::OUT_OF_RANGE,
+            format!("min_wall_mm = {min_wall_mm} is not a wall thickness"),
+        );
         return Err(exception(py, error.with_help("give 0 or more mm")));
     }
     let level = if strict { Level::Warning } else { Level::Error };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use pinswitch::diagnostic::{Diagnostic, Location};
+use pinswitch::diagnostic::{Diagnostic, Location, codes};
 use pinswitch::switch::config::{
     self, Configuration as Values, FieldLocations, Name, parameter::Parameter, read_clamped, to_toml,
 };
@@ -34,7 +34,9 @@ fn parameter(path: &str) -> Result<&'static Parameter<Values>, Diagnostic> {
     find(path).ok_or_else(|| {
         // The error of an assignment names the nearest parameter.
         let error = config::assign(&mut Values::default(), &format!("{path}=0")).err();
-        error.unwrap_or_else(|| Diagnostic::new("unknown field").with_location(Location::field(path, "")))
+        error.unwrap_or_else(|| {
+            Diagnostic::new(codes::UNKNOWN_FIELD, "unknown field").with_location(Location::field(path, ""))
+        })
     })
 }
 
@@ -98,7 +100,7 @@ impl Configuration {
         let package = pinswitch::solid::files::read_three_mf(bytes);
         let package = package.map_err(|e| Diagnostic::from(e).or_in_file(file)).or_raise(py)?;
         let text = package.configuration.ok_or_else(|| {
-            Diagnostic::new("the 3MF contains no configuration")
+            Diagnostic::new(codes::OTHER_KIND_OF_FILE, "the 3MF contains no configuration")
                 .with_location(Location::file(file))
                 .with_help("give a TOML file, or an assembly.3mf that pinswitch wrote")
         });
@@ -139,7 +141,9 @@ impl Configuration {
 
     /// Checks every rule; returns the warnings.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        py.detach(|| self.design()).or_raise(py).map(|design| design.warnings())
+        py.detach(|| self.design())
+            .or_raise(py)
+            .map(|design| design.warnings().iter().map(ToString::to_string).collect())
     }
 
     /// Returns the nearest valid configuration, with the changes as (field, old, new, reason).

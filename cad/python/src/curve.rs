@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use pinswitch::calibration::ModelFile;
-use pinswitch::diagnostic::{Diagnostic, Location};
+use pinswitch::diagnostic::{Diagnostic, Location, codes};
 use pinswitch::friction::{
     Contact, FrictionCurve, Law, Transition, other_laws, predict as predict_contact, predict_by,
 };
@@ -86,7 +86,7 @@ impl Curve {
     /// Returns the figure as SVG.
     fn svg(&self, py: Python<'_>) -> PyResult<String> {
         let drawn = py.detach(|| friction_svg(&self.name, &self.contact, &self.curve, &self.others));
-        drawn.map_err(Diagnostic::from_error).or_raise(py)
+        drawn.map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e)).or_raise(py)
     }
 
     /// Returns `friction.csv`.
@@ -100,7 +100,7 @@ pub(crate) fn law_named(name: &str) -> Result<Law, Diagnostic> {
     let known = || Law::predictive().map(Law::as_str).collect::<Vec<_>>().join(", ");
     let law = Law::predictive().find(|law| law.as_str() == name);
     law.ok_or_else(|| {
-        Diagnostic::new("unknown friction law")
+        Diagnostic::new(codes::UNKNOWN_WORD, "unknown friction law")
             .with_location(Location::field("law", name))
             .with_help(format!("give one of {}", known()))
     })
@@ -109,7 +109,7 @@ pub(crate) fn law_named(name: &str) -> Result<Law, Diagnostic> {
 /// Checks loads in newtons: positive, finite and ascending.
 fn checked_loads(loads_n: Vec<f64>) -> Result<Vec<f64>, Diagnostic> {
     let refused = |value: String, problem: &str| {
-        Diagnostic::new(problem)
+        Diagnostic::new(codes::OUT_OF_RANGE, problem)
             .with_location(Location::field("loads_n", value))
             .with_help("give positive loads in newtons, in ascending order")
     };

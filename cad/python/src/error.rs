@@ -1,6 +1,6 @@
 //! Errors as Python exceptions.
 
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pyo3::prelude::*;
 
 /// Converts a diagnostic to `pinswitch.PinswitchError`, which has its fields as attributes.
@@ -31,5 +31,5 @@ impl<T, E: Into<Diagnostic>> OrRaise<T> for Result<T, E> {
 
 /// Returns a value as JSON.
 pub(crate) fn json(py: Python<'_>, value: &impl serde::Serialize) -> PyResult<String> {
-    serde_json::to_string(value).map_err(Diagnostic::from_error).or_raise(py)
+    serde_json::to_string(value).map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e)).or_raise(py)
 }

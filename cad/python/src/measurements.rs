@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use pinswitch::calibration::segmentation::{RunPlan, RunSegmentation};
 use pinswitch::calibration::table::PlateauTable;
-use pinswitch::diagnostic::{Diagnostic, Location};
+use pinswitch::diagnostic::{Diagnostic, Location, codes};
 use pinswitch::import::{Map, Pattern, Source, import_with_pattern};
 use pinswitch::report::log_svg;
 use pyo3::prelude::*;
@@ -76,7 +76,8 @@ pub(crate) fn segment(
             let mut of_series = Vec::new();
             for name in series.file_names() {
                 let bytes = logs.get(name).ok_or_else(|| {
-                    Diagnostic::new("the log is missing").with_location(Location::file(name))
+                    Diagnostic::new(codes::FILE_NOT_FOUND, "the log is missing")
+                        .with_location(Location::file(name))
                 })?;
                 let bytes = match &map {
                     Some(map) => map.read_log(bytes, name)?.to_csv().into_bytes(),
@@ -86,7 +87,8 @@ pub(crate) fn segment(
             }
             let (log, segmented) = run.add(series, &of_series)?;
             if figures {
-                let svg = log_svg(series.name(), &log, &segmented).map_err(Diagnostic::from_error)?;
+                let svg = log_svg(series.name(), &log, &segmented)
+                    .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
                 plots.push((series.name().to_owned(), svg));
             }
         }

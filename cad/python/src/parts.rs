@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray2, PyArrayMethods};
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pinswitch::solid::mesh::{Mesh, Point3};
 use pinswitch::solid::render::{Body, View, render};
 use pinswitch::switch::built::{Built, BuiltPart};
@@ -35,7 +35,11 @@ impl Parts {
         all.iter().find(|part| part.part().name == name).ok_or_else(|| {
             let names: Vec<&str> = all.iter().map(|part| part.part().name.as_str()).collect();
             let problem = format!("no part has the name {name:?}");
-            exception(py, Diagnostic::new(problem).with_help(format!("the parts are {}", names.join(", "))))
+            exception(
+                py,
+                Diagnostic::new(codes::UNKNOWN_WORD, problem)
+                    .with_help(format!("the parts are {}", names.join(", "))),
+            )
         })
     }
 }
@@ -67,7 +71,7 @@ impl Parts {
     fn mesh<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<MeshArrays<'py>> {
         let py = slf.py();
         let mesh = &slf.get().part(py, name)?.print_mesh;
-        let failed = |_| exception(py, Diagnostic::new("the mesh is not an array"));
+        let failed = |_| exception(py, Diagnostic::new(codes::INTERNAL_ERROR, "the mesh is not an array"));
         // SAFETY: a point is three numbers without padding (`repr(C)` over `[f64; 3]`).
         #[allow(unsafe_code)]
         let numbers: &[f64] =
@@ -84,13 +88,17 @@ impl Parts {
 
     /// Returns the binary STL of a part.
     fn stl<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.part(py, name)?.stl().map_err(Diagnostic::from_error).or_raise(py)?;
+        let bytes = self
+            .part(py, name)?
+            .stl()
+            .map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))
+            .or_raise(py)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Returns the warnings of the design.
     fn warnings(&self) -> Vec<String> {
-        self.built.design().warnings()
+        self.built.design().warnings().iter().map(ToString::to_string).collect()
     }
 
     /// Returns an animated PNG of the assembly that turns once.
@@ -103,7 +111,7 @@ impl Parts {
     ) -> PyResult<Bound<'py, PyBytes>> {
         let built = Arc::clone(&self.built);
         let png = task::run(py, None, move |_| turning_png(&built, width, height, frames.max(1)))?;
-        Ok(PyBytes::new(py, &png.map_err(Diagnostic::from_error).or_raise(py)?))
+        Ok(PyBytes::new(py, &png.map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e)).or_raise(py)?))
     }
 
     /// Makes the files of a set, by name; without formats, those of `pinswitch generate`.

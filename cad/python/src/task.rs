@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pyo3::prelude::*;
 
 use crate::error::exception;
@@ -55,8 +55,12 @@ pub(crate) fn run<T: Send + 'static>(
     let task = Arc::new(Task::default());
     let (sender, mut receiver) = channel();
     let of_thread = Arc::clone(&task);
-    let panicked =
-        |py| exception(py, Diagnostic::new("internal error (panic)").with_help("report the inputs"));
+    let panicked = |py| {
+        exception(
+            py,
+            Diagnostic::new(codes::INTERNAL_ERROR, "internal error (panic)").with_help("report the inputs"),
+        )
+    };
     std::thread::Builder::new().name("pinswitch".to_owned()).stack_size(STACK).spawn(move || {
         // The receiver is gone after Ctrl-C.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(&of_thread))));

@@ -1,6 +1,6 @@
 //! Values of parameters in Python and in TOML.
 
-use pinswitch::diagnostic::Diagnostic;
+use pinswitch::diagnostic::{Diagnostic, codes};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyString};
 use toml_edit::{Array, Value};
@@ -28,7 +28,10 @@ pub(crate) fn to_toml(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     }
     let Ok(items) = value.try_iter() else {
         let problem = format!("{} is not a number, a text or a list", value.repr()?);
-        return Err(exception(value.py(), Diagnostic::new(problem).with_help("give a plain value")));
+        return Err(exception(
+            value.py(),
+            Diagnostic::new(codes::WRONG_TYPE, problem).with_help("give a plain value"),
+        ));
     };
     items.map(|item| to_toml(&item?)).collect::<PyResult<Array>>().map(Value::from)
 }

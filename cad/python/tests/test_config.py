@@ -49,11 +49,12 @@ def test_errors_have_the_fields_of_the_diagnostic() -> None:
         pinswitch.build(config)
     error = caught.value
     assert (error.field, error.value) == ("segment.grooves", "40")
+    assert error.code == "grooves-overlap"
     assert error.changes == {"segment.grooves": "20"}
     assert error.problem.startswith("grooves overlap") and error.help is not None
     assert str(error).startswith("segment.grooves = 40: grooves overlap")
     restored = pickle.loads(pickle.dumps(error))
-    assert (restored.changes, str(restored)) == (error.changes, str(error))
+    assert (restored.code, restored.changes, str(restored)) == (error.code, error.changes, str(error))
 
 
 def test_errors_have_the_line_of_a_file() -> None:

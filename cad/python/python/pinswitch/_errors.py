@@ -8,10 +8,12 @@ import json
 class PinswitchError(ValueError):
     """An input that cannot be used.
 
-    ``str(error)`` is the message of the command line: the location, the problem, and the help.
+    ``str(error)`` is the message of the command line: the location, the problem, its code, and the help.
 
     Attributes
     ----------
+    code : str
+        Kind of fault, such as ``grooves-overlap``: `pinswitch explain` prints its page.
     problem : str
         What is wrong.
     help : str or None
@@ -30,6 +32,7 @@ class PinswitchError(ValueError):
         self,
         problem: str,
         *,
+        code: str,
         help: str | None = None,
         file: str | None = None,
         line: int | None = None,
@@ -40,6 +43,7 @@ class PinswitchError(ValueError):
         causes: list[str] | None = None,
         text: str | None = None,
     ) -> None:
+        self.code = code
         self.problem = problem
         self.help = help
         self.file = file
@@ -50,7 +54,7 @@ class PinswitchError(ValueError):
         self.changes = changes or {}
         self.causes = causes or []
         if text is None:
-            located = problem if file is None else f"{file}: {problem}"
+            located = f"{problem} [{code}]" if file is None else f"{file}: {problem} [{code}]"
             text = located if help is None else f"{located}\n  help: {help}"
         super().__init__(text)
 
@@ -63,7 +67,7 @@ PinswitchError.__module__ = "pinswitch"
 
 
 def _restored(fields: dict[str, object], text: str) -> PinswitchError:
-    error = PinswitchError("", text=text)
+    error = PinswitchError("", code="", text=text)
     error.__dict__.update(fields)
     return error
 
@@ -74,6 +78,7 @@ def from_json(text: str, rendered: str) -> PinswitchError:
     location = fields.get("location", {})
     return PinswitchError(
         fields["problem"],
+        code=fields["code"],
         help=fields.get("help"),
         file=location.get("file"),
         line=location.get("line"),

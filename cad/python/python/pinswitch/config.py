@@ -43,7 +43,7 @@ class Config(Sections):
     >>> config.shell.width_mm = -1
     Traceback (most recent call last):
     ...
-    pinswitch.PinswitchError: shell.width_mm = -1: outside 2 to 100
+    pinswitch.PinswitchError: shell.width_mm = -1: outside 2 to 100 [out-of-range]
       help: give a number from 2 to 100
     """
 
@@ -179,13 +179,15 @@ def _read(source: str | os.PathLike[str], base: _pinswitch.Configuration | None)
         try:
             return _pinswitch.Configuration.read(content.decode("utf-8"), name, base)
         except UnicodeDecodeError as error:
-            raise PinswitchError("not UTF-8", help="save the file as UTF-8 text", file=name) from error
+            raise PinswitchError(
+                "not UTF-8", code="not-utf-8", help="save the file as UTF-8 text", file=name
+            ) from error
     text = _pinswitch.template_text(name)
     if text is not None:
         return _pinswitch.Configuration.read(text, name, base)
     near = difflib.get_close_matches(name, _pinswitch.templates(), 1, 0.0)[0]
     help = f"the nearest template is {near!r}; pinswitch.templates() lists all templates"
-    raise PinswitchError("no such file or template", help=help, file=name)
+    raise PinswitchError("no such file or template", code="file-not-found", help=help, file=name)
 
 
 def templates() -> list[str]:

@@ -244,7 +244,9 @@ def _table_bytes(table: Any) -> tuple[bytes, str]:
         try:
             return Path(table).read_bytes(), os.fspath(table)
         except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(table)) from error
+            raise PinswitchError(
+                f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(table)
+            ) from error
     return csv_text(columns_of(table)).encode(), "table"
 
 

@@ -108,12 +108,14 @@ class Expression:
     def __bool__(self) -> bool:
         raise PinswitchError(
             "the function of an effect decides with if, and, or, min or max on a value of a row",
+            code="formula-syntax",
             help="write a comparison as a factor, such as k * (row.time > 0.5), or use np.minimum and np.maximum",
         )
 
     def __float__(self) -> float:
         raise PinswitchError(
             "the function of an effect converts a value of a row to a number, as functions of math do",
+            code="formula-syntax",
             help="use the functions of numpy, such as np.exp",
         )
 
@@ -122,7 +124,7 @@ class Expression:
         if name is None or method != "__call__" or options:
             known = ", ".join(sorted({f.__name__ for f, n in UFUNCS.items() if n not in OPERATORS}))
             problem = f"formulas have no counterpart of numpy.{function.__name__}"
-            raise PinswitchError(problem, help=f"use arithmetic, comparisons and {known}")
+            raise PinswitchError(problem, code="formula-syntax", help=f"use arithmetic, comparisons and {known}")
         if name in OPERATORS:
             return self._joined(name, *inputs)
         return Expression(f"{name}({', '.join(_text(operand) for operand in inputs)})")
@@ -137,7 +139,9 @@ def _text(operand: Operand) -> str:
         return operand.text
     value = float(operand)
     if not np.isfinite(value):
-        raise PinswitchError(f"the function of an effect uses {value}", help="use finite numbers")
+        raise PinswitchError(
+            f"the function of an effect uses {value}", code="formula-not-finite", help="use finite numbers"
+        )
     return repr(value) if value >= 0 else f"(-{-value!r})"
 
 
@@ -285,7 +289,9 @@ def effect(
         for argument in arguments[1:]:
             if not isinstance(argument.default, Constant):
                 help = f"write {argument.name}=pinswitch.size(start) or =pinswitch.shape(start, low, high)"
-                raise PinswitchError(f"argument {argument.name} has no constant as its default", help=help)
+                raise PinswitchError(
+                    f"argument {argument.name} has no constant as its default", code="invalid-effect", help=help
+                )
             constants[argument.name] = argument.default
         result = function(Row(), **{name: Expression(name) for name in constants})
         made = Effect(

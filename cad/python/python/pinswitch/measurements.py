@@ -90,7 +90,7 @@ def read(
             f"set={dict(option.split('=', 1) for option in answer['options'])!r} ({answer['reading']})"
             for answer in question["answers"]
         )
-        raise PinswitchError(question["problem"], help=f"decide with {options}")
+        raise PinswitchError(question["problem"], code=question["code"], help=f"decide with {options}")
     return Measurements(read_csv(csv), kind, text, understood, complete)
 
 
@@ -116,7 +116,7 @@ def _unpacked(path: PathLike) -> bytes:
     try:
         content = Path(path).read_bytes()
     except OSError as error:
-        raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(path)) from error
+        raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
     if not content.startswith(b"\x1f\x8b"):
         return content
     try:
@@ -124,9 +124,9 @@ def _unpacked(path: PathLike) -> bytes:
             content = file.read(MAX_UNPACKED + 1)
     except (OSError, EOFError) as error:
         help = "give a complete gzip file"
-        raise PinswitchError("cannot unpack", help=help, file=os.fspath(path)) from error
+        raise PinswitchError("cannot unpack", code="damaged-file", help=help, file=os.fspath(path)) from error
     if len(content) > MAX_UNPACKED:
-        raise PinswitchError(f"unpacks to more than {MAX_UNPACKED} bytes", file=os.fspath(path))
+        raise PinswitchError(f"unpacks to more than {MAX_UNPACKED} bytes", code="file-too-large", file=os.fspath(path))
     return content
 
 
@@ -171,7 +171,12 @@ def segment(run: PathLike, *, figures: bool = True) -> Segmentation:
     logs, map_name = _pinswitch.run_files(text, name)
     for log in logs:
         if not (folder / log).resolve().is_relative_to(folder.resolve()):
-            raise PinswitchError("the log is outside the folder of the description", help="copy it there", file=log)
+            raise PinswitchError(
+                "the log is outside the folder of the description",
+                code="outside-the-folder",
+                help="copy it there",
+                file=log,
+            )
     contents = {log: _unpacked(folder / log) for log in logs}
     named_map = map_name and ((folder / map_name).read_text(encoding="utf-8"), map_name)
     csv, report, summary, drawn = _pinswitch.segment(text, name, contents, named_map or None, figures)

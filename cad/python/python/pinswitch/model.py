@@ -52,7 +52,7 @@ class Model:
         try:
             text = Path(path).read_text(encoding="utf-8")
         except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(path)) from error
+            raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
         return cls(_pinswitch.Model.parse(text, os.fspath(path)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -114,7 +114,9 @@ def plateau_bytes(table: Any) -> tuple[bytes, str]:
         try:
             return Path(table).read_bytes(), os.fspath(table)
         except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(table)) from error
+            raise PinswitchError(
+                f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(table)
+            ) from error
     columns = columns_of(table)
     if "repetition" in columns:
         columns["repetition"] = [_whole(value) for value in columns["repetition"]]

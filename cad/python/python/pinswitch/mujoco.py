@@ -72,9 +72,18 @@ class Surface:
             table = getattr(self, name)
             if table.shape != shape or not np.all(np.diff(table, axis=1) > 0):
                 problem = f"{name} does not grow with the load, or does not have the shape {shape}"
-                raise PinswitchError(problem, help="give ascending tensions for each wrap angle", field=name)
+                raise PinswitchError(
+                    problem,
+                    code="tension-not-increasing",
+                    help="give ascending tensions for each wrap angle",
+                    field=name,
+                )
         if not (np.all(self.eccentric_n <= self.load_n) and np.all(self.concentric_n >= self.load_n)):
-            raise PinswitchError("a tension is on the wrong side of its load", help="eccentric <= load <= concentric")
+            raise PinswitchError(
+                "a tension is on the wrong side of its load",
+                code="tension-not-increasing",
+                help="eccentric <= load <= concentric",
+            )
 
     @classmethod
     def of_curve(cls, curve: Curve, wrap_rad: float = 1.0) -> Surface:
@@ -90,10 +99,12 @@ class Surface:
                 raise KeyError("schema")
             return cls(table["wrap_rad"], table["load_n"], table["eccentric_n"], table["concentric_n"])
         except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(path)) from error
+            raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
         except (KeyError, TypeError, json.JSONDecodeError) as error:
             help = "give a switch.json of `pinswitch export`"
-            raise PinswitchError("not the table of a switch", help=help, file=os.fspath(path)) from error
+            raise PinswitchError(
+                "not the table of a switch", code="other-kind-of-file", help=help, file=os.fspath(path)
+            ) from error
 
     def bounds_n(self, tension_n: float, wrap_rad: Optional[float] = None) -> tuple[float, float]:
         """Return the bounds of the friction ``T - F`` at a tension of the motor, N.
@@ -238,10 +249,14 @@ class Host:
         for switch in self.switches:
             number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TENDON, switch.tendon)
             if number < 0:
-                raise PinswitchError("the model has no tendon of this name", field="tendon", value=switch.tendon)
+                raise PinswitchError(
+                    "the model has no tendon of this name", code="unknown-name", field="tendon", value=switch.tendon
+                )
             if not switch.stiffness_n_m > 0:
                 problem = f"stiffness_n_m = {switch.stiffness_n_m} is not positive"
-                raise PinswitchError(problem, help="give a stiffness in N/m", field="stiffness_n_m")
+                raise PinswitchError(
+                    problem, code="out-of-range", help="give a stiffness in N/m", field="stiffness_n_m"
+                )
             self._ids.append(number)
         is_tendon = model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON
         self._actuators = [np.flatnonzero(is_tendon & (model.actuator_trnid[:, 0] == id)) for id in self._ids]
@@ -258,7 +273,9 @@ class Host:
         try:
             model = mujoco.MjModel.from_xml_path(os.fspath(path))
         except ValueError as error:
-            raise PinswitchError("not a model of MuJoCo", file=os.fspath(path), causes=[str(error)]) from error
+            raise PinswitchError(
+                "not a model of MuJoCo", code="damaged-file", file=os.fspath(path), causes=[str(error)]
+            ) from error
         switches = []
         for i in range(model.ntext):
             name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, i) or ""
@@ -267,14 +284,21 @@ class Host:
             tendon = name[len("pinswitch.") :]
             wrap = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, f"{name}.wrap")
             if wrap < 0:
-                raise PinswitchError(f"the model has no <numeric name={name}.wrap>", file=os.fspath(path))
+                raise PinswitchError(
+                    f"the model has no <numeric name={name}.wrap>", code="missing-field", file=os.fspath(path)
+                )
             start, slope = model.numeric_data[model.numeric_adr[wrap] :][:2]
             at = model.text_adr[i]
             text = bytes(bytearray(model.text_data[at : at + model.text_size[i]])).decode()
             file = Path(path).parent / text.rstrip("\0")
             switches.append(Switch(tendon, Surface.load(file), float(start), float(slope), **options))
         if not switches:
-            raise PinswitchError("the model names no switch", help="use a model of `pinswitch export`", file=str(path))
+            raise PinswitchError(
+                "the model names no switch",
+                code="other-kind-of-file",
+                help="use a model of `pinswitch export`",
+                file=str(path),
+            )
         return cls(model, switches)
 
     def __getitem__(self, tendon: str) -> Switch:

@@ -175,7 +175,9 @@ def write_files(
     existing = [name for name in files if (place / name).exists()]
     if existing and not overwrite:
         problem = f"{len(existing)} of the files exist, such as {existing[0]}"
-        raise PinswitchError(problem, help="give another folder, or overwrite=True", file=os.fspath(folder))
+        raise PinswitchError(
+            problem, code="file-in-the-way", help="give another folder, or overwrite=True", file=os.fspath(folder)
+        )
     written = []
     for name, content in files.items():
         path = place / name

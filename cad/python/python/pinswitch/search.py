@@ -155,7 +155,9 @@ def design(
     native = (Config("three-double") if base is None else base)._native
     for option, value in (("best", best), ("draws", draws), ("starts", starts)):
         if value < 1:
-            raise PinswitchError(f"{option} = {value} is below 1", help="give at least 1", field=option)
+            raise PinswitchError(
+                f"{option} = {value} is below 1", code="out-of-range", help="give at least 1", field=option
+            )
     with progress_bar("steps", progress) as report:
         reports, texts, blocked, patterns = _pinswitch.design(
             native, text, name, _model_text(model), best, draws, seed, starts, report
@@ -292,6 +294,6 @@ def check(
     try:
         content = Path(path).read_bytes()
     except OSError as error:
-        raise PinswitchError(f"cannot read: {error.strerror}", file=os.fspath(path)) from error
+        raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
     report, text = _pinswitch.check(content, os.fspath(path), bodies, min_wall_mm, strict, purpose)
     return MeshCheck(json.loads(report), text)

@@ -58,6 +58,10 @@
 //!     fn channels(&self, constants: &[f64], _: &[SizedEffect]) -> Vec<Vec<f64>> {
 //!         vec![self.0.iter().map(|load| constants[0] * load).collect()]
 //!     }
+//!
+//!     fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {
+//!         Box::new(Self(rows.iter().map(|row| self.0[*row]).collect()))
+//!     }
 //! }
 //!
 //! let load: Vec<f64> = (0..40).map(|i| f64::from(1 + i / 10)).collect();
@@ -121,6 +125,7 @@ mod score;
 mod search;
 #[cfg(test)]
 mod test_problem;
+mod thinning;
 mod uncertainty;
 
 pub use coefficients::{Coefficient, Coefficients};

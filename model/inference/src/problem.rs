@@ -141,6 +141,9 @@ pub trait ForwardModel {
         self.channels(constants, effects)
     }
 
+    /// Returns the model of some of the rows, in this order.
+    fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel>;
+
     /// Returns the readings where effects of a session's time have their mean over the session.
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
         self.readings(constants, effects)

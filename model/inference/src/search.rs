@@ -1,6 +1,6 @@
 //! Search of the hypotheses with the highest posterior probability.
 //!
-//! 1. Start from nothing, and from the usual effects of the space, thinned out: effects that explain
+//! 1. Start from the best hypotheses of a search on some of the readings, if there are many. Otherwise start from nothing, and from the usual effects of the space, thinned out: effects that explain
 //!    something only together are invisible one by one.
 //! 2. Expand the best hypothesis that has not been expanded, within 3 nats of the best: score every
 //!    addition to first order, fit the best few, every removal, and the best exchanges.
@@ -12,6 +12,7 @@ use crate::fit::{Fit, Start};
 use crate::hypothesis::{Element, Hypothesis, Member};
 use crate::problem::Problem;
 use crate::score::{Addition, Scores};
+use crate::thinning::Thinned;
 
 /// Extent of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +25,13 @@ pub struct SearchOptions {
     pub width: usize,
     /// Most members of a hypothesis.
     pub members: usize,
+    /// Number of readings above which a search starts on about so many of them.
+    pub thinned_above: usize,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { window: 7.0, expansions: 6, width: 6, members: 5 }
+        Self { window: 7.0, expansions: 6, width: 6, members: 5, thinned_above: 4000 }
     }
 }
 
@@ -84,6 +87,9 @@ pub(crate) struct Search<'a> {
     fits: BTreeMap<Hypothesis, Fit>,
     failed: BTreeSet<Hypothesis>,
     excluded: &'a [bool],
+    /// Whether the search continues one on some of the readings, which has compared additions, exchanges and removals: only
+    /// additions to the best hypothesis that gain on all readings follow.
+    is_continued: bool,
     pub(crate) fit_count: usize,
 }
 
@@ -92,20 +98,24 @@ impl<'a> Search<'a> {
     pub(crate) fn new(problem: &'a Problem, options: SearchOptions, excluded: &'a [bool]) -> Self {
         let selectivity = Selectivity::of_rows(problem.len());
         let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
-        Self { problem, options, selectivity, fits, failed, excluded, fit_count: 0 }
+        Self { problem, options, selectivity, fits, failed, excluded, is_continued: false, fit_count: 0 }
     }
 
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
     pub(crate) fn run(&mut self) -> Vec<Fit> {
+        self.continue_from_thinned();
         self.fit(&Hypothesis::default(), Start { excluded: self.excluded, ..Start::default() });
         if self.options.members == 0 {
             return self.fits.values().cloned().collect();
         }
-        self.start_from_usual_effects();
+        if !self.is_continued {
+            self.start_from_usual_effects();
+        }
         let mut expanded = BTreeSet::new();
         for _ in 0..self.options.expansions {
             let Some(best) = self.best_score() else { break };
-            let near = self.ranked().into_iter().filter(|fit| fit.score > best - EXPANSION_WINDOW);
+            let window = if self.is_continued { 0.0 } else { EXPANSION_WINDOW };
+            let near = self.ranked().into_iter().filter(|fit| fit.score >= best - window);
             let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
                 // Another autoregression may have changed the ranks.
                 self.polish();
@@ -165,6 +175,22 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Fits the best hypotheses of a search on some of the readings, if there are too many for a search on all.
+    fn continue_from_thinned(&mut self) {
+        let Some(thinned) = Thinned::new(self.problem, self.options.thinned_above) else { return };
+        let excluded = thinned.select(self.excluded);
+        let options = SearchOptions { thinned_above: usize::MAX, ..self.options };
+        let mut search = Search::new(&thinned.problem, options, &excluded);
+        let window = search.run();
+        self.fit_count += search.fit_count;
+        for fit in search.baseline().iter().chain(window.iter().take(POLISHED.0)) {
+            let mode = thinned.extended(&fit.mode, self.excluded);
+            let start = Start { mode: Some(&mode), hypothesis: Some(&fit.hypothesis), ..Start::default() };
+            self.fit(&fit.hypothesis, start);
+        }
+        self.is_continued = !self.fits.is_empty();
+    }
+
     /// Fits the usual effects together, then removes them while the loss is small.
     fn start_from_usual_effects(&mut self) {
         let usual = self.problem.space.usual_effects.iter();
@@ -194,10 +220,13 @@ impl<'a> Search<'a> {
             self.add(fit, &scores.additions(None));
             // Scatter that stands for missing structure hides it: the additions count again by the
             // noise of repeated readings.
-            let quiet = fit.quiet(self.problem).and_then(|quiet| Scores::new(self.problem, &quiet));
-            if let Some(scores) = quiet {
+            let quiet = fit.quiet(self.problem).filter(|_| !self.is_continued);
+            if let Some(scores) = quiet.and_then(|quiet| Scores::new(self.problem, &quiet)) {
                 self.add(fit, &scores.additions(None));
             }
+        }
+        if self.is_continued {
+            return;
         }
         for element in fit.hypothesis.elements().collect::<Vec<_>>() {
             self.exchange(fit, element, &scores.additions(Some(element.member)));
@@ -208,7 +237,9 @@ impl<'a> Search<'a> {
     fn add(&mut self, fit: &Fit, additions: &[Addition]) {
         let Some(top) = additions.first().map(|a| a.score) else { return };
         let base = fit.hypothesis.log_prior_odds(&self.problem.space);
-        let least = (top - self.selectivity.addition).min(base + self.selectivity.certain).max(base - 5.0);
+        let usual = (top - self.selectivity.addition).min(base + self.selectivity.certain).max(base - 5.0);
+        // What is less probable than the fit was in the search on some of the readings.
+        let least = if self.is_continued { usual.max(base) } else { usual };
         let mut effects: Vec<Member> = Vec::new();
         let mut kernels: Vec<Member> = Vec::new();
         for addition in additions.iter().filter(|a| a.score > least) {
@@ -260,12 +291,16 @@ impl<'a> Search<'a> {
     fn polish(&mut self) {
         let Some(best) = self.best_score() else { return };
         let ranked = self.ranked().into_iter();
+        let window = if self.is_continued { EXPANSION_WINDOW } else { POLISHED.1 };
         let near: Vec<Fit> =
-            ranked.take(POLISHED.0).filter(|fit| fit.score > best - POLISHED.1).cloned().collect();
+            ranked.take(POLISHED.0).filter(|fit| fit.score > best - window).cloned().collect();
         for fit in &near {
             self.fit_again(&fit.hypothesis, fit, true);
         }
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
+        if self.is_continued {
+            return;
+        }
         for member in best.hypothesis.members() {
             let reduced = best.hypothesis.without(member);
             self.fit_again(&reduced, &best, false);

@@ -24,6 +24,10 @@ impl ForwardModel for Line {
     fn channels(&self, constants: &[f64], _: &[SizedEffect]) -> Vec<Vec<f64>> {
         vec![vec![1.0; self.0.len()], self.0.iter().map(|load| constants[0] * load).collect()]
     }
+
+    fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {
+        Box::new(Self(rows.iter().map(|row| self.0[*row]).collect()))
+    }
 }
 
 /// Rows of each series.
@@ -31,13 +35,17 @@ pub(crate) const ROWS_PER_SERIES: usize = 5;
 
 /// Conditions of `count` series at loads 1, 2, 3, 1, ...
 pub(crate) fn rows(count: usize) -> Rows {
-    let total = count * ROWS_PER_SERIES;
-    let series: Vec<usize> = (0..total).map(|i| i / ROWS_PER_SERIES).collect();
+    long_rows(count, ROWS_PER_SERIES)
+}
+
+fn long_rows(count: usize, length: usize) -> Rows {
+    let total = count * length;
+    let series: Vec<usize> = (0..total).map(|i| i / length).collect();
     let load: Vec<f64> = series.iter().map(|s| 1.0 + (s % 3) as f64).collect();
     let level: Vec<Option<usize>> = series.iter().map(|s| Some(s % 3)).collect();
     Rows {
         direction: (0..total).map(|i| i % 2 == 1).collect(),
-        order: (0..total).map(|i| i % ROWS_PER_SERIES).collect(),
+        order: (0..total).map(|i| i % length).collect(),
         levels: vec![series.iter().map(|s| Some(s / 2 % 2)).collect()],
         bases: vec![vec![kernel::levels(&level, 3)]],
         discrepancies: vec![vec![load.iter().map(|f| f - 2.0).collect()]],
@@ -92,7 +100,16 @@ pub(crate) fn problem(series: usize, offset: f64) -> Problem {
 
 /// The same with gross errors of some rows.
 pub(crate) fn problem_with(series: usize, offset: f64, error: impl Fn(usize) -> f64) -> Problem {
-    let rows = rows(series);
+    problem_of(rows(series), offset, error)
+}
+
+/// A problem with series of `length` rows.
+pub(crate) fn long_problem(series: usize, length: usize, offset: f64) -> Problem {
+    problem_of(long_rows(series, length), offset, |_| 0.0)
+}
+
+fn problem_of(rows: Rows, offset: f64, error: impl Fn(usize) -> f64) -> Problem {
+    let series = rows.ranges().len();
     let mut random = Random::new(11);
     let shared: Vec<f64> = (0..series).map(|_| 0.05 * random.normal()).collect();
     let readings = (0..rows.len())

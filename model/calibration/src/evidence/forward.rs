@@ -153,6 +153,7 @@ impl Factors {
 }
 
 /// The friction model of some rows.
+#[derive(Clone)]
 pub(super) struct FrictionModel {
     pub(super) points: Vec<Point>,
     /// Mean time and mean share of travel of the fitted session.
@@ -278,6 +279,10 @@ impl ForwardModel for FrictionModel {
         let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();
         let by_direction = friction.iter().zip(&sign).map(|(f, d)| f * d).collect();
         vec![vec![1.0; sign.len()], sign, friction, pins, silicone, before, by_direction]
+    }
+
+    fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {
+        Box::new(Self { points: rows.iter().map(|row| self.points[*row]).collect(), ..self.clone() })
     }
 
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {

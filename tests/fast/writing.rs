@@ -183,7 +183,9 @@ fn another_source_needs_force() {
     let (code, output) = generate(path, &["six-single", "--out", "six"]);
     assert!(
         code == Some(2)
-            && output.contains("another source, ../six-single, while this set is made from six-single\n"),
+            && output.contains(
+                "another source, ../six-single, while this set is made from six-single [other-source]\n"
+            ),
         "{output}"
     );
     // A folder with the name of a template does not hide it.

@@ -61,12 +61,18 @@ pub(crate) fn log_evidence(at: &ScaleProblem<'_>, point: &ScalePoint, log_weight
 }
 
 /// Returns what integrating the standard deviation of a component adds to the log likelihood at its
-/// mode, and the posterior mean of the variance.
+/// mode, and the posterior mean of the variance; that of a random effect has the predictive prior.
 fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Component) -> (f64, f64) {
-    let prior = Mixture::half_t(component.prior(&at.problem.space));
-    let terms = component_terms(at.design, point, component, &prior);
+    let space = &at.problem.space;
+    let prior = component.prior(space);
+    let mut terms = component_terms(at.design, point, component, &Mixture::half_t(prior));
     let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
-    let variance = terms.iter().map(|(sd, term)| libm::exp(term - total) * sd * sd).sum();
+    if let Component::Random(i) = component {
+        let predictive = space.random_effects[i].predictive_prior();
+        terms.iter_mut().for_each(|(sd, term)| *term += predictive.log_kernel(*sd) - prior.log_kernel(*sd));
+    }
+    let all = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
+    let variance = terms.iter().map(|(sd, term)| libm::exp(term - all) * sd * sd).sum();
     (total - point.solution.log_likelihood, variance)
 }
 

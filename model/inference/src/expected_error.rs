@@ -200,7 +200,7 @@ impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
         let mut redrawn = Vec::new();
         for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
-            let prior = Mixture::fine_half_t(effect.prior());
+            let prior = Mixture::fine_half_t(effect.predictive_prior());
             let (design, point) = (&linearised.design, &linearised.point);
             let terms = component_terms(design, point, Component::Random(i), &prior);
             let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());

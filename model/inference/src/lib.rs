@@ -22,7 +22,7 @@
 //! | `B_e b_e` | discrepancy of an effect: its contribution times columns where its form may be wrong | normal, sd 0.15 | [`Rows::discrepancies`] |
 //! | `Phi_k w_k` | unnamed structure over one covariate | normal with sd `tau_k`, half-Cauchy | [`Kernel`], [`kernel`] |
 //! | `c_k` | sensitivity of the reading to a channel, such as friction | | [`ForwardModel::channels`] |
-//! | `Z_j m_j` | random effects, such as mounts | normal with sd half-t | [`RandomEffect`] |
+//! | `Z_j m_j` | random effects, such as mounts | normal with sd half-normal | [`RandomEffect`] |
 //! | `r` | offsets per series and per series and direction, scale per series, AR(1) | scales half-Cauchy | [`Scales`] |
 //! | `e` | repetition noise that grows with load, plus the quantum of the instrument | Student's t with 5 degrees of freedom | [`Scales`] |
 //!

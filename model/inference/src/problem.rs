@@ -71,7 +71,7 @@ pub struct RandomEffect {
     pub name: String,
     /// Index of the channel through which it acts.
     pub channel: usize,
-    /// Scale of the half-t prior of its standard deviation, in the unit of the channel.
+    /// Scale of the half-normal prior of its standard deviation, in the unit of the channel.
     pub scale: f64,
     /// Number of levels.
     pub levels: usize,
@@ -79,11 +79,20 @@ pub struct RandomEffect {
     pub is_redrawn: bool,
 }
 
+/// Scale of a half-t distribution with three degrees of freedom over that of a half-normal one with the same mean.
+const EQUAL_MEAN: f64 = 0.7236;
+
 impl RandomEffect {
-    /// Returns the prior of its standard deviation. With three degrees of freedom a scale that is far too small gives way to
-    /// the data, as by default in brms; a half-normal prior would not.
+    /// Returns the prior by which hypotheses are compared. It excludes standard deviations of many scales, so that scatter does
+    /// not explain what structure explains: a layout that is off, a session that differs.
     pub(crate) const fn prior(&self) -> HalfT {
-        HalfT { scale: self.scale, degrees: 3.0 }
+        HalfT::normal(self.scale)
+    }
+
+    /// Returns the prior of what is reported and predicted, given a hypothesis: half-t with three degrees of freedom and the same
+    /// mean. Its tail believes the data where levels differ by far more, as the first prior would not (Gelman 2006).
+    pub(crate) const fn predictive_prior(&self) -> HalfT {
+        HalfT { scale: EQUAL_MEAN * self.scale, degrees: 3.0 }
     }
 }
 

@@ -47,7 +47,7 @@ impl Mixture {
     /// its node.
     fn of_scales(prior: HalfT, count: i32) -> Self {
         let nodes = geometric(libm::exp(-3.5), libm::exp(3.5), count);
-        let log_weights = nodes.iter().map(|x| libm::log(*x) + prior.log_kernel(*x)).collect();
+        let log_weights = nodes.iter().map(|x| libm::log(*x) + prior.log_kernel(*x * prior.scale)).collect();
         Self::new(nodes.iter().map(|x| x * prior.scale).collect(), log_weights)
     }
 }

@@ -82,7 +82,7 @@ pub(crate) fn space() -> Space {
         random_effects: vec![RandomEffect {
             name: "mount".to_owned(),
             channel: 1,
-            scale: 0.0145,
+            scale: 0.02,
             levels: 2,
             is_redrawn: true,
         }],

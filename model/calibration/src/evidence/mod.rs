@@ -43,9 +43,9 @@ pub(crate) const STRUCTURE_PROBABILITY: f64 = 0.2;
 const MOUNT: &str = "mount";
 const SPECIMEN: &str = "specimen";
 
-/// Scales of the half-t priors of mount and specimen effects, relative: on average mounts differ by 1 %, specimens by 5 %.
-pub(crate) const MOUNT_SCALE: f64 = 0.009;
-const SPECIMEN_SCALE: f64 = 0.045;
+/// Scales of the half-normal priors of mount and specimen effects, relative.
+pub(crate) const MOUNT_SCALE: f64 = 0.0125;
+const SPECIMEN_SCALE: f64 = 0.06;
 /// Median load in newtons of the paper's rig, to which typical forces refer.
 const TYPICAL_LOAD_N: f64 = 25.0;
 /// Friction in shares of the load below which a change is judged by the load.

@@ -55,7 +55,9 @@ fn kept_rows(problem: &Problem, most: usize) -> Vec<usize> {
         let (second, first): (Vec<usize>, Vec<usize>) = range.clone().partition(|row| rows.direction[*row]);
         let mut of_series = Vec::new();
         for of_direction in [first, second] {
-            let step = step.min((of_direction.len() / LEAST_OF_DIRECTION).max(2) - 1 | 1);
+            // The largest odd step, at any start, that keeps enough.
+            let most = (of_direction.len() / LEAST_OF_DIRECTION).max(2) - 1;
+            let step = step.min(most | 1);
             of_series.extend(of_direction.into_iter().skip(series % step).step_by(step));
         }
         of_series.sort_unstable();

@@ -3,7 +3,7 @@
 pages! {
     "Files and folders";
 
-    FILE_NOT_FOUND: "file-not-found", "There is no such file or template" {
+    FILE_NOT_FOUND: "file-not-found", "The file or template does not exist" {
         "A path is relative to the folder in which the command runs; paths inside a file are \
          relative to the folder of that file. The name of a configuration may also be that of a \
          template.",

@@ -69,7 +69,7 @@ pages! {
         "Give the line with `--set header=N`, or the names with `--set names=time_s,force_N`.",
     }
 
-    UNKNOWN_COLUMN: "unknown-column", "There is no such column or sheet", in "model/doc/import.md" {
+    UNKNOWN_COLUMN: "unknown-column", "The column or sheet does not exist", in "model/doc/import.md" {
         "A map or an option names a column or a sheet that the file does not have. Names are \
          compared with those of the file, and numbers count columns from 1.",
         "The help lists the names of the file. A map of another machine is the usual cause.",

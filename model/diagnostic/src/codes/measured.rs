@@ -3,7 +3,7 @@
 pages! {
     "Measured tables";
 
-    TABLE_WITHOUT_ROWS: "table-without-rows", "The table has no rows", in "model/doc/file-formats.md" {
+    TABLE_WITHOUT_ROWS: "table-without-rows", "The table is empty", in "model/doc/file-formats.md" {
         "A header alone is not data. The file may be the output of a command that found no \
          plateau.",
         "Write one line per repetition below the header.",

@@ -24,7 +24,7 @@ pages! {
          \"none\"` no mould is made.",
     }
 
-    DRAFT_WITHOUT_BASIN: "draft-without-basin", "The draft of the mould has no effect", in "cad/doc/print-limits.md" {
+    DRAFT_WITHOUT_BASIN: "draft-without-basin", "The draft of the mould changes nothing", in "cad/doc/print-limits.md" {
         "Only the walls of the basin of the tray may be inclined: all other walls form the \
          silicone layer. Without an overfill there is no basin.",
         "A draft on the walls of the layer would make it thicker at one edge than at the other: \

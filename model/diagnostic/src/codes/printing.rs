@@ -92,7 +92,7 @@ pages! {
          hardness that you can make.",
     }
 
-    MIX_RATIO_WITHOUT_EFFECT: "mix-ratio-without-effect", "The mix ratio has no effect for this silicone", in "cad/doc/process.md" {
+    MIX_RATIO_WITHOUT_EFFECT: "mix-ratio-without-effect", "The mix ratio does not apply to this silicone", in "cad/doc/process.md" {
         "A named product is mixed as its package states, and the program uses that ratio.",
         "`silicone.mix_ratio` is for Sylgard 184 and for `process.silicone = \"other\"`.",
     }

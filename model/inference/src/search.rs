@@ -44,18 +44,16 @@ impl SearchOptions {
 
 /// Rows above which first-order scores are trusted more, and fewer hypotheses are fitted.
 const LARGE_TABLE: usize = 1000;
-/// Score below the best, in nats, within which a hypothesis is expanded.
-const EXPANSION_WINDOW: f64 = 3.0;
 /// Loss in nats up to which a usual effect is removed at the start.
 const THINNING_LOSS: f64 = 1.0;
 /// Forms of a member that are fitted in an expansion.
 const MOST_FORMS: usize = 8;
 /// Exchanges that are fitted for each member.
 const EXCHANGES: usize = 4;
-/// Hypotheses near the best one that are fitted again, and their distance in nats.
-const POLISHED: (usize, f64) = (6, 6.0);
+/// Hypotheses near the best one that are fitted again.
+const MOST_POLISHED: usize = 6;
 
-/// Distances in nats within which first-order scores lead to a fit.
+/// What a search fits: distances in nats of scores, and how much it tries.
 struct Selectivity {
     /// Below the best addition.
     addition: f64,
@@ -67,15 +65,40 @@ struct Selectivity {
     exchange: f64,
     /// Loss by the removal of a member, or by its exchange.
     loss: f64,
+    /// First-order loss of an addition against the fit.
+    added_loss: f64,
+    /// Below the best fit, for an expansion.
+    expansion: f64,
+    /// Below the best fit, for another fit from its own mode.
+    polish: f64,
+    /// Whether an expansion also tries additions by the noise of repeated readings, exchanges and removals.
+    is_thorough: bool,
 }
 
 impl Selectivity {
     fn of_rows(rows: usize) -> Self {
+        let small = Self {
+            addition: 25.0,
+            certain: 60.0,
+            form: 4.0,
+            exchange: f64::INFINITY,
+            loss: f64::INFINITY,
+            added_loss: 5.0,
+            expansion: 3.0,
+            polish: 6.0,
+            is_thorough: true,
+        };
         if rows > LARGE_TABLE {
-            Self { addition: 8.0, certain: f64::INFINITY, form: 2.0, exchange: 6.0, loss: 15.0 }
+            Self { addition: 8.0, certain: f64::INFINITY, form: 2.0, exchange: 6.0, loss: 15.0, ..small }
         } else {
-            Self { addition: 25.0, certain: 60.0, form: 4.0, exchange: f64::INFINITY, loss: f64::INFINITY }
+            small
         }
+    }
+
+    /// Returns that of a search that continues one on some of the readings, which was thorough: only additions to the best
+    /// hypothesis that gain on all readings follow.
+    fn continued(rows: usize) -> Self {
+        Self { added_loss: 0.0, expansion: 0.0, polish: 3.0, is_thorough: false, ..Self::of_rows(rows) }
     }
 }
 
@@ -87,9 +110,6 @@ pub(crate) struct Search<'a> {
     fits: BTreeMap<Hypothesis, Fit>,
     failed: BTreeSet<Hypothesis>,
     excluded: &'a [bool],
-    /// Whether the search continues one on some of the readings, which has compared additions, exchanges and removals: only
-    /// additions to the best hypothesis that gain on all readings follow.
-    is_continued: bool,
     pub(crate) fit_count: usize,
 }
 
@@ -98,24 +118,24 @@ impl<'a> Search<'a> {
     pub(crate) fn new(problem: &'a Problem, options: SearchOptions, excluded: &'a [bool]) -> Self {
         let selectivity = Selectivity::of_rows(problem.len());
         let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
-        Self { problem, options, selectivity, fits, failed, excluded, is_continued: false, fit_count: 0 }
+        Self { problem, options, selectivity, fits, failed, excluded, fit_count: 0 }
     }
 
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
     pub(crate) fn run(&mut self) -> Vec<Fit> {
-        self.continue_from_thinned();
+        let is_continued = self.continue_from_thinned();
         self.fit(&Hypothesis::default(), Start { excluded: self.excluded, ..Start::default() });
         if self.options.members == 0 {
             return self.fits.values().cloned().collect();
         }
-        if !self.is_continued {
+        if !is_continued {
             self.start_from_usual_effects();
         }
         let mut expanded = BTreeSet::new();
         for _ in 0..self.options.expansions {
             let Some(best) = self.best_score() else { break };
-            let window = if self.is_continued { 0.0 } else { EXPANSION_WINDOW };
-            let near = self.ranked().into_iter().filter(|fit| fit.score >= best - window);
+            let least = best - self.selectivity.expansion;
+            let near = self.ranked().into_iter().filter(|fit| fit.score >= least);
             let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
                 // Another autoregression may have changed the ranks.
                 self.polish();
@@ -175,20 +195,25 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Fits the best hypotheses of a search on some of the readings, if there are too many for a search on all.
-    fn continue_from_thinned(&mut self) {
-        let Some(thinned) = Thinned::new(self.problem, self.options.thinned_above) else { return };
+    /// Fits the best hypotheses of a search on some of the readings, if there are too many for a search on all; returns whether
+    /// it did.
+    fn continue_from_thinned(&mut self) -> bool {
+        let Some(thinned) = Thinned::new(self.problem, self.options.thinned_above) else { return false };
         let excluded = thinned.select(self.excluded);
         let options = SearchOptions { thinned_above: usize::MAX, ..self.options };
         let mut search = Search::new(&thinned.problem, options, &excluded);
         let window = search.run();
         self.fit_count += search.fit_count;
-        for fit in search.baseline().iter().chain(window.iter().take(POLISHED.0)) {
+        for fit in search.baseline().iter().chain(window.iter().take(MOST_POLISHED)) {
             let mode = thinned.extended(&fit.mode, self.excluded);
             let start = Start { mode: Some(&mode), hypothesis: Some(&fit.hypothesis), ..Start::default() };
             self.fit(&fit.hypothesis, start);
         }
-        self.is_continued = !self.fits.is_empty();
+        let is_continued = !self.fits.is_empty();
+        if is_continued {
+            self.selectivity = Selectivity::continued(self.problem.len());
+        }
+        is_continued
     }
 
     /// Fits the usual effects together, then removes them while the loss is small.
@@ -220,12 +245,12 @@ impl<'a> Search<'a> {
             self.add(fit, &scores.additions(None));
             // Scatter that stands for missing structure hides it: the additions count again by the
             // noise of repeated readings.
-            let quiet = fit.quiet(self.problem).filter(|_| !self.is_continued);
+            let quiet = fit.quiet(self.problem).filter(|_| self.selectivity.is_thorough);
             if let Some(scores) = quiet.and_then(|quiet| Scores::new(self.problem, &quiet)) {
                 self.add(fit, &scores.additions(None));
             }
         }
-        if self.is_continued {
+        if !self.selectivity.is_thorough {
             return;
         }
         for element in fit.hypothesis.elements().collect::<Vec<_>>() {
@@ -237,9 +262,8 @@ impl<'a> Search<'a> {
     fn add(&mut self, fit: &Fit, additions: &[Addition]) {
         let Some(top) = additions.first().map(|a| a.score) else { return };
         let base = fit.hypothesis.log_prior_odds(&self.problem.space);
-        let usual = (top - self.selectivity.addition).min(base + self.selectivity.certain).max(base - 5.0);
-        // What is less probable than the fit was in the search on some of the readings.
-        let least = if self.is_continued { usual.max(base) } else { usual };
+        let usual = (top - self.selectivity.addition).min(base + self.selectivity.certain);
+        let least = usual.max(base - self.selectivity.added_loss);
         let mut effects: Vec<Member> = Vec::new();
         let mut kernels: Vec<Member> = Vec::new();
         for addition in additions.iter().filter(|a| a.score > least) {
@@ -291,14 +315,13 @@ impl<'a> Search<'a> {
     fn polish(&mut self) {
         let Some(best) = self.best_score() else { return };
         let ranked = self.ranked().into_iter();
-        let window = if self.is_continued { EXPANSION_WINDOW } else { POLISHED.1 };
-        let near: Vec<Fit> =
-            ranked.take(POLISHED.0).filter(|fit| fit.score > best - window).cloned().collect();
+        let least = best - self.selectivity.polish;
+        let near: Vec<Fit> = ranked.take(MOST_POLISHED).filter(|fit| fit.score > least).cloned().collect();
         for fit in &near {
             self.fit_again(&fit.hypothesis, fit, true);
         }
         let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
-        if self.is_continued {
+        if !self.selectivity.is_thorough {
             return;
         }
         for member in best.hypothesis.members() {

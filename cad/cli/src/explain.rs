@@ -136,7 +136,9 @@ mod tests {
         for code in Code::all() {
             let page = page(code);
             assert!(page.starts_with(code.name()) && page.contains(code.title()), "{page}");
-            assert!(page.lines().all(|line| line.chars().count() <= 112), "{page}");
+            let paragraphs = code.text().split("\n\n").map(wrapped).collect::<Vec<_>>().join("\n\n");
+            assert!(page.contains(&paragraphs), "{page}");
+            assert!(paragraphs.lines().all(|line| line.chars().count() <= COLUMNS), "{page}");
         }
     }
 

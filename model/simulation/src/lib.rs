@@ -68,8 +68,8 @@
 //! assert_eq!(simulate(&plan).rows, simulate(&plan).rows, "the same plan makes the same rows");
 //! let error = Plan::parse("[noise]\nseries_scale = 2", "plan.toml").unwrap_err();
 //! assert_eq!(error.problem(), "must be from 0 to 0.5");
-//! let location = error.location().ok_or("a location")?;
-//! assert_eq!(location.to_string(), "plan.toml:2:16: noise.series_scale = 2");
+//! let location = error.location().map(ToString::to_string);
+//! assert_eq!(location.as_deref(), Some("plan.toml:2:16: noise.series_scale = 2"));
 //! # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 //! ```
 //!

@@ -14,6 +14,8 @@
 //! per series, and a scale of friction `s` per series, where `g` is the reading's sensitivity to
 //! friction. Rows of different series are independent.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::half_t::HalfT;
@@ -57,14 +59,10 @@ impl NoiseReference {
     /// Estimates them from readings.
     pub(crate) fn of_readings(readings: &[f64], rows: &Rows) -> Self {
         let quantum = quantum(readings);
-        let mut previous: [Option<usize>; 2] = [None; 2];
-        let mut steps = Vec::new();
-        for row in 0..readings.len() {
-            let side = usize::from(rows.direction[row]);
-            if let Some(before) = previous[side].filter(|i| rows.series[*i] == rows.series[row]) {
-                steps.push((readings[row] - readings[before]).abs() / std::f64::consts::SQRT_2);
-            }
-            previous[side] = Some(row);
+        let mut steps = steps(readings, |row| (rows.series[row], rows.direction[row]));
+        if steps.is_empty() {
+            // No series repeats a reading: those at one load in one direction, of neighbouring series, are the next best.
+            steps = self::steps(readings, |row| (rows.load[row].to_bits(), rows.direction[row]));
         }
         steps.sort_by(f64::total_cmp);
         let mean = readings.iter().sum::<f64>() / readings.len() as f64;
@@ -73,6 +71,16 @@ impl NoiseReference {
         let mean_load = rows.load.iter().sum::<f64>() / rows.len() as f64;
         Self { repetition_sd: robust.max(quantum / 3.0).max(1e-4), quantum, mean_load: mean_load.max(1e-9) }
     }
+}
+
+/// Returns the differences of each reading and the one before in its group, over the square root of two.
+fn steps<G: Ord>(readings: &[f64], group: impl Fn(usize) -> G) -> Vec<f64> {
+    let mut last = BTreeMap::new();
+    let step = |row: usize| {
+        let before: Option<f64> = last.insert(group(row), readings[row]);
+        before.map(|before| (readings[row] - before).abs() / std::f64::consts::SQRT_2)
+    };
+    (0..readings.len()).filter_map(step).collect()
 }
 
 /// Returns the smallest step between sorted readings if nine tenths of the steps are multiples of it,
@@ -367,5 +375,25 @@ impl Whitening {
             result.rows_mut(range.start, range.len()).copy_from(&part);
         }
         result
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::test_problem::long_rows;
+
+    /// Heavy loads do not hide how close repeated readings are, whether a series repeats them or only the table does.
+    #[test]
+    fn the_reference_is_the_noise_of_repeated_readings() {
+        for length in [8, 1] {
+            let rows = long_rows(600 / length, length);
+            let mut random = Random::new(5);
+            let readings: Vec<f64> =
+                rows.load.iter().map(|load| 50.0 * load + 0.1 * random.normal()).collect();
+            let sd = NoiseReference::of_readings(&readings, &rows).repetition_sd;
+            assert!((0.08..0.12).contains(&sd), "{length}: {sd}");
+        }
     }
 }

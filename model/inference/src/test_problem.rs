@@ -38,7 +38,7 @@ pub(crate) fn rows(count: usize) -> Rows {
     long_rows(count, ROWS_PER_SERIES)
 }
 
-fn long_rows(count: usize, length: usize) -> Rows {
+pub(crate) fn long_rows(count: usize, length: usize) -> Rows {
     let total = count * length;
     let series: Vec<usize> = (0..total).map(|i| i / length).collect();
     let load: Vec<f64> = series.iter().map(|s| 1.0 + (s % 3) as f64).collect();

@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::{Contact, FrictionCurve, Substrate, Transfer};
-use pinswitch_switch::design_search::{Belief, Curve, Part};
+use pinswitch_switch::design_search::{Belief, LazyCurve, LoadState, Part};
 
 use crate::calibrated_curve::rig_contact;
 
@@ -56,13 +56,14 @@ impl Belief for CalibratedSwitch {
         self.file.constants_drawn()
     }
 
-    fn curve(&self, part: &Part, loads_n: &[f64], z: &[f64]) -> Option<Curve> {
+    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>> {
         let transfer = self.transfer(part, loads_n)?;
         let (rig_n, rig_share) =
             self.file.drawn_part(Substrate::Silicone, &part.pins, loads_n, z, &self.name).ok()?;
         let (friction_n, silicone_share) = transfer.friction_and_share(loads_n, &rig_n, &rig_share);
-        let friction_n = friction_n.into_iter().map(|d| d.max(1e-6)).collect();
-        Some(Curve { load_n: loads_n.to_vec(), friction_n, silicone_share })
+        Some(LazyCurve::new(loads_n, move |i| {
+            Some(LoadState { friction_n: friction_n[i].max(1e-6), silicone_share: silicone_share[i] })
+        }))
     }
 
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve> {

@@ -2,9 +2,9 @@
 
 use nalgebra::Matrix3;
 use pinswitch_friction::physics::{Constants, PhysicsSwitch};
-use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus, Transition, predict_by};
+use pinswitch_friction::{Contact, FrictionCurve, Law, Transition, predict_by};
 
-use super::curve::Curve;
+use super::lazy_curve::{LazyCurve, LoadState};
 
 /// Quantile of the standard normal distribution at the ends of a 95 % band.
 const BAND_QUANTILE: f64 = 1.96;
@@ -38,24 +38,90 @@ pub struct ModelError {
 impl ModelError {
     /// Returns the curve for a model error of `z` standard deviations, and the factor on its
     /// threshold.
-    pub fn applied(&self, curve: Curve, z: f64) -> (Curve, f64) {
+    pub fn applied<'a>(
+        &'a self,
+        mut curve: LazyCurve<'a>,
+        loads_n: &'a [f64],
+        z: f64,
+    ) -> (LazyCurve<'a>, f64) {
         let side = if z > 0.0 { &self.up } else { &self.down };
         let threshold = if z > 0.0 { self.threshold_earlier } else { self.threshold_later };
-        (curve.scaled(side.iter().map(|sd| sd * z)), libm::exp(-z * threshold))
+        let scaled = move |i: usize| curve.state(i).map(|state| state.scaled(side[i] * z));
+        (LazyCurve::new(loads_n, scaled), libm::exp(-z * threshold))
     }
 }
 
-/// The best estimate of a part, its changes with each constant, and the model error.
-#[derive(Clone, Debug)]
-pub struct Believed {
-    /// Prediction status.
-    pub trust: PredictionStatus,
+/// The predictive distribution of a part: the best estimate, its changes with each constant, and
+/// the model error. The curves are computed where they are needed.
+pub struct Believed<'a> {
+    /// Best estimate with its band.
+    pub banded: FrictionCurve,
     /// The best estimate.
-    pub middle: Curve,
+    pub middle: LazyCurve<'a>,
     /// One curve for each constant, whose standard normal variable is one.
-    pub moved: Vec<Curve>,
-    /// The model error.
-    pub error: ModelError,
+    pub moved: Vec<LazyCurve<'a>>,
+}
+
+impl<'a> Believed<'a> {
+    /// Returns the standard deviation of the model error of the friction at the load with this
+    /// index, upwards and downwards: the part of the band that the constants do not explain. Their
+    /// variance is subtracted in quadrature.
+    pub fn error_sd(&mut self, index: usize) -> Option<(f64, f64)> {
+        let middle = self.middle.state(index)?.friction_n;
+        let mut constants = 0.0;
+        for moved in &mut self.moved {
+            let moved = moved.state(index)?.friction_n;
+            constants += if middle > 0.0 { libm::log(moved / middle).powi(2) } else { 0.0 };
+        }
+        let friction_n = self.banded.friction_n[index];
+        let (low, high) = (self.banded.band_low_n[index], self.banded.band_high_n[index]);
+        Some((beyond(high / friction_n, constants), beyond(friction_n / low, constants)))
+    }
+
+    /// Returns the standard deviation of the model error of the threshold, towards lighter and
+    /// towards heavier loads.
+    pub fn threshold_error_sd(&mut self) -> Option<(f64, f64)> {
+        let middle = self.middle.switching()?;
+        let mut constants = 0.0;
+        for moved in &mut self.moved {
+            constants += libm::log(moved.switching()?.threshold_n / middle.threshold_n).powi(2);
+        }
+        let Some(t) = Transition::of(&self.banded) else { return Some((0.0, 0.0)) };
+        let earlier = beyond(t.threshold_n / t.low_n, constants);
+        // The upper end of the band may be above all loads. Its distance is then assumed to be at
+        // least that of the lower end.
+        let is_cut = self.banded.load_n.last().is_some_and(|last| t.high_n >= *last);
+        let later = beyond(t.high_n / t.threshold_n, constants);
+        Some((earlier, if is_cut { later.max(earlier) } else { later }))
+    }
+
+    /// Returns the model error at all loads.
+    pub fn error(&mut self) -> Option<ModelError> {
+        let sides = (0..self.banded.load_n.len()).map(|i| self.error_sd(i)).collect::<Option<Vec<_>>>()?;
+        let (up, down) = sides.into_iter().unzip();
+        let (threshold_earlier, threshold_later) = self.threshold_error_sd()?;
+        Some(ModelError { up, down, threshold_earlier, threshold_later })
+    }
+
+    /// Returns the best estimate for a model error of `z` standard deviations, and the factor on its
+    /// threshold.
+    pub fn with_error<'b>(&'b mut self, loads_n: &'b [f64], z: f64) -> Option<(LazyCurve<'b>, f64)> {
+        let (earlier, later) = self.threshold_error_sd()?;
+        let factor = libm::exp(-z * if z > 0.0 { earlier } else { later });
+        let next = self.middle.switching()?.next;
+        let state = move |i: usize| {
+            let (up, down) = self.error_sd(i)?;
+            Some(self.middle.state(i)?.scaled(if z > 0.0 { up } else { down } * z))
+        };
+        Some((LazyCurve::new(loads_n, state).expecting(next), factor))
+    }
+}
+
+/// Returns the standard deviation that is left of a ratio at an end of a 95 % band without the
+/// variance of the constants.
+fn beyond(ratio: f64, constants: f64) -> f64 {
+    let sd = if ratio.is_finite() && ratio > 1.0 { libm::log(ratio) / BAND_QUANTILE } else { 0.0 };
+    (sd * sd - constants).max(0.0).sqrt()
 }
 
 /// A model with its uncertainty. `design --model` selects another implementation.
@@ -65,55 +131,27 @@ pub trait Belief: Sync {
 
     /// Returns the curve of `part` with the constants at `z`; the best estimate is at zero. `None`
     /// if the curve cannot be computed.
-    fn curve(&self, part: &Part, loads_n: &[f64], z: &[f64]) -> Option<Curve>;
+    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>>;
 
     /// Returns the best estimate of the curve with its band and status.
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve>;
 
-    /// Returns the predictive distribution of `part`. The model error is the part of the band that
-    /// the constants do not explain; their variance is subtracted in quadrature.
-    fn believed(&self, part: &Part, loads_n: &[f64]) -> Option<Believed> {
+    /// Returns the best estimate of the curve.
+    fn best<'a>(&'a self, part: &Part, loads_n: &'a [f64]) -> Option<LazyCurve<'a>> {
+        self.lazy_curve(part, loads_n, &vec![0.0; self.constants()])
+    }
+
+    /// Returns the predictive distribution of `part`.
+    fn believed<'a>(&'a self, part: &Part, loads_n: &'a [f64]) -> Option<Believed<'a>> {
         let banded = self.banded(part, loads_n)?;
-        let zeros = vec![0.0; self.constants()];
-        let middle = self.curve(part, loads_n, &zeros)?;
-        let (mut friction, mut threshold) = (vec![0.0; loads_n.len()], 0.0);
-        let mut all_moved = Vec::with_capacity(self.constants());
-        for i in 0..self.constants() {
-            let mut z = zeros.clone();
-            z[i] = 1.0;
-            let moved = self.curve(part, loads_n, &z)?;
-            for (variance, (m, d)) in friction.iter_mut().zip(moved.friction_n.iter().zip(&middle.friction_n))
-            {
-                *variance += if *d > 0.0 { libm::log(m / d).powi(2) } else { 0.0 };
-            }
-            threshold += libm::log(moved.switching().threshold_n / middle.switching().threshold_n).powi(2);
-            all_moved.push(moved);
-        }
-        let beyond = |ratio: f64, constants: f64| {
-            let sd = if ratio.is_finite() && ratio > 1.0 { libm::log(ratio) / BAND_QUANTILE } else { 0.0 };
-            (sd * sd - constants).max(0.0).sqrt()
+        let mut middle = self.best(part, loads_n)?;
+        let next = middle.switching()?.next;
+        let one = |i: usize| {
+            let z: Vec<f64> = (0..self.constants()).map(|k| f64::from(u8::from(k == i))).collect();
+            Some(self.lazy_curve(part, loads_n, &z)?.expecting(next))
         };
-        let side = |from: &[f64], to: &[f64]| -> Vec<f64> {
-            from.iter().zip(to).zip(&friction).map(|((a, b), v)| beyond(b / a, *v)).collect()
-        };
-        let (earlier, later) = match Transition::of(&banded) {
-            Some(t) => {
-                let earlier = beyond(t.threshold_n / t.low_n, threshold);
-                // The upper end of the band may be above all loads. Its distance is then assumed to
-                // be at least that of the lower end.
-                let is_cut = banded.load_n.last().is_some_and(|last| t.high_n >= *last);
-                let later = beyond(t.high_n / t.threshold_n, threshold);
-                (earlier, if is_cut { later.max(earlier) } else { later })
-            }
-            None => (0.0, 0.0),
-        };
-        let error = ModelError {
-            up: side(&banded.friction_n, &banded.band_high_n),
-            down: side(&banded.band_low_n, &banded.friction_n),
-            threshold_earlier: earlier,
-            threshold_later: later,
-        };
-        Some(Believed { trust: banded.status, middle, moved: all_moved, error })
+        let moved = (0..self.constants()).map(one).collect::<Option<_>>()?;
+        Some(Believed { banded, middle, moved })
     }
 }
 
@@ -138,15 +176,14 @@ impl Belief for PublishedPhysics {
         3
     }
 
-    fn curve(&self, part: &Part, loads_n: &[f64], z: &[f64]) -> Option<Curve> {
+    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>> {
         let z = nalgebra::Vector3::from_iterator(z.iter().copied().chain(std::iter::repeat(0.0)).take(3));
         let constants = Constants::from_logarithms(&(Constants::published().logarithms() + self.root * z));
-        let states = PhysicsSwitch::new(&part.contact, constants).states(loads_n).ok()?;
-        Some(Curve {
-            load_n: loads_n.to_vec(),
-            friction_n: states.iter().map(|s| s.friction_n).collect(),
-            silicone_share: states.iter().map(|s| s.silicone_share).collect(),
-        })
+        let mut continuation = PhysicsSwitch::new(&part.contact, constants).continuation();
+        Some(LazyCurve::new(loads_n, move |i| {
+            let state = continuation.state(loads_n[i]).ok()?;
+            Some(LoadState { friction_n: state.friction_n, silicone_share: state.silicone_share })
+        }))
     }
 
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve> {
@@ -174,11 +211,14 @@ mod tests {
     fn belief_and_band_agree() {
         let (belief, part, loads) = (PublishedPhysics::default(), part(), loads());
         let banded = belief.banded(&part, &loads).unwrap();
-        let Believed { error, middle, moved, .. } = belief.believed(&part, &loads).unwrap();
+        let mut believed = belief.believed(&part, &loads).unwrap();
         let last = loads.len() - 1;
-        let constants: f64 =
-            moved.iter().map(|m| libm::log(m.friction_n[last] / middle.friction_n[last]).powi(2)).sum();
-        let sd = (constants + error.up[last].powi(2)).sqrt();
+        let (up, _) = believed.error_sd(last).unwrap();
+        let middle = believed.middle.state(last).unwrap().friction_n;
+        assert!((middle / banded.friction_n[last] - 1.0).abs() < 1e-6);
+        let moved = believed.moved.iter_mut().map(|m| m.state(last).unwrap().friction_n);
+        let constants: f64 = moved.map(|m| libm::log(m / middle).powi(2)).sum();
+        let sd = (constants + up.powi(2)).sqrt();
         let band = libm::log(banded.band_high_n[last] / banded.friction_n[last]) / BAND_QUANTILE;
         assert!((sd / band - 1.0).abs() < 0.01, "{sd} {band}");
     }
@@ -188,10 +228,19 @@ mod tests {
         let (belief, mut part, loads) = (PublishedPhysics::default(), part(), loads());
         // Far from the measured part, so that the model error exceeds that of the constants.
         part.contact = part.contact.with_unmodelled(vec!["another mix".to_owned()]);
-        let Believed { error, middle, .. } = belief.believed(&part, &loads).unwrap();
-        let (up, earlier) = error.applied(middle.clone(), 1.0);
-        let (down, later) = error.applied(middle.clone(), -1.0);
-        assert!(up.friction_n[10] > middle.friction_n[10] && middle.friction_n[10] > down.friction_n[10]);
+        let mut believed = belief.believed(&part, &loads).unwrap();
+        let error = believed.error().unwrap();
+        let middle = believed.middle.state(10).unwrap().friction_n;
+        let mut shifted = |z| {
+            let (mut curve, factor) = believed.with_error(&loads, z).unwrap();
+            let (mut same, same_factor) = error.applied(belief.best(&part, &loads).unwrap(), &loads, z);
+            let friction_n = curve.state(10).unwrap().friction_n;
+            assert!((friction_n / same.state(10).unwrap().friction_n - 1.0).abs() < 1e-6);
+            assert!((factor - same_factor).abs() < 1e-12);
+            (friction_n, factor)
+        };
+        let ((up, earlier), (down, later)) = (shifted(1.0), shifted(-1.0));
+        assert!(up > middle && middle > down);
         assert!(earlier < 1.0 && later > 1.0);
     }
 }

@@ -4,7 +4,7 @@
 use pinswitch_friction::{Substrate, Transition};
 
 use super::belief::{Belief, Believed, ModelError, Part};
-use super::curve::Curve;
+use super::lazy_curve::LazyCurve;
 use crate::config::Configuration;
 use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
@@ -127,17 +127,19 @@ impl<'a> Trial<'a> {
     /// Returns the best estimates of all targets.
     pub(super) fn median(&self, configuration: &Configuration) -> Option<Vec<f64>> {
         let part = self.part(configuration)?;
-        let curve = self.belief.curve(&part, &self.loads_n, &vec![0.0; self.belief.constants()])?;
-        Some(self.values(&curve, self.settled(&part, &curve)))
+        let mut curve = self.belief.best(&part, &self.loads_n)?;
+        let settled = self.settled(&part, &mut curve)?;
+        self.values(&mut curve, settled)
     }
 
     /// Returns the ratio of the threshold between the loads of `predict` to that of `curve`, which
-    /// has fewer loads; 1 if the threshold is not between the loads of `predict`.
-    pub(super) fn settled(&self, part: &Part, curve: &Curve) -> f64 {
-        let here = curve.switching();
+    /// has fewer loads; 1 if the threshold is not between the loads of `predict`. `None` if the
+    /// curve has no threshold.
+    pub(super) fn settled(&self, part: &Part, curve: &mut LazyCurve<'_>) -> Option<f64> {
+        let here = curve.switching()?;
         let between = |from: usize, to: usize| {
             let loads = &self.predicted_n[from..to];
-            let fine = self.belief.curve(part, loads, &vec![0.0; self.belief.constants()])?;
+            let fine = self.belief.best(part, loads)?.complete()?;
             Transition::threshold_n(loads, &fine.silicone_share)
         };
         let count = self.predicted_n.len();
@@ -152,14 +154,15 @@ impl<'a> Trial<'a> {
             None if is_beyond => None,
             None => between(0, count),
         };
-        found.map_or(1.0, |found| found / here.threshold_n)
+        Some(found.map_or(1.0, |found| found / here.threshold_n))
     }
 
-    /// Returns the values of the targets of a curve whose threshold is multiplied by a factor.
-    pub(super) fn values(&self, curve: &Curve, threshold_factor: f64) -> Vec<f64> {
+    /// Returns the values of the targets of a curve whose threshold is multiplied by a factor;
+    /// `None` if a state that they need cannot be computed.
+    pub(super) fn values(&self, curve: &mut LazyCurve<'_>, threshold_factor: f64) -> Option<Vec<f64>> {
         let value = |t: &Target| {
-            let value = curve.value(t.quantity, self.range_n);
-            if t.quantity == Quantity::Threshold { value * threshold_factor } else { value }
+            let value = curve.value(t.quantity, self.range_n)?;
+            Some(if t.quantity == Quantity::Threshold { value * threshold_factor } else { value })
         };
         self.request.targets.iter().map(value).collect()
     }
@@ -189,23 +192,24 @@ impl<'a> Trial<'a> {
         self.request.targets.iter().zip(values).map(excess).sum::<f64>().sqrt()
     }
 
-    /// Returns the values of a made part from a complete prediction.
+    /// Returns the values of a made part from its own prediction. Its threshold is expected below
+    /// the load with the index `next`.
     pub(super) fn made(
         &self,
         part: &Part,
         hardness_shore_a: f64,
-        error: &ModelError,
+        (error, next): (&ModelError, usize),
         draw: &Draw,
     ) -> Option<Vec<f64>> {
         let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, &draw.made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
-        let curve = self.belief.curve(&made, &self.loads_n, &draw.constants)?;
-        let (curve, threshold_factor) = error.applied(curve, draw.model);
-        Some(self.values(&curve, threshold_factor))
+        let curve = self.belief.lazy_curve(&made, &self.loads_n, &draw.constants)?;
+        let (curve, threshold_factor) = error.applied(curve, &self.loads_n, draw.model);
+        self.values(&mut curve.expecting(next), threshold_factor)
     }
 
     /// Returns the predictive distribution of a part.
-    pub(super) fn believed(&self, part: &Part) -> Option<Believed> {
+    pub(super) fn believed(&self, part: &Part) -> Option<Believed<'_>> {
         self.belief.believed(part, &self.loads_n)
     }
 
@@ -216,10 +220,10 @@ impl<'a> Trial<'a> {
         part: &Part,
         hardness_shore_a: f64,
         made: &[f64; SOURCES],
-    ) -> Option<Curve> {
+    ) -> Option<LazyCurve<'_>> {
         let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
-        self.belief.curve(&made, &self.loads_n, &vec![0.0; self.belief.constants()])
+        self.belief.best(&made, &self.loads_n)
     }
 
     /// Returns whether a configuration can be printed and satisfies all limits. Faster than

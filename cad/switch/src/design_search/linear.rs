@@ -74,24 +74,26 @@ impl Linear {
     /// Returns the approximation for `configuration`; `None` if it cannot be predicted.
     pub(super) fn of(trial: &Trial<'_>, configuration: &Configuration) -> Option<Self> {
         let part = trial.part(configuration)?;
-        let believed = trial.believed(&part)?;
-        let middle = trial.values(&believed.middle, 1.0);
+        let mut believed = trial.believed(&part)?;
+        let next = believed.middle.switching()?.next;
+        let middle = trial.values(&mut believed.middle, 1.0)?;
         let change = |values: Vec<f64>| -> Vec<f64> {
             values.iter().zip(&middle).map(|(v, m)| libm::log(v.max(1e-9) / m.max(1e-9))).collect()
         };
-        let constants: Vec<Vec<f64>> =
-            believed.moved.iter().map(|curve| change(trial.values(curve, 1.0))).collect();
-        let model = [1.0, -1.0].map(|z| {
-            let (curve, factor) = believed.error.applied(believed.middle.clone(), z);
-            change(trial.values(&curve, factor))
-        });
+        let moved = believed.moved.iter_mut().map(|curve| Some(change(trial.values(curve, 1.0)?)));
+        let constants: Vec<Vec<f64>> = moved.collect::<Option<_>>()?;
+        let mut with_error = |z| {
+            let (mut curve, factor) = believed.with_error(&trial.loads_n, z)?;
+            Some(change(trial.values(&mut curve, factor)?))
+        };
+        let model = [with_error(1.0)?, with_error(-1.0)?];
         let hardness = configuration.silicone.hardness_shore_a;
         let mut made = vec![[0.0; SOURCES]; middle.len()];
         for source in (0..SOURCES).filter(|i| trial.request.tolerances.sd()[*i] > 0.0) {
             let mut z = [0.0; SOURCES];
             z[source] = 1.0;
-            let curve = trial.curve_of_made(&part, hardness, &z)?;
-            for (target, change) in change(trial.values(&curve, 1.0)).into_iter().enumerate() {
+            let mut curve = trial.curve_of_made(&part, hardness, &z)?.expecting(next);
+            for (target, change) in change(trial.values(&mut curve, 1.0)?).into_iter().enumerate() {
                 made[target][source] = change;
             }
         }

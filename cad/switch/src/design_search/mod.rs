@@ -7,6 +7,7 @@ mod blocked;
 mod candidate;
 mod curve;
 mod kinds;
+mod lazy_curve;
 mod linear;
 mod probability;
 mod proposal;
@@ -31,6 +32,7 @@ pub use belief::{Belief, Believed, ModelError, Part, PublishedPhysics};
 pub use blocked::{Blocked, Change, Missed, Move};
 pub use curve::{Curve, Switching};
 pub use kinds::differ_in_kind;
+pub use lazy_curve::{LazyCurve, LoadState};
 pub use linear::VarianceShare;
 pub use probability::Probability;
 pub use proposal::{Proposal, TargetResult};
@@ -296,10 +298,10 @@ fn enumerate(trial: &Trial<'_>, space: &Space, progress: &dyn Progress) -> Enume
         progress.step();
         let configuration = space.configuration(place.material, &place.pins, &place.at);
         let part = trial.part(&configuration)?;
-        let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
-        let cost = guessed_cost(trial, &trial.values(&curve, 1.0));
-        let candidate = is_base.then(|| proposal::pictured(&curve, &place.pins, trial.range_n));
-        Some((cost, place, candidate))
+        let mut curve = trial.belief.best(&part, &trial.loads_n)?;
+        let cost = guessed_cost(trial, &trial.values(&mut curve, 1.0)?);
+        let candidate = is_base.then(|| proposal::pictured(&mut curve, &place.pins, trial.range_n));
+        Some((cost, place, candidate.flatten()))
     });
     let mut candidates = Vec::new();
     let mut places = Vec::new();

@@ -65,11 +65,12 @@ pub(super) fn probability(
     draws: &[Draw],
 ) -> Option<Probability> {
     let part = trial.part(configuration)?;
-    let error = trial.believed(&part)?.error;
+    let mut believed = trial.believed(&part)?;
+    let (error, next) = (believed.error()?, believed.middle.switching()?.next);
     let hardness = configuration.silicone.hardness_shore_a;
     // A part without an equilibrium is excluded, since it carries no information about the request.
     let made: Vec<Vec<f64>> =
-        map_each(draws.iter().collect(), |draw| trial.made(&part, hardness, &error, draw))
+        map_each(draws.iter().collect(), |draw| trial.made(&part, hardness, (&error, next), draw))
             .into_iter()
             .flatten()
             .collect();

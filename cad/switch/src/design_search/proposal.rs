@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::candidate::{Draw, Trial, outer_width_mm};
-use super::curve::Curve;
+use super::lazy_curve::LazyCurve;
 use super::linear::{Linear, VarianceShare};
 use super::probability::{Probability, probability};
 use super::sensitivity::{Sensitivity, sensitivities};
@@ -76,9 +76,9 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     configuration.layout.pins.sort_unstable();
     let design = Design::new(configuration.clone()).ok().filter(|_| is_feasible(&configuration))?;
     let part = trial.part(&configuration)?;
-    let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
-    let settled = trial.settled(&part, &curve);
-    let values = trial.values(&curve, settled);
+    let mut curve = trial.belief.best(&part, &trial.loads_n)?;
+    let settled = trial.settled(&part, &mut curve)?;
+    let values = trial.values(&mut curve, settled)?;
     let linear = Linear::of(trial, &configuration)?;
     let probability = probability(trial, &configuration, draws)?;
     let targets: Vec<TargetResult> = trial
@@ -96,7 +96,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
         .collect();
     let tightest =
         (0..targets.len()).min_by(|a, b| targets[*a].probability.total_cmp(&targets[*b].probability))?;
-    let switching = curve.switching();
+    let switching = curve.switching()?;
     let threshold_n = switching.threshold_n * settled;
     let within = switching.is_found && (trial.range_n.0..=trial.range_n.1).contains(&threshold_n);
     Some(Proposal {
@@ -108,7 +108,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
         // For the requested loads only, since the search extends beyond them.
         trust: trial.belief.banded(&part, &[trial.range_n.0, trial.range_n.1])?.status,
         threshold_n: within.then_some(threshold_n),
-        friction_n: curve.value(Quantity::MaxFriction, trial.range_n),
+        friction_n: curve.value(Quantity::MaxFriction, trial.range_n)?,
         standard_error: probability.standard_error(),
         probability,
         uncertainty: linear.targets[tightest].shares(),
@@ -119,13 +119,17 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     })
 }
 
-/// Returns a curve as a point of a plot.
-pub(super) fn pictured(curve: &Curve, pins: &[usize], range_n: (f64, f64)) -> LayoutCandidate {
-    let switching = curve.switching();
+/// Returns a curve as a point of a plot; `None` if it cannot be predicted.
+pub(super) fn pictured(
+    curve: &mut LazyCurve<'_>,
+    pins: &[usize],
+    range_n: (f64, f64),
+) -> Option<LayoutCandidate> {
+    let switching = curve.switching()?;
     let within = switching.is_found && (range_n.0..=range_n.1).contains(&switching.threshold_n);
-    LayoutCandidate {
+    Some(LayoutCandidate {
         pins: pins.to_vec(),
         threshold_n: within.then_some(switching.threshold_n),
-        friction_n: curve.value(Quantity::MaxFriction, range_n),
-    }
+        friction_n: curve.value(Quantity::MaxFriction, range_n)?,
+    })
 }

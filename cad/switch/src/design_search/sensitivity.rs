@@ -43,9 +43,10 @@ fn sensitivity(
         let mut moved = configuration.clone();
         parameter.set(&mut moved, value);
         let part = trial.part(&moved)?;
-        let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
-        let of = |quantity| curve.value(quantity, trial.range_n);
-        Some((of(Quantity::MaxFriction), of(Quantity::Threshold), trial.values(&curve, 1.0)))
+        let mut curve = trial.belief.best(&part, &trial.loads_n)?;
+        let values = trial.values(&mut curve, 1.0)?;
+        let mut of = |quantity| curve.value(quantity, trial.range_n);
+        Some((of(Quantity::MaxFriction)?, of(Quantity::Threshold)?, values))
     };
     // If one side cannot be predicted, since a pin would leave the wrap, a one-sided difference is
     // used.

@@ -9,6 +9,7 @@
 
 mod banded;
 mod constants;
+mod continuation;
 mod coupled;
 mod equilibrium;
 mod error;
@@ -29,6 +30,7 @@ mod tests;
 pub use crate::bed::{Bed, OutsidePins, modulus_of_shore_a_mpa, shore_a_of_modulus_mpa};
 pub use constants::Constants;
 pub(crate) use constants::PUBLISHED_FIT;
+pub use continuation::Continuation;
 pub use error::PhysicsError;
 pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,

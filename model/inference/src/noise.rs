@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use crate::half_t::HalfT;
+use crate::lower_triangular::{add_lower_times, inverse};
 use crate::problem::Rows;
 
 /// Number of scales of the noise.
@@ -297,10 +298,8 @@ impl Noise<'_> {
         for range in ranges {
             let factor = self.covariance(range).cholesky()?.unpack();
             whitening.log_determinant += 2.0 * factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
-            let mut inverse = DMatrix::identity(range.len(), range.len());
-            factor.solve_lower_triangular_mut(&mut inverse);
+            whitening.inverses.push(inverse(&factor));
             whitening.factors.push(factor);
-            whitening.inverses.push(inverse);
         }
         whitening.log_determinant.is_finite().then_some(whitening)
     }
@@ -350,9 +349,12 @@ impl Whitening {
     /// Returns `L^-1 X`.
     pub(crate) fn whiten(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let mut white = DMatrix::zeros(columns.nrows(), columns.ncols());
+        let rows = columns.nrows();
         for (range, inverse) in self.ranges.iter().zip(&self.inverses) {
-            let part = inverse * columns.rows(range.start, range.len());
-            white.rows_mut(range.start, range.len()).copy_from(&part);
+            for first in (0..columns.ncols()).map(|column| column * rows) {
+                let part = first + range.start..first + range.end;
+                add_lower_times(inverse, &columns.as_slice()[part.clone()], &mut white.as_mut_slice()[part]);
+            }
         }
         white
     }
@@ -361,8 +363,11 @@ impl Whitening {
     pub(crate) fn whiten_vector(&self, column: &DVector<f64>) -> DVector<f64> {
         let mut white = DVector::zeros(column.len());
         for (range, inverse) in self.ranges.iter().zip(&self.inverses) {
-            let part = inverse * column.rows(range.start, range.len());
-            white.rows_mut(range.start, range.len()).copy_from(&part);
+            add_lower_times(
+                inverse,
+                &column.as_slice()[range.clone()],
+                &mut white.as_mut_slice()[range.clone()],
+            );
         }
         white
     }
@@ -371,8 +376,8 @@ impl Whitening {
     pub(crate) fn unwhiten_transposed(&self, white: &DVector<f64>) -> DVector<f64> {
         let mut result = DVector::zeros(white.len());
         for (range, inverse) in self.ranges.iter().zip(&self.inverses) {
-            let part = inverse.tr_mul(&white.rows(range.start, range.len()));
-            result.rows_mut(range.start, range.len()).copy_from(&part);
+            let part = white.rows(range.start, range.len());
+            result.rows_mut(range.start, range.len()).gemv_tr(1.0, inverse, &part, 0.0);
         }
         result
     }

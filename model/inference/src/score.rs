@@ -11,7 +11,9 @@ use crate::design::{Component, Design, Role, added_column, kernel_columns};
 use crate::fit::Fit;
 use crate::half_t::HalfT;
 use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
+use crate::marginal::Marginal;
 use crate::problem::Problem;
+use crate::product::cross_products;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
 use crate::scales::ScaleProblem;
 
@@ -106,6 +108,59 @@ struct Candidate {
     relevance: f64,
 }
 
+/// Columns that are whitened together, so that each series' factor is read once for all of them.
+const BLOCK_COLUMNS: usize = 64;
+
+/// Candidates whose columns are whitened in blocks.
+struct Candidates<'a> {
+    marginal: &'a Marginal,
+    /// Element, relevance and number of columns of each candidate of the block.
+    waiting: Vec<(Element, f64, usize)>,
+    /// Their columns, one after the other.
+    columns: Vec<f64>,
+    done: Vec<Candidate>,
+}
+
+impl<'a> Candidates<'a> {
+    fn new(marginal: &'a Marginal) -> Self {
+        Self { marginal, waiting: Vec::new(), columns: Vec::new(), done: Vec::new() }
+    }
+
+    fn add(&mut self, element: Element, relevance: f64, columns: &DMatrix<f64>) {
+        self.waiting.push((element, relevance, columns.ncols()));
+        self.columns.extend_from_slice(columns.as_slice());
+        if self.waiting.iter().map(|(.., columns)| columns).sum::<usize>() >= BLOCK_COLUMNS {
+            self.whiten();
+        }
+    }
+
+    fn whiten(&mut self) {
+        let count = self.waiting.iter().map(|(.., columns)| columns).sum();
+        let columns =
+            DMatrix::from_vec(self.marginal.white_target.len(), count, std::mem::take(&mut self.columns));
+        let white = self.marginal.whitening.whiten(&columns);
+        let cross = cross_products(&self.marginal.white_matrix, &white);
+        let moment = white.tr_mul(&self.marginal.white_target);
+        let mut first = 0;
+        for (element, relevance, count) in self.waiting.drain(..) {
+            let own = white.columns(first, count);
+            self.done.push(Candidate {
+                element,
+                gram: own.tr_mul(&own),
+                cross: cross.columns(first, count).into_owned(),
+                moment: moment.rows(first, count).into_owned(),
+                relevance,
+            });
+            first += count;
+        }
+    }
+
+    fn finish(mut self) -> Vec<Candidate> {
+        self.whiten();
+        self.done
+    }
+}
+
 impl<'a> Scores<'a> {
     /// Prepares the candidates; `None` if the fit's design is not finite.
     pub(crate) fn new(problem: &'a Problem, fit: &Fit) -> Option<Self> {
@@ -116,28 +171,14 @@ impl<'a> Scores<'a> {
         let scale_problem =
             ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
         let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
-        let transposed = point.marginal.white_matrix.transpose();
-        let candidate = |element: Element, columns: DMatrix<f64>| {
-            let relevance = match element.member {
-                Member::Effect(effect) => relevance(&columns, &problem.rows.relevant[effect]),
-                Member::Kernel(_) => 0.0,
-            };
-            let white = point.marginal.whitening.whiten(&columns);
-            Candidate {
-                element,
-                gram: white.transpose() * &white,
-                cross: &transposed * &white,
-                moment: white.tr_mul(&point.marginal.white_target),
-                relevance,
-            }
-        };
-        let mut candidates = Vec::new();
+        let mut collected = Candidates::new(&point.marginal);
         for (index, effect) in space.effects.iter().enumerate() {
             for form in 0..effect.starts.len() {
                 let element = Element { member: Member::Effect(index), form };
                 let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
                 if let Some(column) = added {
-                    candidates.push(candidate(element, DMatrix::from_columns(&[column])));
+                    let relevance = relevance(&column, &problem.rows.relevant[index]);
+                    collected.add(element, relevance, &DMatrix::from_columns(&[column]));
                 }
             }
         }
@@ -146,10 +187,11 @@ impl<'a> Scores<'a> {
                 let element = Element { member: Member::Kernel(index), form };
                 let columns = kernel_columns(space, &problem.rows, &design.channels, index, form);
                 if columns.amax() > 1e-9 {
-                    candidates.push(candidate(element, columns));
+                    collected.add(element, 0.0, &columns);
                 }
             }
         }
+        let candidates = collected.finish();
         let (gram, moment) = (point.marginal.gram.clone(), point.marginal.moment.clone());
         let variances = point.variances;
         let cauchy = Mixture::cauchy();
@@ -286,8 +328,7 @@ pub(crate) fn variance_gain(scale: f64, information: DMatrix<f64>, score: &DVect
 }
 
 /// Returns the largest change of a reading, relative to the smallest relevant one.
-fn relevance(columns: &DMatrix<f64>, relevant: &[f64]) -> f64 {
-    let column = columns.column(0);
+fn relevance(column: &DVector<f64>, relevant: &[f64]) -> f64 {
     column.iter().zip(relevant).map(|(x, least)| x.abs() / least).fold(0.0, f64::max)
 }
 

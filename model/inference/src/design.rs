@@ -96,10 +96,11 @@ impl Mode {
         }
         for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| space.kernels[*k].channel == channel) {
             let basis = &rows.bases[kernel][variant];
-            let known = self.curved.get(&Component::Kernel(kernel)).filter(|c| c.len() == basis.ncols());
+            let known =
+                self.curved.get(&Component::Kernel(kernel)).filter(|c| c.len() == basis.coefficients());
             let Some(coefficients) = known else { continue };
-            for (row, sum) in sum.iter_mut().enumerate() {
-                *sum += basis.row(row).iter().zip(coefficients).map(|(x, c)| x * c).sum::<f64>();
+            for (sum, value) in sum.iter_mut().zip(basis.function(coefficients)) {
+                *sum += value;
             }
         }
         sum.iter_mut().for_each(|value| *value = value.clamp(CURVED.0, CURVED.1));
@@ -329,10 +330,5 @@ pub(crate) fn kernel_columns(
     kernel: usize,
     variant: usize,
 ) -> DMatrix<f64> {
-    let channel = &channels[space.kernels[kernel].channel];
-    let mut columns = rows.bases[kernel][variant].clone();
-    for mut column in columns.column_iter_mut() {
-        column.iter_mut().zip(channel).for_each(|(x, c)| *x *= c);
-    }
-    columns
+    rows.bases[kernel][variant].times(&channels[space.kernels[kernel].channel])
 }

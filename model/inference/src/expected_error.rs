@@ -184,7 +184,7 @@ pub(crate) fn kernel_curve(
     let Some(element) = fit.element(Member::Kernel(kernel)) else { return vec![0.0; problem.len()] };
     let basis = &problem.rows.bases[kernel][element.form];
     let coefficients = mean.select_rows(columns);
-    (basis * coefficients).iter().copied().collect()
+    basis.function(coefficients.as_slice())
 }
 
 /// Sessions of the rows of a problem, drawn from a fit.

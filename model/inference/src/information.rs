@@ -5,7 +5,6 @@ use nalgebra::DMatrix;
 use crate::fit::Fit;
 use crate::leave_out::Linearised;
 use crate::problem::Problem;
-use crate::product::cross_products;
 
 /// Returns the information `x'Px` on the size of a change `x` of the readings, in addition to a fit and
 /// to other changes. `None` if the fit's design is not finite.
@@ -18,8 +17,8 @@ pub fn information(problem: &Problem, fit: &Fit, change: &[f64], others: &[Vec<f
     let columns = std::iter::once(change).chain(others.iter().map(Vec::as_slice)).flatten().copied();
     let columns = DMatrix::from_iterator(problem.len(), 1 + others.len(), columns);
     let white = point.marginal.whitening.whiten(&columns);
-    let cross = &point.solution.root * cross_products(&point.marginal.white_matrix, &white);
-    let all = cross_products(&white, &white) - cross.tr_mul(&cross);
+    let cross = &point.solution.root * point.marginal.white_matrix.tr_mul(&white);
+    let all = white.tr_mul(&white) - cross.tr_mul(&cross);
     let known = others.len();
     let of_others = all.view((1, 1), (known, known)) + DMatrix::identity(known, known);
     let shared = all.view((1, 0), (known, 1)).into_owned();

@@ -102,6 +102,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod basis;
 mod coefficients;
 mod design;
 mod evidence;
@@ -119,7 +120,6 @@ mod outliers;
 mod posterior;
 mod prediction;
 mod problem;
-mod product;
 mod quadrature;
 mod random;
 mod scales;
@@ -130,6 +130,7 @@ mod test_problem;
 mod thinning;
 mod uncertainty;
 
+pub use basis::Basis;
 pub use coefficients::{Coefficient, Coefficients};
 pub use design::Mode;
 pub use evidence::SizePosterior;

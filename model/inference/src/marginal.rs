@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use crate::noise::{Noise, Whitening};
-use crate::product::cross_products;
 
 /// Products of a design with the precision of the noise.
 #[derive(Clone, Debug)]
@@ -48,8 +47,9 @@ impl Marginal {
         let whitening = noise.whitening(ranges)?;
         let white_matrix = whitening.whiten(matrix);
         let white_target = whitening.whiten_vector(target);
-        let gram = cross_products(&white_matrix, &white_matrix);
-        let moment = white_matrix.tr_mul(&white_target);
+        let transposed = white_matrix.transpose();
+        let gram = &transposed * &white_matrix;
+        let moment = &transposed * &white_target;
         let constant = white_target.norm_squared()
             + whitening.log_determinant
             + target.len() as f64 * libm::log(2.0 * PI);

@@ -332,6 +332,9 @@ fn powers(base: f64, most: usize) -> Vec<f64> {
     std::iter::successors(Some(1.0), |power| Some(power * base)).take(most + 1).collect()
 }
 
+/// Rows of a block of short series.
+const BLOCK_ROWS: usize = 256;
+
 /// Cholesky factors of the covariance `V = L L'` of all series.
 #[derive(Clone, Debug)]
 pub(crate) struct Whitening {
@@ -349,14 +352,28 @@ impl Whitening {
     /// Returns `L^-1 X`.
     pub(crate) fn whiten(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let mut white = DMatrix::zeros(columns.nrows(), columns.ncols());
-        let rows = columns.nrows();
-        for (range, inverse) in self.ranges.iter().zip(&self.inverses) {
-            for first in (0..columns.ncols()).map(|column| column * rows) {
-                let part = first + range.start..first + range.end;
-                add_lower_times(inverse, &columns.as_slice()[part.clone()], &mut white.as_mut_slice()[part]);
+        for block in self.blocks() {
+            for first in (0..columns.ncols()).map(|column| column * columns.nrows()) {
+                for (range, inverse) in self.ranges[block.clone()].iter().zip(&self.inverses[block.clone()]) {
+                    let part = first + range.start..first + range.end;
+                    let x = &columns.as_slice()[part.clone()];
+                    add_lower_times(inverse, x, &mut white.as_mut_slice()[part]);
+                }
             }
         }
         white
+    }
+
+    /// Returns the series of blocks of neighbouring ones, whose factors stay in the processor's cache for all columns.
+    fn blocks(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        let mut first = 0;
+        std::iter::from_fn(move || {
+            let start = self.ranges.get(first)?.start;
+            let rest = self.ranges[first..].iter().take_while(|range| range.end - start <= BLOCK_ROWS);
+            let block = first..first + rest.count().max(1);
+            first = block.end;
+            Some(block)
+        })
     }
 
     /// Returns `L^-1 x`.

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use crate::basis::Basis;
 use crate::half_t::HalfT;
 use crate::noise::NoiseReference;
 
@@ -172,7 +173,7 @@ pub struct Rows {
     /// Level of each row for each random effect of the space.
     pub levels: Vec<Vec<Option<usize>>>,
     /// Bases of each kernel of the space, one per variant.
-    pub bases: Vec<Vec<DMatrix<f64>>>,
+    pub bases: Vec<Vec<Basis>>,
     /// Columns that multiply the contribution of each effect of the space where its form is wrong.
     pub discrepancies: Vec<Vec<Vec<f64>>>,
     /// Smallest relevant change of each reading by each effect of the space.
@@ -326,7 +327,7 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
     for (bases, kernel) in rows.bases.iter().zip(&space.kernels) {
         expect_length("bases of a kernel", bases.len(), kernel.variants.len())?;
         for basis in bases {
-            expect_length("rows of a basis", basis.nrows(), count)?;
+            expect_length("rows of a basis", basis.readings(), count)?;
         }
     }
     for effect in &space.effects {

@@ -11,7 +11,6 @@ use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
 use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales};
 use crate::problem::Problem;
-use crate::product::cross_products;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
 const DAMPING: f64 = 0.05;
@@ -138,9 +137,9 @@ impl ScaleProblem<'_> {
     pub(crate) fn slopes(&self, point: &ScalePoint) -> Slopes {
         let (mut gradient, tangents) = self.likelihood_gradient(point);
         let white = point.marginal.whitening.whiten(&tangents);
-        let projected = cross_products(&point.marginal.white_matrix, &white);
+        let projected = point.marginal.white_matrix.transpose() * &white;
         let explained = &point.solution.root * &projected;
-        let mut information = (cross_products(&white, &white) - explained.transpose() * &explained) * 0.5;
+        let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
         for (i, (slope, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
             gradient[i] += slope;
             information[(i, i)] += curvature;
@@ -208,14 +207,14 @@ impl SeriesPrecision<'_> {
                 white.norm_squared() - self.leverage.tr_mul(&white).norm_squared()
             }
             Derivative::Diagonal(diagonal) => {
-                let leverage = cross_products(self.inverse, &self.leverage);
+                let leverage = self.inverse.transpose() * &self.leverage;
                 let precision =
                     |i: usize| self.inverse.column(i).norm_squared() - leverage.row(i).norm_squared();
                 diagonal.iter().enumerate().map(|(i, d)| d * precision(i)).sum()
             }
             Derivative::Dense(dense) => {
-                let leverage = cross_products(self.inverse, &self.leverage);
-                let precision = cross_products(self.inverse, self.inverse) - &leverage * leverage.transpose();
+                let leverage = self.inverse.transpose() * &self.leverage;
+                let precision = self.inverse.transpose() * self.inverse - &leverage * leverage.transpose();
                 precision.dot(dense)
             }
         }

@@ -13,7 +13,6 @@ use crate::half_t::HalfT;
 use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
 use crate::marginal::Marginal;
 use crate::problem::Problem;
-use crate::product::cross_products;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
 use crate::scales::ScaleProblem;
 
@@ -114,6 +113,8 @@ const BLOCK_COLUMNS: usize = 64;
 /// Candidates whose columns are whitened in blocks.
 struct Candidates<'a> {
     marginal: &'a Marginal,
+    /// The white matrix of the fit, transposed.
+    transposed: DMatrix<f64>,
     /// Element, relevance and number of columns of each candidate of the block.
     waiting: Vec<(Element, f64, usize)>,
     /// Their columns, one after the other.
@@ -123,7 +124,13 @@ struct Candidates<'a> {
 
 impl<'a> Candidates<'a> {
     fn new(marginal: &'a Marginal) -> Self {
-        Self { marginal, waiting: Vec::new(), columns: Vec::new(), done: Vec::new() }
+        Self {
+            marginal,
+            transposed: marginal.white_matrix.transpose(),
+            waiting: Vec::new(),
+            columns: Vec::new(),
+            done: Vec::new(),
+        }
     }
 
     fn add(&mut self, element: Element, relevance: f64, columns: &DMatrix<f64>) {
@@ -139,7 +146,7 @@ impl<'a> Candidates<'a> {
         let columns =
             DMatrix::from_vec(self.marginal.white_target.len(), count, std::mem::take(&mut self.columns));
         let white = self.marginal.whitening.whiten(&columns);
-        let cross = cross_products(&self.marginal.white_matrix, &white);
+        let cross = &self.transposed * &white;
         let moment = white.tr_mul(&self.marginal.white_target);
         let mut first = 0;
         for (element, relevance, count) in self.waiting.drain(..) {

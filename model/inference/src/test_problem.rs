@@ -47,7 +47,7 @@ pub(crate) fn long_rows(count: usize, length: usize) -> Rows {
         direction: (0..total).map(|i| i % 2 == 1).collect(),
         order: (0..total).map(|i| i % length).collect(),
         levels: vec![series.iter().map(|s| Some(s / 2 % 2)).collect()],
-        bases: vec![vec![kernel::levels(&level, 3)]],
+        bases: vec![vec![kernel::levels(&level, 3).into()]],
         discrepancies: vec![vec![load.iter().map(|f| f - 2.0).collect()]],
         relevant: vec![vec![0.05; total]],
         is_new_session: false,

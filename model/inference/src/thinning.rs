@@ -82,7 +82,7 @@ impl Problem {
             bases: all
                 .bases
                 .iter()
-                .map(|bases| bases.iter().map(|basis| basis.select_rows(kept)).collect())
+                .map(|bases| bases.iter().map(|basis| basis.select(kept)).collect())
                 .collect(),
             discrepancies: all
                 .discrepancies

@@ -122,9 +122,8 @@ impl Evidence {
         let basis = &self.problem.rows().bases[kernel][form];
         let weight = |i: usize| coefficients.index(Coefficient::Kernel(kernel, i));
         let weights: Vec<f64> =
-            (0..basis.ncols()).filter_map(|i| weight(i).map(|at| coefficients.mean[at])).collect();
-        let value = |row: usize| basis.row(row).iter().zip(&weights).map(|(x, w)| x * w).sum();
-        Some((0..basis.nrows()).map(value).collect())
+            (0..basis.coefficients()).filter_map(|i| weight(i).map(|at| coefficients.mean[at])).collect();
+        Some(basis.function(&weights))
     }
 
     /// Returns the terms of a kernel with this function, each with its size and the variance of it.

@@ -2,7 +2,7 @@
 //! sampling.
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Kernel, kernel};
+use pinswitch_inference::{Basis, Kernel, kernel};
 
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
@@ -48,7 +48,7 @@ pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
 
 /// A function of the rows that returns a basis.
-type Basis = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
+type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
 
 /// How a model file keeps the function of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,7 +65,7 @@ pub(super) enum Record {
 
 /// A discrete form of a kernel.
 struct Variant {
-    basis: Basis,
+    basis: BasisOfRows,
     /// Factor of the basis.
     factor: f64,
     probability: f64,
@@ -106,16 +106,17 @@ impl Structure {
     }
 
     /// Returns the bases at the rows of the fitted table.
-    pub(super) fn bases(&self, rows: &Covariates) -> Vec<DMatrix<f64>> {
-        self.bases.iter().map(|variant| variant.columns(rows)).collect()
+    pub(super) fn bases(&self, rows: &Covariates) -> Vec<Basis> {
+        self.bases.iter().map(|variant| variant.columns(rows).into()).collect()
     }
 
     /// Returns the bases at the rows of a new session: what a session draws again has its mean.
-    pub(super) fn bases_of_new_session(&self, rows: &Covariates) -> Vec<DMatrix<f64>> {
+    pub(super) fn bases_of_new_session(&self, rows: &Covariates) -> Vec<Basis> {
         if !self.is_session_bound {
             return self.bases(rows);
         }
-        let repeated = |mean: &Vec<f64>| DMatrix::from_fn(rows.len(), mean.len(), |_, column| mean[column]);
+        let repeated =
+            |mean: &Vec<f64>| DMatrix::from_fn(rows.len(), mean.len(), |_, column| mean[column]).into();
         self.means.iter().map(repeated).collect()
     }
 }
@@ -154,14 +155,14 @@ impl Collector<'_> {
         covariate: &'static str,
         record: Record,
         channels: &[Channel],
-        bases: Vec<Basis>,
+        bases: Vec<BasisOfRows>,
     ) {
         let variants = self.variants(bases, 1.0);
         self.add_variants(name, covariate, record, channels, variants);
     }
 
     /// Returns the variants of bases that are scaled to unit variance, of this total probability.
-    fn variants(&self, bases: Vec<Basis>, probability: f64) -> Vec<Variant> {
+    fn variants(&self, bases: Vec<BasisOfRows>, probability: f64) -> Vec<Variant> {
         let probability = probability / bases.len().max(1) as f64;
         bases
             .into_iter()
@@ -219,7 +220,7 @@ impl Collector<'_> {
         let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
         let time = |rows: &Covariates| rows.column(|p| p.time_s);
         let scale = Interval::of(&time(self.rows));
-        let basis: Basis = if edges.len() < FEW_SERIES {
+        let basis: BasisOfRows = if edges.len() < FEW_SERIES {
             Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12))
         } else {
             // Between series time moves by steps, equal ones: pauses are not known.
@@ -249,7 +250,7 @@ impl Collector<'_> {
         if count < LEAST_WANDERING_SERIES {
             return;
         }
-        let bases = WANDERING.map(|(correlation, rank)| -> Basis {
+        let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
             Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
         });
         let channels = [Channel::Reading, Channel::Drag];
@@ -261,8 +262,10 @@ impl Collector<'_> {
         let at = position(self.rows);
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
-            let waves: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
-            let steps: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
+            let waves: BasisOfRows =
+                Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
+            let steps: BasisOfRows =
+                Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
             self.add(
                 "position",
                 "position",
@@ -275,7 +278,8 @@ impl Collector<'_> {
         let at = repetition(self.rows);
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
-            let settling: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
+            let settling: BasisOfRows =
+                Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
             self.add(
                 "repetition",
                 "repetition",
@@ -284,7 +288,7 @@ impl Collector<'_> {
                 vec![settling],
             );
             let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
-            let alternation: Basis = Box::new(move |rows| kernel::single(&rows.column(sign)));
+            let alternation: BasisOfRows = Box::new(move |rows| kernel::single(&rows.column(sign)));
             self.add(
                 "alternate repetitions",
                 "repetition",
@@ -298,7 +302,8 @@ impl Collector<'_> {
             let channels = &[Channel::Reading, Channel::Friction];
             self.levels("repetition of a direction", "repetition", record, channels, directed);
             let scale = Interval::of(&self.rows.series_time_s);
-            let creep: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
+            let creep: BasisOfRows =
+                Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
             let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
             self.add(
                 "time in a series",
@@ -324,7 +329,7 @@ impl Collector<'_> {
                 Channel::Silicone,
                 Channel::DirectionFriction,
             ];
-            let curve: Basis = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
+            let curve: BasisOfRows = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
             self.add("load", "load", Record::Table(Abscissa::Load, false), &channels, vec![curve]);
         }
         if (4..=MOST_LOADS).contains(&distinct(&loads)) {
@@ -339,7 +344,7 @@ impl Collector<'_> {
     }
 
     fn previous_load(&mut self) {
-        let memories = MEMORY_REPETITIONS.map(|repetitions| -> Basis {
+        let memories = MEMORY_REPETITIONS.map(|repetitions| -> BasisOfRows {
             let memory = move |p: &Point| {
                 let decay = libm::exp(-p.through / repetitions);
                 (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
@@ -360,10 +365,12 @@ impl Collector<'_> {
         let speeds = speed(self.rows);
         if distinct(&speeds) > 2 {
             let scale = Interval::of(&speeds);
-            let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
+            let curve: BasisOfRows =
+                Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
             self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), COMMON, vec![curve]);
         } else if distinct(&speeds) == 2 {
-            let sign: Basis = Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
+            let sign: BasisOfRows =
+                Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
             self.add(
                 "speed",
                 "speed",
@@ -376,7 +383,8 @@ impl Collector<'_> {
         let dwells = dwell(self.rows);
         if distinct(&dwells) > 1 {
             let scale = Interval::of(&dwells);
-            let curve: Basis = Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
+            let curve: BasisOfRows =
+                Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
             self.add(
                 "dwell",
                 "dwell",
@@ -387,7 +395,7 @@ impl Collector<'_> {
         }
         let descending = self.rows.column(|p| p.descending);
         if distinct(&descending) == 2 {
-            let sweep: Basis = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
+            let sweep: BasisOfRows = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
             self.add("sweep", "sweep", Record::Table(Abscissa::Descending, true), COMMON, vec![sweep]);
         }
     }
@@ -448,7 +456,7 @@ impl Collector<'_> {
         let latest =
             names_of(self.rows, &level).pop().filter(|_| record == Record::Table(Abscissa::Session, true));
         let latest = latest.and_then(|name| names.binary_search(&name).ok());
-        let basis: Basis = Box::new(move |rows| {
+        let basis: BasisOfRows = Box::new(move |rows| {
             let level_of: Vec<Option<usize>> =
                 names_of(rows, &level).iter().map(|name| names.binary_search(name).ok().or(latest)).collect();
             kernel::levels(&level_of, names.len())
@@ -459,12 +467,12 @@ impl Collector<'_> {
 
 /// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles
 /// is a smooth course, which Brownian motion prices as many steps.
-fn waves(session: Interval, series: usize) -> Vec<Basis> {
+fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
     let most = MOST_CYCLES.min(series as f64 / SERIES_OF_CYCLE);
     let cycles = std::iter::successors(Some(1.0), |cycles| Some(cycles + WAVE_STEP));
     cycles
         .take_while(|cycles| *cycles <= most)
-        .map(|cycles| -> Basis {
+        .map(|cycles| -> BasisOfRows {
             Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
         })
         .collect()
@@ -474,7 +482,7 @@ fn waves(session: Interval, series: usize) -> Vec<Basis> {
 /// lasts for a while. Brownian motion prices one large step as many small ones.
 fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
     let is_long = count > MOST_INTERVAL_SERIES;
-    let mut bases: Vec<Basis> = Vec::new();
+    let mut bases: Vec<BasisOfRows> = Vec::new();
     for from in 0..count {
         for until in (if is_long { count } else { from + 1 })..=count {
             if until - from < count {

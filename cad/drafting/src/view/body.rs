@@ -229,6 +229,10 @@ pub struct Body {
     pub(super) walls: Vec<Wall>,
     /// Heights of the ends of walls, ascending.
     pub(super) levels_mm: Vec<f64>,
+    /// Least and greatest `u`.
+    reach_mm: [f64; 2],
+    /// Greatest `w`.
+    nearest_mm: f64,
 }
 
 impl Body {
@@ -259,7 +263,20 @@ impl Body {
         let mut levels_mm: Vec<f64> = walls.iter().flat_map(|w| [w.from_mm, w.to_mm]).collect();
         levels_mm.sort_by(f64::total_cmp);
         levels_mm.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        Self { walls, levels_mm }
+        let curves = || walls.iter().flat_map(|wall| wall.lower.iter().chain(&wall.upper));
+        let wider = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+        let around =
+            |axis| curves().map(|curve| curve.reach(axis)).fold([f64::INFINITY, f64::NEG_INFINITY], wider);
+        let (reach_mm, [_, nearest_mm]) = (around(0), around(1));
+        Self { walls, levels_mm, reach_mm, nearest_mm }
+    }
+
+    /// Returns whether material may be nearer to the observer than a point `[u, z, w]`.
+    pub(super) fn may_hide(&self, [u, z, w]: [f64; 3]) -> bool {
+        let (Some(bottom), Some(top)) = (self.levels_mm.first(), self.levels_mm.last()) else { return false };
+        self.nearest_mm > w
+            && (*bottom..=*top).contains(&z)
+            && (self.reach_mm[0]..=self.reach_mm[1]).contains(&u)
     }
 
     /// Adds to `ends` where a line at height `z` enters and leaves the body, unordered. The line is at `u = value` and runs

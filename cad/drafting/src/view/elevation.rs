@@ -139,34 +139,27 @@ fn sight(bodies: &[Body], cut_mm: Option<f64>, [u, z, w]: [f64; 3]) -> Sight {
     if cut_mm.is_some_and(|cut| w > cut + 1e-7) {
         return Sight::Removed;
     }
-    let is_clear = |du: f64, dz: f64| {
-        nearest(bodies, cut_mm, u + du * BESIDE_MM, z + dz * BESIDE_MM)
-            .is_none_or(|near| near <= w + NEARER_MM)
-    };
+    let is_clear =
+        |du: f64, dz: f64| !hides(bodies, cut_mm, [u + du * BESIDE_MM, z + dz * BESIDE_MM, w + NEARER_MM]);
     let seen =
         [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].into_iter().any(|(du, dz)| is_clear(du, dz));
     if seen { Sight::Visible } else { Sight::Hidden }
 }
 
-/// The depth `w` of the nearest material on a line of sight.
-fn nearest(bodies: &[Body], cut_mm: Option<f64>, u: f64, z: f64) -> Option<f64> {
-    let mut nearest: Option<f64> = None;
+/// Returns whether material hides a point.
+fn hides(bodies: &[Body], cut_mm: Option<f64>, [u, z, w]: [f64; 3]) -> bool {
     let mut depths = Vec::new();
-    for body in bodies {
+    bodies.iter().filter(|body| body.may_hide([u, z, w])).any(|body| {
         depths.clear();
         body.crossings(0, u, z, &mut depths);
-        let first = match cut_mm {
+        let nearest = match cut_mm {
             // Cut material shows its face.
             Some(cut) if depths.iter().filter(|w| **w > cut).count() % 2 == 1 => Some(cut),
             Some(cut) => depths.iter().copied().filter(|w| *w <= cut).reduce(f64::max),
             None => depths.iter().copied().reduce(f64::max),
         };
-        nearest = match (nearest, first) {
-            (Some(a), Some(b)) => Some(a.max(b)),
-            (a, b) => a.or(b),
-        };
-    }
-    nearest
+        nearest.is_some_and(|nearest| nearest > w)
+    })
 }
 
 /// Lines of a view, not yet joined.

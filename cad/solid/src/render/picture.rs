@@ -1,7 +1,5 @@
 //! Pictures in memory, and as PNG.
 
-use std::collections::HashMap;
-
 /// Bits per channel of the colours that a palette distinguishes: steps of 4 of 255 are invisible.
 const PALETTE_BITS: u32 = 6;
 /// Most colours of a palette.
@@ -39,41 +37,33 @@ impl Picture {
 
     /// Returns a palette, and the index of each pixel in it.
     fn indexed(&self) -> (Vec<[u8; 3]>, Vec<u8>) {
-        let runs = self.runs();
-        // Number of pixels and first colour of each bin.
-        let mut bins: HashMap<u32, (usize, [u8; 3])> = HashMap::new();
-        for (colour, count) in &runs {
-            bins.entry(bin(*colour)).or_insert((0, *colour)).0 += count;
+        let bin = |rgb: &[u8]| {
+            rgb.iter().fold(0, |bin, v| bin << PALETTE_BITS | usize::from(v >> (8 - PALETTE_BITS)))
+        };
+        let mut counts = vec![0u32; 1 << (3 * PALETTE_BITS)];
+        let mut first = vec![[0u8; 3]; counts.len()];
+        for rgb in self.pixels.chunks_exact(3) {
+            let bin = bin(rgb);
+            if counts[bin] == 0 {
+                first[bin] = [rgb[0], rgb[1], rgb[2]];
+            }
+            counts[bin] += 1;
         }
-        let mut used: Vec<u32> = bins.keys().copied().collect();
-        used.sort_by_key(|bin| (std::cmp::Reverse(bins[bin].0), *bin));
-        let palette: Vec<[u8; 3]> = used.iter().take(PALETTE).map(|bin| bins[bin].1).collect();
+        let mut used: Vec<usize> = (0..counts.len()).filter(|bin| counts[*bin] > 0).collect();
+        used.sort_by_key(|bin| (std::cmp::Reverse(counts[*bin]), *bin));
+        let palette: Vec<[u8; 3]> = used.iter().take(PALETTE).map(|bin| first[*bin]).collect();
         let nearest = |colour: [u8; 3]| {
             let off =
                 |p: &[u8; 3]| -> u32 { (0..3).map(|k| u32::from(p[k].abs_diff(colour[k])).pow(2)).sum() };
             palette.iter().enumerate().min_by_key(|(_, p)| off(p)).map_or(0, |(i, _)| i)
         };
-        let place = |(rank, bin): (usize, &u32)| {
-            let index = if rank < palette.len() { rank } else { nearest(bins[bin].1) };
-            (*bin, u8::try_from(index).unwrap_or(0))
-        };
-        let index_of_bin: HashMap<u32, u8> = used.iter().enumerate().map(place).collect();
-        let indices =
-            runs.iter().flat_map(|(colour, count)| std::iter::repeat_n(index_of_bin[&bin(*colour)], *count));
-        let indices = indices.collect();
-        (palette, indices)
-    }
-
-    /// Returns the colours along the rows, each with the number of neighbouring pixels that have it.
-    fn runs(&self) -> Vec<([u8; 3], usize)> {
-        let mut runs: Vec<([u8; 3], usize)> = Vec::new();
-        for rgb in self.pixels.as_chunks::<3>().0 {
-            match runs.last_mut() {
-                Some((colour, count)) if colour == rgb => *count += 1,
-                _ => runs.push((*rgb, 1)),
-            }
+        let mut index_of_bin = vec![0u8; counts.len()];
+        for (rank, bin) in used.into_iter().enumerate() {
+            let index = if rank < palette.len() { rank } else { nearest(first[bin]) };
+            index_of_bin[bin] = u8::try_from(index).unwrap_or(0);
         }
-        runs
+        let indices = self.pixels.chunks_exact(3).map(|rgb| index_of_bin[bin(rgb)]).collect();
+        (palette, indices)
     }
 
     /// Returns the picture as PNG.
@@ -88,11 +78,6 @@ impl Picture {
         encoder.write_header()?.write_image_data(&self.pixels)?;
         Ok(bytes)
     }
-}
-
-/// Returns the colour as the palette distinguishes it.
-fn bin(rgb: [u8; 3]) -> u32 {
-    rgb.iter().fold(0, |bin, v| bin << PALETTE_BITS | u32::from(v >> (8 - PALETTE_BITS)))
 }
 
 #[cfg(test)]

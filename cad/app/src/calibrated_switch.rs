@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::{Contact, FrictionCurve, Substrate, Transfer};
-use pinswitch_switch::design_search::{Belief, LazyCurve, LoadState, Part};
+use pinswitch_switch::design_search::{Belief, Curve, LoadState, Part};
 
 use crate::calibrated_curve::rig_contact;
 
@@ -56,12 +56,12 @@ impl Belief for CalibratedSwitch {
         self.file.constants_drawn()
     }
 
-    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>> {
+    fn curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<Curve<'a>> {
         let transfer = self.transfer(part, loads_n)?;
         let (rig_n, rig_share) =
             self.file.drawn_part(Substrate::Silicone, &part.pins, loads_n, z, &self.name).ok()?;
         let (friction_n, silicone_share) = transfer.friction_and_share(loads_n, &rig_n, &rig_share);
-        Some(LazyCurve::new(loads_n, move |i| {
+        Some(Curve::new(loads_n, move |i| {
             Some(LoadState { friction_n: friction_n[i].max(1e-6), silicone_share: silicone_share[i] })
         }))
     }

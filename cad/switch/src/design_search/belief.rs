@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use pinswitch_friction::physics::{Constants, PhysicsSwitch};
 use pinswitch_friction::{Contact, FrictionCurve, Law, Transition, predict_by};
 
-use super::lazy_curve::{LazyCurve, LoadState};
+use super::curve::{Curve, LoadState};
 
 /// Quantile of the standard normal distribution at the ends of a 95 % band.
 const BAND_QUANTILE: f64 = 1.96;
@@ -38,16 +38,11 @@ pub struct ModelError {
 impl ModelError {
     /// Returns the curve for a model error of `z` standard deviations, and the factor on its
     /// threshold.
-    pub fn applied<'a>(
-        &'a self,
-        mut curve: LazyCurve<'a>,
-        loads_n: &'a [f64],
-        z: f64,
-    ) -> (LazyCurve<'a>, f64) {
+    pub fn applied<'a>(&'a self, mut curve: Curve<'a>, loads_n: &'a [f64], z: f64) -> (Curve<'a>, f64) {
         let side = if z > 0.0 { &self.up } else { &self.down };
         let threshold = if z > 0.0 { self.threshold_earlier } else { self.threshold_later };
         let scaled = move |i: usize| curve.state(i).map(|state| state.scaled(side[i] * z));
-        (LazyCurve::new(loads_n, scaled), libm::exp(-z * threshold))
+        (Curve::new(loads_n, scaled), libm::exp(-z * threshold))
     }
 }
 
@@ -57,9 +52,9 @@ pub struct Believed<'a> {
     /// Best estimate with its band.
     pub banded: FrictionCurve,
     /// The best estimate.
-    pub middle: LazyCurve<'a>,
+    pub middle: Curve<'a>,
     /// One curve for each constant, whose standard normal variable is one.
-    pub moved: Vec<LazyCurve<'a>>,
+    pub moved: Vec<Curve<'a>>,
 }
 
 impl<'a> Believed<'a> {
@@ -105,7 +100,7 @@ impl<'a> Believed<'a> {
 
     /// Returns the best estimate for a model error of `z` standard deviations, and the factor on its
     /// threshold.
-    pub fn with_error<'b>(&'b mut self, loads_n: &'b [f64], z: f64) -> Option<(LazyCurve<'b>, f64)> {
+    pub fn with_error<'b>(&'b mut self, loads_n: &'b [f64], z: f64) -> Option<(Curve<'b>, f64)> {
         let (earlier, later) = self.threshold_error_sd()?;
         let factor = libm::exp(-z * if z > 0.0 { earlier } else { later });
         let next = self.middle.switching()?.next;
@@ -113,7 +108,7 @@ impl<'a> Believed<'a> {
             let (up, down) = self.error_sd(i)?;
             Some(self.middle.state(i)?.scaled(if z > 0.0 { up } else { down } * z))
         };
-        Some((LazyCurve::new(loads_n, state).expecting(next), factor))
+        Some((Curve::new(loads_n, state).expecting(next), factor))
     }
 }
 
@@ -131,14 +126,14 @@ pub trait Belief: Sync {
 
     /// Returns the curve of `part` with the constants at `z`; the best estimate is at zero. `None`
     /// if the curve cannot be computed.
-    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>>;
+    fn curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<Curve<'a>>;
 
     /// Returns the best estimate of the curve with its band and status.
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve>;
 
     /// Returns the best estimate of the curve.
-    fn best<'a>(&'a self, part: &Part, loads_n: &'a [f64]) -> Option<LazyCurve<'a>> {
-        self.lazy_curve(part, loads_n, &vec![0.0; self.constants()])
+    fn best<'a>(&'a self, part: &Part, loads_n: &'a [f64]) -> Option<Curve<'a>> {
+        self.curve(part, loads_n, &vec![0.0; self.constants()])
     }
 
     /// Returns the predictive distribution of `part`.
@@ -148,7 +143,7 @@ pub trait Belief: Sync {
         let next = middle.switching()?.next;
         let one = |i: usize| {
             let z: Vec<f64> = (0..self.constants()).map(|k| f64::from(u8::from(k == i))).collect();
-            Some(self.lazy_curve(part, loads_n, &z)?.expecting(next))
+            Some(self.curve(part, loads_n, &z)?.expecting(next))
         };
         let moved = (0..self.constants()).map(one).collect::<Option<_>>()?;
         Some(Believed { banded, middle, moved })
@@ -176,11 +171,11 @@ impl Belief for PublishedPhysics {
         3
     }
 
-    fn lazy_curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<LazyCurve<'a>> {
+    fn curve<'a>(&'a self, part: &Part, loads_n: &'a [f64], z: &[f64]) -> Option<Curve<'a>> {
         let z = nalgebra::Vector3::from_iterator(z.iter().copied().chain(std::iter::repeat(0.0)).take(3));
         let constants = Constants::from_logarithms(&(Constants::published().logarithms() + self.root * z));
         let mut continuation = PhysicsSwitch::new(&part.contact, constants).continuation();
-        Some(LazyCurve::new(loads_n, move |i| {
+        Some(Curve::new(loads_n, move |i| {
             let state = continuation.state(loads_n[i]).ok()?;
             Some(LoadState { friction_n: state.friction_n, silicone_share: state.silicone_share })
         }))

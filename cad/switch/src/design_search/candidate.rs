@@ -4,7 +4,7 @@
 use pinswitch_friction::{Substrate, Transition};
 
 use super::belief::{Belief, Believed, ModelError, Part};
-use super::lazy_curve::LazyCurve;
+use super::curve::Curve;
 use crate::config::Configuration;
 use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
@@ -133,14 +133,13 @@ impl<'a> Trial<'a> {
     }
 
     /// Returns the ratio of the threshold between the loads of `predict` to that of `curve`, which
-    /// has fewer loads; 1 if the threshold is not between the loads of `predict`. `None` if the
-    /// curve has no threshold.
-    pub(super) fn settled(&self, part: &Part, curve: &mut LazyCurve<'_>) -> Option<f64> {
+    /// has fewer loads; 1 if the threshold is not between the loads of `predict`. `None` if a
+    /// state of the curve cannot be computed.
+    pub(super) fn settled(&self, part: &Part, curve: &mut Curve<'_>) -> Option<f64> {
         let here = curve.switching()?;
         let between = |from: usize, to: usize| {
             let loads = &self.predicted_n[from..to];
-            let fine = self.belief.best(part, loads)?.complete()?;
-            Transition::threshold_n(loads, &fine.silicone_share)
+            Transition::threshold_n(loads, &self.belief.best(part, loads)?.silicone_shares()?)
         };
         let count = self.predicted_n.len();
         let next = self.predicted_n.partition_point(|l| *l < here.threshold_n);
@@ -159,7 +158,7 @@ impl<'a> Trial<'a> {
 
     /// Returns the values of the targets of a curve whose threshold is multiplied by a factor;
     /// `None` if a state that they need cannot be computed.
-    pub(super) fn values(&self, curve: &mut LazyCurve<'_>, threshold_factor: f64) -> Option<Vec<f64>> {
+    pub(super) fn values(&self, curve: &mut Curve<'_>, threshold_factor: f64) -> Option<Vec<f64>> {
         let value = |t: &Target| {
             let value = curve.value(t.quantity, self.range_n)?;
             Some(if t.quantity == Quantity::Threshold { value * threshold_factor } else { value })
@@ -203,7 +202,7 @@ impl<'a> Trial<'a> {
     ) -> Option<Vec<f64>> {
         let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, &draw.made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
-        let curve = self.belief.lazy_curve(&made, &self.loads_n, &draw.constants)?;
+        let curve = self.belief.curve(&made, &self.loads_n, &draw.constants)?;
         let (curve, threshold_factor) = error.applied(curve, &self.loads_n, draw.model);
         self.values(&mut curve.expecting(next), threshold_factor)
     }
@@ -220,7 +219,7 @@ impl<'a> Trial<'a> {
         part: &Part,
         hardness_shore_a: f64,
         made: &[f64; SOURCES],
-    ) -> Option<LazyCurve<'_>> {
+    ) -> Option<Curve<'_>> {
         let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         self.belief.best(&made, &self.loads_n)

@@ -7,7 +7,6 @@ mod blocked;
 mod candidate;
 mod curve;
 mod kinds;
-mod lazy_curve;
 mod linear;
 mod probability;
 mod proposal;
@@ -30,9 +29,8 @@ use space::Space;
 
 pub use belief::{Belief, Believed, ModelError, Part, PublishedPhysics};
 pub use blocked::{Blocked, Change, Missed, Move};
-pub use curve::{Curve, Switching};
+pub use curve::{Curve, LoadState, Switching};
 pub use kinds::differ_in_kind;
-pub use lazy_curve::{LazyCurve, LoadState};
 pub use linear::VarianceShare;
 pub use probability::Probability;
 pub use proposal::{Proposal, TargetResult};

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::candidate::{Draw, Trial, outer_width_mm};
-use super::lazy_curve::LazyCurve;
+use super::curve::Curve;
 use super::linear::{Linear, VarianceShare};
 use super::probability::{Probability, probability};
 use super::sensitivity::{Sensitivity, sensitivities};
@@ -121,7 +121,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
 
 /// Returns a curve as a point of a plot; `None` if it cannot be predicted.
 pub(super) fn pictured(
-    curve: &mut LazyCurve<'_>,
+    curve: &mut Curve<'_>,
     pins: &[usize],
     range_n: (f64, f64),
 ) -> Option<LayoutCandidate> {

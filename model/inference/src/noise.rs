@@ -60,11 +60,14 @@ impl NoiseReference {
     /// Estimates them from readings.
     pub(crate) fn of_readings(readings: &[f64], rows: &Rows) -> Self {
         let quantum = quantum(readings);
-        let mut steps = steps(readings, |row| (rows.series[row], rows.direction[row]));
-        if steps.is_empty() {
-            // No series repeats a reading: those at one load in one direction, of neighbouring series, are the next best.
-            steps = self::steps(readings, |row| (rows.load[row].to_bits(), rows.direction[row]));
-        }
+        let place = |row: usize| (rows.series[row], rows.direction[row]);
+        let mut count: BTreeMap<(usize, bool), usize> = BTreeMap::new();
+        (0..readings.len()).for_each(|row| *count.entry(place(row)).or_default() += 1);
+        let (single, repeated): (Vec<usize>, Vec<usize>) =
+            (0..readings.len()).partition(|row| count[&place(*row)] == 1);
+        let mut steps = steps(readings, repeated, place);
+        // A reading that its series does not repeat is next to those at its load, of neighbouring series.
+        steps.extend(self::steps(readings, single, |row| (rows.load[row].to_bits(), rows.direction[row])));
         steps.sort_by(f64::total_cmp);
         let mean = readings.iter().sum::<f64>() / readings.len() as f64;
         let spread = readings.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / readings.len() as f64;
@@ -74,14 +77,14 @@ impl NoiseReference {
     }
 }
 
-/// Returns the differences of each reading and the one before in its group, over the square root of two.
-fn steps<G: Ord>(readings: &[f64], group: impl Fn(usize) -> G) -> Vec<f64> {
+/// Returns the differences of the reading of each row and of the row before in its group, over the square root of two.
+fn steps<G: Ord>(readings: &[f64], rows: Vec<usize>, group: impl Fn(usize) -> G) -> Vec<f64> {
     let mut last = BTreeMap::new();
     let step = |row: usize| {
         let before: Option<f64> = last.insert(group(row), readings[row]);
         before.map(|before| (readings[row] - before).abs() / std::f64::consts::SQRT_2)
     };
-    (0..readings.len()).filter_map(step).collect()
+    rows.into_iter().filter_map(step).collect()
 }
 
 /// Returns the smallest step between sorted readings if nine tenths of the steps are multiples of it,
@@ -406,16 +409,20 @@ mod tests {
     use crate::random::Random;
     use crate::test_problem::long_rows;
 
-    /// Heavy loads do not hide how close repeated readings are, whether a series repeats them or only the table does.
+    /// Heavy loads do not hide how close repeated readings are, whether all series repeat them, one, or none.
     #[test]
     fn the_reference_is_the_noise_of_repeated_readings() {
-        for length in [8, 1] {
-            let rows = long_rows(600 / length, length);
+        for (length, joined, outlier) in [(8, 0, 0.0), (1, 0, 0.0), (1, 2, 0.0), (1, 2, 20.0)] {
+            let mut rows = long_rows(600 / length, length);
             let mut random = Random::new(5);
-            let readings: Vec<f64> =
+            let mut readings: Vec<f64> =
                 rows.load.iter().map(|load| 50.0 * load + 0.1 * random.normal()).collect();
+            // Two readings in one direction may be of one series, and differ by an outlier.
+            rows.series[joined] = 0;
+            rows.load[joined] = rows.load[0];
+            readings[joined] = readings[0] + outlier;
             let sd = NoiseReference::of_readings(&readings, &rows).repetition_sd;
-            assert!((0.08..0.12).contains(&sd), "{length}: {sd}");
+            assert!((0.08..0.12).contains(&sd), "{length} {joined} {outlier}: {sd}");
         }
     }
 }

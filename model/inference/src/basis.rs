@@ -1,6 +1,7 @@
 //! Basis of a kernel at the rows of a table. Rows with the same covariate are equal, and are kept once.
 
 use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
 
 use nalgebra::DMatrix;
 
@@ -51,30 +52,37 @@ impl Basis {
 
 impl From<DMatrix<f64>> for Basis {
     fn from(matrix: DMatrix<f64>) -> Self {
+        // Each column is a row of the basis, which is then contiguous.
         let (columns, rows) = (matrix.ncols(), matrix.transpose());
-        let (mut values, mut of_reading): (Vec<f64>, Vec<u32>) = (Vec::new(), Vec::new());
-        let mut known: HashMap<u64, u32> = HashMap::new();
-        for row in rows.column_iter() {
-            let next = u32::try_from(values.len() / columns.max(1)).unwrap_or(u32::MAX);
-            let key = row.iter().fold(0, |key, x| fold(key, x.to_bits()));
-            let seen = *known.entry(key).or_insert(next);
-            let is_equal = seen < next && {
-                let before = &values[seen as usize * columns..][..columns];
-                before.iter().zip(&row).all(|(a, b)| a.to_bits() == b.to_bits())
-            };
-            of_reading.push(if is_equal { seen } else { next });
-            if !is_equal {
-                // The first row of its key, or one that only has the key of another.
-                values.extend(&row);
-            }
-        }
+        let (mut values, mut known) = (Vec::new(), HashMap::new());
+        let mut number = |reading: usize| {
+            let row = &rows.as_slice()[reading * columns..(reading + 1) * columns];
+            let next = u32::try_from(known.len()).unwrap_or(u32::MAX);
+            *known.entry(Bits(row)).or_insert_with(|| {
+                values.extend(row);
+                next
+            })
+        };
+        let of_reading = (0..matrix.nrows()).map(&mut number).collect();
         Self { values, columns, of_reading }
     }
 }
 
-/// Adds a number to a key of numbers: different ones rarely have the same key.
-fn fold(key: u64, number: u64) -> u64 {
-    (key.rotate_left(5) ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+/// Numbers that are equal if their bits are.
+struct Bits<'a>(&'a [f64]);
+
+impl PartialEq for Bits<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.iter().map(|x| x.to_bits()).eq(other.0.iter().map(|x| x.to_bits()))
+    }
+}
+
+impl Eq for Bits<'_> {}
+
+impl Hash for Bits<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.iter().for_each(|x| state.write_u64(x.to_bits()));
+    }
 }
 
 #[cfg(test)]

@@ -136,7 +136,7 @@ impl<'a> Candidates<'a> {
     fn add(&mut self, element: Element, relevance: f64, columns: &DMatrix<f64>) {
         self.waiting.push((element, relevance, columns.ncols()));
         self.columns.extend_from_slice(columns.as_slice());
-        if self.waiting.iter().map(|(.., columns)| columns).sum::<usize>() >= BLOCK_COLUMNS {
+        if self.columns.len() >= BLOCK_COLUMNS * columns.nrows() {
             self.whiten();
         }
     }

@@ -235,4 +235,27 @@ mod tests {
         let cut = elevation(&body, Some(4.0));
         assert!(cut.hidden.is_empty(), "{:?}", cut.hidden);
     }
+
+    /// A body that is skipped has no material on the line of sight that is nearer than the point.
+    #[test]
+    fn bodies_that_are_skipped_hide_nothing() {
+        let cone = Solid::prism(&Contour::circle(Point2::new(2.0, 1.0), 3.0), &[], 0.0, 4.0, 0.2).unwrap();
+        let slab = block([(4.0, 0.0), (20.0, 0.0), (20.0, 1.0), (4.0, 1.0)], 1.0, 3.0);
+        let (mut skipped, mut asked) = (0, 0);
+        for body in [seen(&cone, Side::Above), seen(&cone, Side::Left), seen(&slab, Side::Right)] {
+            for i in 0..20 * 12 * 20 {
+                let [u, z, w] = [i % 20, i / 20 % 12, i / 240].map(f64::from);
+                let point = [u - 8.03, 0.51 * z - 0.7, w - 9.97];
+                if body.may_hide(point) {
+                    asked += 1;
+                    continue;
+                }
+                let mut depths = Vec::new();
+                body.crossings(0, point[0], point[1], &mut depths);
+                assert!(depths.iter().all(|depth| *depth <= point[2]), "{point:?} {depths:?}");
+                skipped += 1;
+            }
+        }
+        assert!(skipped > 1000 && asked > 100, "{skipped} {asked}");
+    }
 }

@@ -2,17 +2,19 @@
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
+use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-/// One row per reading, and one column per coefficient.
+/// One row per reading, and one column per coefficient. Clones share their numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basis {
     /// The different rows, one after the other.
-    values: Vec<f64>,
+    values: Arc<[f64]>,
     columns: usize,
     /// Number of the row among them, for each reading.
-    of_reading: Vec<u32>,
+    of_reading: Arc<[u32]>,
 }
 
 impl Basis {
@@ -44,6 +46,16 @@ impl Basis {
         Self { of_reading: readings.iter().map(|i| self.of_reading[*i]).collect(), ..self.clone() }
     }
 
+    /// Returns one row per series, if the basis is constant within each.
+    pub(crate) fn of_series(&self, ranges: &[Range<usize>]) -> Option<DMatrix<f64>> {
+        let is_constant = |range: &Range<usize>| {
+            let of_series = &self.of_reading[range.clone()];
+            of_series.iter().all(|number| *number == of_series[0])
+        };
+        let value = |series: usize, column: usize| self.at(ranges[series].start)[column];
+        ranges.iter().all(is_constant).then(|| DMatrix::from_fn(ranges.len(), self.columns, value))
+    }
+
     /// Returns the columns, multiplied by a factor for each reading.
     pub(crate) fn times(&self, factors: &[f64]) -> DMatrix<f64> {
         DMatrix::from_fn(self.readings(), self.columns, |i, j| self.at(i)[j] * factors[i])
@@ -64,7 +76,7 @@ impl From<DMatrix<f64>> for Basis {
             })
         };
         let of_reading = (0..matrix.nrows()).map(&mut number).collect();
-        Self { values, columns, of_reading }
+        Self { values: values.into(), columns, of_reading }
     }
 }
 

@@ -312,7 +312,7 @@ fn log_weight_term(weights: &DVector<f64>) -> f64 {
 fn student_weights(at: &ScaleProblem<'_>, point: &ScalePoint) -> DVector<f64> {
     let noise = at.noise(&point.scales);
     let white = point.marginal.white_residual(&point.solution.mean);
-    let precision_residual = point.marginal.whitening.unwhiten_transposed(&white);
+    let precision_residual = point.marginal.whitening.whiten_transposed(&white);
     let quantum = noise.quantum_variance();
     DVector::from_fn(at.problem.len(), |row, _| {
         if at.weights[row] == EXCLUDED {

@@ -1,8 +1,8 @@
 //! Prediction of each series from the others, exact for the linear model at the mode.
 //!
 //! With `H = I - A_s C A_s'` for the white columns `A_s` of a series and the posterior covariance
-//! `C`, the residual of the series given all others is `L H^-1 L^-1 (r - A b)`, where `V = L L'` is its
-//! noise covariance. Nothing is fitted again.
+//! `C`, the residual of the series given all others is `W^-1 H^-1 W (r - A b)`, where `W` is the root of its
+//! precision. Nothing is fitted again.
 //!
 //! A series that alone determines a coefficient is predicted worse from the others than a new series
 //! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
@@ -54,7 +54,7 @@ impl Linearised {
         let zeros = vec![0.0; residual.len()];
         let mut left_out =
             LeftOut { residuals: zeros.clone(), of_new_series: zeros, log_predictive: Vec::new() };
-        for (range, factor) in marginal.whitening.ranges.iter().zip(&marginal.whitening.factors) {
+        for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
             let (first, length) = (range.start, range.len());
             let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
             let explained = &part * part.transpose();
@@ -63,16 +63,19 @@ impl Linearised {
             let share = share.cholesky()?;
             let own = residual.rows(first, length).into_owned();
             let scaled = share.solve(&own);
-            let unscaled = factor * &scaled;
-            left_out.residuals[range.clone()].copy_from_slice(unscaled.as_slice());
+            let unscaled = &mut left_out.residuals[range.clone()];
+            unscaled.copy_from_slice(scaled.as_slice());
+            root.colour(unscaled);
             // Standard normal under the model, whatever the leverage of the series.
             let standard = share.l_dirty().lower_triangle().tr_mul(&scaled);
-            let new = factor * (again.l() * standard);
-            left_out.of_new_series[range.clone()].copy_from_slice(new.as_slice());
-            let noise = factor.diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let new = &mut left_out.of_new_series[range.clone()];
+            new.copy_from_slice((again.l() * standard).as_slice());
+            root.colour(new);
             let precision = share.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
             let normaliser = 0.5 * length as f64 * libm::log(2.0 * std::f64::consts::PI);
-            left_out.log_predictive.push(-0.5 * own.dot(&scaled) + precision - noise - normaliser);
+            left_out
+                .log_predictive
+                .push(-0.5 * own.dot(&scaled) + precision - root.log_determinant - normaliser);
         }
         Some(left_out)
     }
@@ -123,8 +126,8 @@ pub fn leave_groups_out(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::covariance::Noise;
     use crate::marginal::Marginal;
-    use crate::noise::Noise;
     use crate::test_problem::{ROWS_PER_SERIES, fitted, full_hypothesis, problem, rows};
 
     /// Leaving one series out of many is a group of one series.

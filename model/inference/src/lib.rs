@@ -102,8 +102,11 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod autoregression;
 mod basis;
+mod candidates;
 mod coefficients;
+mod covariance;
 mod design;
 mod evidence;
 mod expected_error;
@@ -113,7 +116,6 @@ mod hypothesis;
 mod information;
 pub mod kernel;
 mod leave_out;
-mod lower_triangular;
 mod marginal;
 mod noise;
 mod outliers;
@@ -129,6 +131,7 @@ mod search;
 mod test_problem;
 mod thinning;
 mod uncertainty;
+mod whitening;
 
 pub use basis::Basis;
 pub use coefficients::{Coefficient, Coefficients};

@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::noise::{Noise, Whitening};
+use crate::covariance::Noise;
+use crate::whitening::Whitening;
 
 /// Products of a design with the precision of the noise.
 #[derive(Clone, Debug)]
@@ -20,9 +21,9 @@ pub(crate) struct Marginal {
     /// `r'V^-1 r + ln det V + n ln 2 pi`.
     constant: f64,
     pub(crate) whitening: Whitening,
-    /// `L^-1 A`, with `V = L L'`.
+    /// `W A`, with `W V W' = I`.
     pub(crate) white_matrix: DMatrix<f64>,
-    /// `L^-1 r`.
+    /// `W r`.
     pub(crate) white_target: DVector<f64>,
 }
 
@@ -44,7 +45,7 @@ impl Marginal {
         noise: &Noise<'_>,
         ranges: &[std::ops::Range<usize>],
     ) -> Option<Self> {
-        let whitening = noise.whitening(ranges)?;
+        let whitening = Whitening::new(noise, ranges)?;
         let white_matrix = whitening.whiten(matrix);
         let white_target = whitening.whiten_vector(target);
         let transposed = white_matrix.transpose();
@@ -80,7 +81,7 @@ impl Marginal {
         log_likelihood.is_finite().then_some((factor, sd, log_likelihood))
     }
 
-    /// Returns `L^-1 (r - A b)`.
+    /// Returns `W (r - A b)`.
     pub(crate) fn white_residual(&self, mean: &DVector<f64>) -> DVector<f64> {
         &self.white_target - &self.white_matrix * mean
     }
@@ -112,7 +113,7 @@ pub(crate) fn posterior_mean(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::Noise;
+    use crate::covariance::Noise;
     use crate::test_problem::{fitted, full_hypothesis, problem};
 
     /// Density of a normal distribution with a dense covariance.

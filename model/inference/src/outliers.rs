@@ -7,12 +7,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::covariance::Noise;
 use crate::fit::Fit;
 use crate::leave_out::Linearised;
-use crate::noise::{EXCLUDED, Noise};
+use crate::noise::EXCLUDED;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, student_tail};
 use crate::score::variance_gain;
+use crate::whitening::Whitening;
 
 /// Prior probability that a series has a gross error, in one direction or both.
 const SERIES_PROBABILITY: f64 = 0.01;
@@ -104,7 +106,7 @@ impl Outliers {
         let point = &linearised.point;
         let noise = noise_of(problem, linearised, &fit.mode.weights);
         let white = point.marginal.white_residual(&point.solution.mean);
-        let precise = point.marginal.whitening.unwhiten_transposed(&white);
+        let precise = point.marginal.whitening.whiten_transposed(&white);
         let quantum = noise.quantum_variance();
         let (mut squares, mut count) = (0.0, 0.0);
         for row in (0..problem.len()).filter(|row| fit.mode.weights[*row] != EXCLUDED) {
@@ -128,7 +130,7 @@ impl Outliers {
         let weights = fit.mode.weights.map(|weight| if weight == EXCLUDED { 1.0 } else { weight });
         let noise = noise_of(problem, linearised, &weights);
         let prior = libm::log(SERIES_PROBABILITY / (1.0 - SERIES_PROBABILITY));
-        let whitening = noise.whitening(&problem.ranges)?;
+        let whitening = Whitening::new(&noise, &problem.ranges)?;
         let white_matrix = whitening.whiten(&linearised.design.matrix);
         let difference = &linearised.design.target - &linearised.design.matrix * &solution.mean;
         let residual = whitening.whiten_vector(&difference);
@@ -157,7 +159,8 @@ impl Outliers {
                     if ones.sum() < 1.5 {
                         return None;
                     }
-                    let column = &whitening.inverses[series] * ones;
+                    let mut column = ones;
+                    whitening.roots[series].whiten(column.as_mut_slice());
                     let (information, score) = (column.dot(&(&share * &column)), column.dot(&own));
                     let scale = SERIES_SCALE * problem.reference.repetition_sd;
                     let matrix = DMatrix::from_element(1, 1, information);

@@ -1,10 +1,10 @@
 //! Prediction of the rows of new series, with the constants and effects of the fitted ones.
 
+use crate::covariance::Noise;
 use crate::design::Design;
 use crate::expected_error::SessionView;
 use crate::fit::{DEGREES_OF_FREEDOM, Fit};
 use crate::leave_out::Linearised;
-use crate::noise::Noise;
 use crate::posterior::Posterior;
 use crate::problem::{Problem, ProblemError, Rows, check_rows};
 
@@ -80,7 +80,7 @@ fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<P
     Some(
         (0..rows.len())
             .map(|row| {
-                let own = noise.covariance(&(row..row + 1))[(0, 0)];
+                let own = noise.variance(row);
                 let heavy = tails * noise.independent_variance(row);
                 let variance = spread.row(row).norm_squared() + new_variance[row] + own + heavy;
                 Prediction { mean: mean[row], sd: variance.sqrt() }

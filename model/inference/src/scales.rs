@@ -4,13 +4,16 @@
 //! Thompson and Cullis 1995) in place of the second derivatives of the marginal likelihood.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::covariance::{Derivative, Noise};
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
-use crate::noise::{AUTOREGRESSIONS, Derivative, Noise, SCALES, Scales};
+use crate::noise::{AUTOREGRESSIONS, SCALES, Scales};
 use crate::problem::Problem;
+use crate::whitening::PrecisionRoot;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
 const DAMPING: f64 = 0.05;
@@ -167,13 +170,15 @@ impl ScaleProblem<'_> {
         let (marginal, solution) = (&point.marginal, &point.solution);
         let white_residual = marginal.white_residual(&solution.mean);
         let leverage = &marginal.white_matrix * solution.root.transpose();
-        for (range, inverse) in marginal.whitening.ranges.iter().zip(&marginal.whitening.inverses) {
+        for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
             let (first, length) = (range.start, range.len());
-            let alpha = inverse.tr_mul(&white_residual.rows(first, length));
-            let series = SeriesPrecision { inverse, leverage: leverage.rows(first, length).into_owned() };
+            let mut alpha = white_residual.rows(first, length).into_owned();
+            root.whiten_transposed(alpha.as_mut_slice());
+            let leverage = leverage.rows(first, length).into_owned();
+            let series = SeriesPrecision::new(&noise, range, root, leverage);
             for scale in 0..SCALES {
                 let derivative = noise.derivative(range, scale);
-                let tangent = derivative.times(&alpha);
+                let tangent = derivative.times(alpha.as_slice());
                 gradient[scale] += 0.5 * (alpha.dot(&tangent) - series.trace_with(&derivative));
                 tangents.view_mut((first, scale), (length, 1)).copy_from(&tangent);
             }
@@ -191,31 +196,56 @@ impl ScaleProblem<'_> {
     }
 }
 
-/// Precision `P = L'^-1 (I - Z Z') L^-1` of a series, with the coefficients integrated.
+/// Precision `P = W' (I - Z Z') W` of a series, with the coefficients integrated.
 struct SeriesPrecision<'a> {
-    inverse: &'a DMatrix<f64>,
+    root: &'a PrecisionRoot,
     /// `Z`.
     leverage: DMatrix<f64>,
+    /// Diagonal of `P`.
+    diagonal: Vec<f64>,
+    /// Diagonal of `A P`, with the covariance `A` of the process; zeros without one.
+    of_process: Vec<f64>,
 }
 
-impl SeriesPrecision<'_> {
+impl<'a> SeriesPrecision<'a> {
+    fn new(noise: &Noise<'_>, range: &Range<usize>, root: &'a PrecisionRoot, leverage: DMatrix<f64>) -> Self {
+        // With the diagonal `D` of the independent noise, `A = E - D`, and `P = E^-1 - M M'`.
+        let (repetition, shared) = root.precision();
+        let process = noise.process(range);
+        let mut diagonal = repetition.clone();
+        let mut of_process = vec![0.0; range.len()];
+        if process.is_some() {
+            let independent = noise.independent_variances(range);
+            of_process =
+                repetition.iter().zip(independent).map(|(precision, d)| 1.0 - d * precision).collect();
+        }
+        let integrated = leverage.column_iter().map(|column| {
+            let mut column: Vec<f64> = column.iter().copied().collect();
+            root.whiten_transposed(&mut column);
+            column
+        });
+        for column in shared.into_iter().chain(integrated) {
+            diagonal.iter_mut().zip(&column).for_each(|(sum, x)| *sum -= x * x);
+            if let Some(process) = &process {
+                let product = process.times(&column);
+                let terms = product.iter().zip(&column);
+                of_process.iter_mut().zip(terms).for_each(|(sum, (a, x))| *sum -= a * x);
+            }
+        }
+        Self { root, leverage, diagonal, of_process }
+    }
+
     /// Returns the trace of the product with the derivative of a covariance.
     fn trace_with(&self, derivative: &Derivative) -> f64 {
         match derivative {
             Derivative::Factor(factor) => {
-                let white = self.inverse * factor;
+                let mut white = factor.clone();
+                white.as_mut_slice().chunks_exact_mut(factor.nrows()).for_each(|x| self.root.whiten(x));
                 white.norm_squared() - self.leverage.tr_mul(&white).norm_squared()
             }
-            Derivative::Diagonal(diagonal) => {
-                let leverage = self.inverse.transpose() * &self.leverage;
-                let precision =
-                    |i: usize| self.inverse.column(i).norm_squared() - leverage.row(i).norm_squared();
-                diagonal.iter().enumerate().map(|(i, d)| d * precision(i)).sum()
-            }
-            Derivative::Dense(dense) => {
-                let leverage = self.inverse.transpose() * &self.leverage;
-                let precision = self.inverse.transpose() * self.inverse - &leverage * leverage.transpose();
-                precision.dot(dense)
+            Derivative::Repetition { growth, own, .. } => {
+                let term = |i: usize| 2.0 * growth[i] * (own[i] * self.diagonal[i] + self.of_process[i]);
+                (0..growth.len()).map(term).sum()
             }
         }
     }

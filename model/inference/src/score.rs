@@ -7,11 +7,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::design::{Component, Design, Role, added_column, kernel_columns};
+use crate::candidates::{Candidate, Candidates};
+use crate::design::{Component, Design, Role, added_column};
 use crate::fit::Fit;
 use crate::half_t::HalfT;
 use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
-use crate::marginal::Marginal;
 use crate::problem::Problem;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
 use crate::scales::ScaleProblem;
@@ -94,80 +94,6 @@ struct EffectGain {
     limits: SizeLimits,
 }
 
-/// White columns of an element.
-struct Candidate {
-    element: Element,
-    /// `x'V^-1 x`, before the coefficients of the fit are integrated.
-    gram: DMatrix<f64>,
-    /// `A'V^-1 x`.
-    cross: DMatrix<f64>,
-    /// `x'V^-1 r`.
-    moment: DVector<f64>,
-    /// Largest change of a reading per size, relative to the smallest relevant one.
-    relevance: f64,
-}
-
-/// Columns that are whitened together, so that each series' factor is read once for all of them.
-const BLOCK_COLUMNS: usize = 64;
-
-/// Candidates whose columns are whitened in blocks.
-struct Candidates<'a> {
-    marginal: &'a Marginal,
-    /// The white matrix of the fit, transposed.
-    transposed: DMatrix<f64>,
-    /// Element, relevance and number of columns of each candidate of the block.
-    waiting: Vec<(Element, f64, usize)>,
-    /// Their columns, one after the other.
-    columns: Vec<f64>,
-    done: Vec<Candidate>,
-}
-
-impl<'a> Candidates<'a> {
-    fn new(marginal: &'a Marginal) -> Self {
-        Self {
-            marginal,
-            transposed: marginal.white_matrix.transpose(),
-            waiting: Vec::new(),
-            columns: Vec::new(),
-            done: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, element: Element, relevance: f64, columns: &DMatrix<f64>) {
-        self.waiting.push((element, relevance, columns.ncols()));
-        self.columns.extend_from_slice(columns.as_slice());
-        if self.columns.len() >= BLOCK_COLUMNS * columns.nrows() {
-            self.whiten();
-        }
-    }
-
-    fn whiten(&mut self) {
-        let count = self.waiting.iter().map(|(.., columns)| columns).sum();
-        let columns =
-            DMatrix::from_vec(self.marginal.white_target.len(), count, std::mem::take(&mut self.columns));
-        let white = self.marginal.whitening.whiten(&columns);
-        let cross = &self.transposed * &white;
-        let moment = white.tr_mul(&self.marginal.white_target);
-        let mut first = 0;
-        for (element, relevance, count) in self.waiting.drain(..) {
-            let own = white.columns(first, count);
-            self.done.push(Candidate {
-                element,
-                gram: own.tr_mul(&own),
-                cross: cross.columns(first, count).into_owned(),
-                moment: moment.rows(first, count).into_owned(),
-                relevance,
-            });
-            first += count;
-        }
-    }
-
-    fn finish(mut self) -> Vec<Candidate> {
-        self.whiten();
-        self.done
-    }
-}
-
 impl<'a> Scores<'a> {
     /// Prepares the candidates; `None` if the fit's design is not finite.
     pub(crate) fn new(problem: &'a Problem, fit: &Fit) -> Option<Self> {
@@ -178,24 +104,21 @@ impl<'a> Scores<'a> {
         let scale_problem =
             ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
         let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
-        let mut collected = Candidates::new(&point.marginal);
+        let mut collected = Candidates::new(&point.marginal, &design.channels);
         for (index, effect) in space.effects.iter().enumerate() {
             for form in 0..effect.starts.len() {
                 let element = Element { member: Member::Effect(index), form };
                 let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
                 if let Some(column) = added {
                     let relevance = relevance(&column, &problem.rows.relevant[index]);
-                    collected.add(element, relevance, &DMatrix::from_columns(&[column]));
+                    collected.add_effect(element, relevance, &column);
                 }
             }
         }
         for (index, kernel) in space.kernels.iter().enumerate() {
             for form in 0..kernel.variants.len() {
                 let element = Element { member: Member::Kernel(index), form };
-                let columns = kernel_columns(space, &problem.rows, &design.channels, index, form);
-                if columns.amax() > 1e-9 {
-                    collected.add(element, 0.0, &columns);
-                }
+                collected.add_kernel(element, &problem.rows.bases[index][form], kernel.channel);
             }
         }
         let candidates = collected.finish();

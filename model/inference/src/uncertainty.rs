@@ -85,10 +85,11 @@ fn derivatives_of_variance(at: &ScaleProblem<'_>, point: &ScalePoint, coefficien
     let column = point.solution.covariance.column(coefficient);
     let white = &point.marginal.white_matrix * column;
     let noise = at.noise(&point.scales);
-    for (range, inverse) in point.marginal.whitening.ranges.iter().zip(&point.marginal.whitening.inverses) {
-        let alpha = inverse.tr_mul(&white.rows(range.start, range.len()));
+    for (range, root) in point.marginal.whitening.ranges.iter().zip(&point.marginal.whitening.roots) {
+        let mut alpha = white.rows(range.start, range.len()).into_owned();
+        root.whiten_transposed(alpha.as_mut_slice());
         for scale in 0..SCALES {
-            slopes[scale] += alpha.dot(&noise.derivative(range, scale).times(&alpha));
+            slopes[scale] += alpha.dot(&noise.derivative(range, scale).times(alpha.as_slice()));
         }
     }
     for (i, (component, log_sd)) in point.log_sd.iter().enumerate() {

@@ -215,11 +215,7 @@ impl Evidence {
             specimens: self.setup.specimens.clone(),
         };
         let mut new_rows = setup.rows(&covariates, session);
-        let bases = |structure: &Structure| match session {
-            Session::New => structure.bases_of_new_session(&covariates),
-            Session::Fitted => structure.bases(&covariates),
-        };
-        new_rows.bases = self.setup.structures.iter().map(bases).collect();
+        new_rows.bases = structure::bases(&self.setup.structures, &covariates, session);
         let predicted = self
             .posterior
             .predict(&self.problem, &new_rows)
@@ -338,7 +334,7 @@ impl Setup {
                 levels(&self.mounts, |label| &label.mount),
                 levels(&self.specimens, |label| &label.specimen),
             ],
-            bases: self.structures.iter().map(|structure| structure.bases(rows)).collect(),
+            bases: structure::bases(&self.structures, rows, Session::Fitted),
             discrepancies: discrepancies.collect(),
             relevant: relevant.collect(),
             is_new_session: session == Session::New,

@@ -4,6 +4,7 @@
 use nalgebra::DMatrix;
 use pinswitch_inference::{Basis, Kernel, kernel};
 
+use super::Session;
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
 use crate::effects::{Abscissa, REFERENCE_LOAD_N};
@@ -106,12 +107,12 @@ impl Structure {
     }
 
     /// Returns the bases at the rows of the fitted table.
-    pub(super) fn bases(&self, rows: &Covariates) -> Vec<Basis> {
+    fn bases(&self, rows: &Covariates) -> Vec<Basis> {
         self.bases.iter().map(|variant| variant.columns(rows).into()).collect()
     }
 
     /// Returns the bases at the rows of a new session: what a session draws again has its mean.
-    pub(super) fn bases_of_new_session(&self, rows: &Covariates) -> Vec<Basis> {
+    fn bases_of_new_session(&self, rows: &Covariates) -> Vec<Basis> {
         if !self.is_session_bound {
             return self.bases(rows);
         }
@@ -119,6 +120,20 @@ impl Structure {
             |mean: &Vec<f64>| DMatrix::from_fn(rows.len(), mean.len(), |_, column| mean[column]).into();
         self.means.iter().map(repeated).collect()
     }
+}
+
+/// Returns the bases of structures at the rows of the fitted session or of a new one. Those of one covariate share them.
+pub(super) fn bases(structures: &[Structure], rows: &Covariates, session: Session) -> Vec<Vec<Basis>> {
+    let mut all: Vec<Vec<Basis>> = Vec::new();
+    for (i, structure) in structures.iter().enumerate() {
+        let is_shared = |other: &Structure| std::rc::Rc::ptr_eq(&other.bases, &structure.bases);
+        let shared = structures[..i].iter().rposition(is_shared).map(|other| all[other].clone());
+        all.push(shared.unwrap_or_else(|| match session {
+            Session::New => structure.bases_of_new_session(rows),
+            Session::Fitted => structure.bases(rows),
+        }));
+    }
+    all
 }
 
 /// Collects the kernels of a table.

@@ -66,17 +66,23 @@ impl From<DMatrix<f64>> for Basis {
     fn from(matrix: DMatrix<f64>) -> Self {
         // Each column is a row of the basis, which is then contiguous.
         let (columns, rows) = (matrix.ncols(), matrix.transpose());
-        let (mut values, mut known) = (Vec::new(), HashMap::new());
-        let mut number = |reading: usize| {
-            let row = &rows.as_slice()[reading * columns..(reading + 1) * columns];
-            let next = u32::try_from(known.len()).unwrap_or(u32::MAX);
-            *known.entry(Bits(row)).or_insert_with(|| {
-                values.extend(row);
-                next
-            })
-        };
-        let of_reading = (0..matrix.nrows()).map(&mut number).collect();
-        Self { values: values.into(), columns, of_reading }
+        let row = |reading: usize| Bits(&rows.as_slice()[reading * columns..(reading + 1) * columns]);
+        let (mut values, mut known, mut of_reading) = (Vec::new(), HashMap::new(), Vec::<u32>::new());
+        for reading in 0..matrix.nrows() {
+            // Most rows are equal to the one before, which needs no hash.
+            let number = match of_reading.last() {
+                Some(last) if row(reading) == row(reading - 1) => *last,
+                _ => {
+                    let next = u32::try_from(known.len()).unwrap_or(u32::MAX);
+                    *known.entry(row(reading)).or_insert_with(|| {
+                        values.extend(row(reading).0);
+                        next
+                    })
+                }
+            };
+            of_reading.push(number);
+        }
+        Self { values: values.into(), columns, of_reading: of_reading.into() }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Robust least squares of the paper's model with drag, offset and gain: the reference that any
 //! calibration has to reach.
 
+use std::collections::HashMap;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::effects::effect_named;
@@ -24,15 +26,18 @@ pub(crate) fn with_rig_terms(baseline: &Model) -> Model {
 }
 
 /// Returns a model, fitted from its constants to readings in newtons at points. Each reading has equal
-/// weight up to 1.345 robust standard deviations.
+/// weight up to 1.345 robust standard deviations. The model has no terms over time or repetition, so that it predicts each setting
+/// once.
 pub(crate) fn least_squares(start: &Model, points: &[Point], readings_n: &[f64]) -> Model {
     let mut model = start.clone();
+    let (settings, of_point) = settings(points);
     for _ in 0..STEPS {
-        let predicted = model.predict(points);
-        let residual: Vec<f64> = readings_n.iter().zip(&predicted).map(|(y, p)| y - p).collect();
+        let predicted = model.predict(&settings);
+        let residual: Vec<f64> = readings_n.iter().zip(&of_point).map(|(y, i)| y - predicted[*i]).collect();
         let weights = huber_weights(&residual);
-        let columns = jacobian(&model, points);
-        let matrix = DMatrix::from_fn(points.len(), columns.len(), |i, j| columns[j][i] * weights[i].sqrt());
+        let columns = jacobian(&model, &settings);
+        let slope = |i: usize, j: usize| columns[j][of_point[i]] * weights[i].sqrt();
+        let matrix = DMatrix::from_fn(points.len(), columns.len(), slope);
         let target = DVector::from_fn(points.len(), |i, _| residual[i] * weights[i].sqrt());
         let mut gram = matrix.tr_mul(&matrix);
         let mut moment = matrix.tr_mul(&target);
@@ -53,6 +58,24 @@ pub(crate) fn least_squares(start: &Model, points: &[Point], readings_n: &[f64])
         }
     }
     model
+}
+
+/// Returns points with different settings, and the number of that of each point.
+fn settings(points: &[Point]) -> (Vec<Point>, Vec<usize>) {
+    let mut different: Vec<Point> = Vec::new();
+    // Settings with the same condition, load and direction are few.
+    let mut known: HashMap<(usize, u64, u64), Vec<usize>> = HashMap::new();
+    let mut number = |point: &Point| {
+        let alike = known.entry((point.condition, point.load_n.to_bits(), point.sign.to_bits())).or_default();
+        if let Some(number) = alike.iter().find(|number| different[**number].has_setting_of(point)) {
+            return *number;
+        }
+        alike.push(different.len());
+        different.push(*point);
+        different.len() - 1
+    };
+    let of_point = points.iter().map(&mut number).collect();
+    (different, of_point)
 }
 
 fn huber_weights(residual: &[f64]) -> Vec<f64> {

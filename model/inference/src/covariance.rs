@@ -22,7 +22,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::autoregression::Process;
 use crate::noise::{
-    DIRECTION_OFFSET, EXCLUDED, LOAD_GROWTH, LOAD_OFFSET, NoiseReference, SERIES_OFFSET, SERIES_SCALE, Scales,
+    DIRECTION_OFFSET, EXCLUDED, LOAD_GROWTH, LOAD_OFFSET, NoiseReference, SCALES, SERIES_OFFSET,
+    SERIES_SCALE, Scales,
 };
 use crate::problem::Rows;
 
@@ -31,24 +32,38 @@ const EXCLUDED_SD: f64 = 1e5;
 
 /// Noise of the rows of a table, at given scales, weights and sensitivities to friction.
 pub(crate) struct Noise<'a> {
-    pub(crate) rows: &'a Rows,
-    pub(crate) reference: &'a NoiseReference,
-    pub(crate) scales: &'a Scales,
-    pub(crate) weights: &'a DVector<f64>,
-    pub(crate) friction: &'a [f64],
+    rows: &'a Rows,
+    reference: &'a NoiseReference,
+    /// Values of the scales.
+    values: [f64; SCALES],
+    /// Share and correlation of the process.
+    autoregression: (f64, f64),
+    weights: &'a DVector<f64>,
+    friction: &'a [f64],
 }
 
-impl Noise<'_> {
+impl<'a> Noise<'a> {
+    pub(crate) fn new(
+        rows: &'a Rows,
+        reference: &'a NoiseReference,
+        scales: &Scales,
+        weights: &'a DVector<f64>,
+        friction: &'a [f64],
+    ) -> Self {
+        let (values, autoregression) = (scales.values(), scales.autoregression());
+        Self { rows, reference, values, autoregression, weights, friction }
+    }
+
     /// Returns `h` of a row, and its relative derivative with respect to `ln c`.
     fn repetition_sd(&self, row: usize) -> (f64, f64) {
-        let [sigma, growth, ..] = self.scales.values();
-        let square = (growth * self.rows.load[row] / self.reference.mean_load).powi(2);
+        let [sigma, growth, ..] = self.values;
+        let square = (growth * self.relative_load(row)).powi(2);
         (sigma * (1.0 + square).sqrt(), square / (1.0 + square))
     }
 
     /// Returns the variance of a row that it shares with no other one, without the quantum's.
     pub(crate) fn independent_variance(&self, row: usize) -> f64 {
-        (1.0 - self.scales.autoregression().0) * self.repetition_sd(row).0.powi(2)
+        (1.0 - self.autoregression.0) * self.repetition_sd(row).0.powi(2)
     }
 
     /// Returns the variance of a row about its expectation under its weight; that of an excluded row is
@@ -73,7 +88,7 @@ impl Noise<'_> {
 
     /// Returns the process of the rows of a series; `None` if they are not autocorrelated.
     pub(crate) fn process(&self, range: &Range<usize>) -> Option<Process> {
-        let (share, correlation) = self.scales.autoregression();
+        let (share, correlation) = self.autoregression;
         let sd = || range.clone().map(|row| self.repetition_sd(row).0).collect();
         (share > 0.0).then(|| Process::new(&self.rows.order[range.clone()], sd(), share, correlation))
     }
@@ -81,13 +96,13 @@ impl Noise<'_> {
     /// Returns the variance of a row.
     pub(crate) fn variance(&self, row: usize) -> f64 {
         let shared: f64 = self.shared_columns(&(row..row + 1)).iter().flatten().map(|x| x * x).sum();
-        let process = self.scales.autoregression().0 * self.repetition_sd(row).0.powi(2);
+        let process = self.autoregression.0 * self.repetition_sd(row).0.powi(2);
         shared + process + self.own_variance(row) + self.quantum_variance()
     }
 
     /// Returns the columns `U` of a series. Offsets are merged where a direction has one load.
     pub(crate) fn shared_columns(&self, range: &Range<usize>) -> Vec<Vec<f64>> {
-        let [_, _, direction, series, scale, by_load] = self.scales.values();
+        let [_, _, direction, series, scale, by_load] = self.values;
         let is_of = |row: usize, side: bool| self.rows.direction[row] == side;
         let load_of =
             |side: bool| range.clone().find(|row| is_of(*row, side)).map(|row| self.relative_load(row));
@@ -132,7 +147,7 @@ impl Noise<'_> {
 
     /// Returns the derivative of the covariance of a series with respect to the logarithm of a scale.
     pub(crate) fn derivative(&self, range: &Range<usize>, scale: usize) -> Derivative {
-        let root = std::f64::consts::SQRT_2 * libm::exp(self.scales.log[scale]);
+        let root = std::f64::consts::SQRT_2 * self.values[scale];
         let (first, length) = (range.start, range.len());
         let is_second =
             |i: usize, second: bool| if self.rows.direction[first + i] == second { root } else { 0.0 };
@@ -167,8 +182,8 @@ impl Noise<'_> {
     /// Returns the covariance of the rows of a series, element by element.
     #[cfg(test)]
     pub(crate) fn covariance(&self, range: &Range<usize>) -> DMatrix<f64> {
-        let [_, _, direction, series, scale, by_load] = self.scales.values().map(|x| x * x);
-        let (share, correlation) = self.scales.autoregression();
+        let [_, _, direction, series, scale, by_load] = self.values.map(|x| x * x);
+        let (share, correlation) = self.autoregression;
         DMatrix::from_fn(range.len(), range.len(), |i, j| {
             let (a, b) = (range.start + i, range.start + j);
             let mut sum = series + scale * self.friction[a] * self.friction[b];
@@ -248,13 +263,7 @@ pub(crate) mod tests {
             let weight = |row: usize| if is_excluded && row == 4 { EXCLUDED } else { 0.3 + random.uniform() };
             let weights = DVector::from_iterator(rows.len(), (0..rows.len()).map(weight));
             let friction: Vec<f64> = (0..rows.len()).map(|row| 0.3 + 0.1 * (row % 4) as f64).collect();
-            let noise = Noise {
-                rows: &rows,
-                reference: &reference,
-                scales: &scales,
-                weights: &weights,
-                friction: &friction,
-            };
+            let noise = Noise::new(&rows, &reference, &scales, &weights, &friction);
             check(&noise, &(0..rows.len()));
         }
     }

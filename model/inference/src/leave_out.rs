@@ -154,13 +154,7 @@ mod tests {
         let kept = problem.len() - ROWS_PER_SERIES;
         let fewer = rows(6);
         let weights = fit.mode.weights.rows(0, kept).into_owned();
-        let noise = Noise {
-            rows: &fewer,
-            reference: &problem.reference,
-            scales: &point.scales,
-            weights: &weights,
-            friction: &design.channels[1],
-        };
+        let noise = Noise::new(&fewer, &problem.reference, &point.scales, &weights, &design.channels[1]);
         let matrix = design.matrix.rows(0, kept).into_owned();
         let target = design.target.rows(0, kept).into_owned();
         let marginal = Marginal::new(&matrix, &target, &noise, &fewer.ranges()).unwrap();

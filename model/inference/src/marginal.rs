@@ -127,13 +127,13 @@ mod tests {
     fn woodbury_matches_dense_covariance() {
         let problem = problem(6, 0.4);
         let (fit, design, point) = fitted(&problem, &full_hypothesis());
-        let noise = Noise {
-            rows: &problem.rows,
-            reference: &problem.reference,
-            scales: &point.scales,
-            weights: &fit.mode.weights,
-            friction: &design.channels[1],
-        };
+        let noise = Noise::new(
+            &problem.rows,
+            &problem.reference,
+            &point.scales,
+            &fit.mode.weights,
+            &design.channels[1],
+        );
         let mut covariance = DMatrix::zeros(problem.len(), problem.len());
         for range in &problem.ranges {
             let at = (range.start, range.start);
@@ -150,13 +150,13 @@ mod tests {
     fn marginal_likelihood_matches_integration() {
         let problem = problem(3, 0.0);
         let (fit, design, point) = fitted(&problem, &crate::Hypothesis::default());
-        let noise = Noise {
-            rows: &problem.rows,
-            reference: &problem.reference,
-            scales: &point.scales,
-            weights: &fit.mode.weights,
-            friction: &design.channels[1],
-        };
+        let noise = Noise::new(
+            &problem.rows,
+            &problem.reference,
+            &point.scales,
+            &fit.mode.weights,
+            &design.channels[1],
+        );
         let column = DMatrix::from_columns(&[design.matrix.column(0)]);
         let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
         let exact = marginal.log_likelihood(&[0.25]).unwrap();

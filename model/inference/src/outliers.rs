@@ -190,13 +190,13 @@ impl Outliers {
 }
 
 fn noise_of<'a>(problem: &'a Problem, linearised: &'a Linearised, weights: &'a DVector<f64>) -> Noise<'a> {
-    Noise {
-        rows: &problem.rows,
-        reference: &problem.reference,
-        scales: &linearised.point.scales,
+    Noise::new(
+        &problem.rows,
+        &problem.reference,
+        &linearised.point.scales,
         weights,
-        friction: &linearised.design.channels[problem.space.series_scale_channel],
-    }
+        &linearised.design.channels[problem.space.series_scale_channel],
+    )
 }
 
 #[cfg(test)]

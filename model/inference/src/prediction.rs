@@ -74,7 +74,7 @@ fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<P
     let ones = nalgebra::DVector::from_element(rows.len(), 1.0);
     let scales = fit.scales();
     let friction = &design.channels[space.series_scale_channel];
-    let noise = Noise { rows, reference: &problem.reference, scales: &scales, weights: &ones, friction };
+    let noise = Noise::new(rows, &problem.reference, &scales, &ones, friction);
     // The variance of Student's t distribution is larger than the square of its scale.
     let tails = 2.0 / (DEGREES_OF_FREEDOM - 2.0);
     Some(

@@ -57,13 +57,13 @@ pub(crate) struct Slopes {
 
 impl ScaleProblem<'_> {
     pub(crate) fn noise<'b>(&'b self, scales: &'b Scales) -> Noise<'b> {
-        Noise {
-            rows: &self.problem.rows,
-            reference: &self.problem.reference,
+        Noise::new(
+            &self.problem.rows,
+            &self.problem.reference,
             scales,
-            weights: self.weights,
-            friction: &self.design.channels[self.problem.space.series_scale_channel],
-        }
+            self.weights,
+            &self.design.channels[self.problem.space.series_scale_channel],
+        )
     }
 
     /// Evaluates the scales of a mode.

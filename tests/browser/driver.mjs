@@ -3,12 +3,15 @@
 import { createRequire } from 'node:module';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 
 const TIMEOUT_MS = 30_000;
 // The browser can reach this machine only.
-const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+const FLAGS_OF_CHROMIUM = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
   '--hide-scrollbars', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost'];
+
+// Firefox emulates no media features: light, with little motion, and a software renderer.
+const PREFERENCES_OF_FIREFOX = { 'layout.css.prefers-color-scheme.content-override': 1, 'ui.prefersReducedMotion': 1, 'webgl.force-enabled': true };
 
 // Loads puppeteer-core and axe-core from their folder.
 export function tools(folder) {
@@ -28,11 +31,14 @@ export class Findings {
 }
 
 export class Browser {
+  // Starts Chromium, or Firefox if its executable has that name.
   static async start({ tools: folder, executable, flags = [] }) {
     const browser = new Browser();
     browser.tools = tools(folder);
+    browser.isFirefox = basename(executable).startsWith('firefox');
     browser.profile = mkdtempSync(join(tmpdir(), 'pinswitch-browser-'));
-    browser.real = await browser.tools.puppeteer.launch({ executablePath: executable, headless: true, userDataDir: browser.profile, args: [...FLAGS, ...flags] });
+    const options = browser.isFirefox ? { browser: 'firefox', extraPrefsFirefox: PREFERENCES_OF_FIREFOX } : { args: [...FLAGS_OF_CHROMIUM, ...flags] };
+    browser.real = await browser.tools.puppeteer.launch({ executablePath: executable, headless: true, userDataDir: browser.profile, ...options });
     return browser;
   }
 
@@ -42,12 +48,12 @@ export class Browser {
   }
 }
 
-// One page, in its own context without the storage of other visits.
+// One page, in its own context without the storage of other visits. `saves` is the folder of its downloads.
 export class Visit {
-  static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before, touch = false, showsAll = true }) {
+  static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before, saves, showsAll = true }) {
     const visit = new Visit();
     Object.assign(visit, { browser, findings, allowed, problems: [], foreign: [] });
-    visit.context = context ?? await browser.real.createBrowserContext();
+    visit.context = context ?? await browser.real.createBrowserContext(saves ? { downloadBehavior: { policy: 'allow', downloadPath: saves } } : {});
     visit.page = await visit.context.newPage();
     const { page } = visit;
     page.setDefaultTimeout(TIMEOUT_MS);
@@ -73,7 +79,7 @@ export class Visit {
 
   async look(width, height, dark) {
     await this.page.setViewport({ width, height });
-    await this.page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }, { name: 'prefers-reduced-motion', value: 'reduce' }]);
+    if (!this.browser.isFirefox) await this.page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }, { name: 'prefers-reduced-motion', value: 'reduce' }]);
   }
 
   // Opens an address and waits for its design.

@@ -22,6 +22,7 @@ import * as hands from './hands.mjs';
 import * as search from './search.mjs';
 import * as server from './server.mjs';
 import * as tables from './tables.mjs';
+import * as walks from './walks.mjs';
 
 const job = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const scratch = mkdtempSync(join(tmpdir(), 'pinswitch-job-'));
@@ -38,7 +39,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...hands, ...server, ...downloads };
+  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...hands, ...server, ...downloads, ...walks };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 

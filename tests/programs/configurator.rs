@@ -1,7 +1,7 @@
 //! The configurator in Chromium (`tests/browser`), with `pinswitch view` and with the module; the
-//! files of both equal those of the command line, byte for byte.
+//! files of both equal those of the command line, byte for byte. Five walks through the published page in Firefox, too.
 //!
-//! The test needs chromium, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`,
+//! The tests need chromium, firefox-esr, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`,
 //! where `.ci/run` installs them. The module is that of the site in `PINSWITCH_SITE`, a folder that
 //! `cad/app/build` writes in many minutes.
 
@@ -43,6 +43,22 @@ fn the_configurator_works_in_a_browser() {
     let Some(browser) = browser() else {
         return report_skipped("no chromium here; Debian's package is called chromium");
     };
+    run_scenarios(&executable(browser).unwrap(), "");
+}
+
+#[test]
+fn five_walks_end_well_in_firefox() {
+    let Some(firefox) = ["firefox-esr", "firefox"].into_iter().find_map(executable) else {
+        return report_skipped("no Firefox here; Debian's package is called firefox-esr");
+    };
+    if std::env::var_os("PINSWITCH_SITE").is_none() {
+        return report_skipped("the walks need the published page: PINSWITCH_SITE is not set");
+    }
+    run_scenarios(&firefox, "walk");
+}
+
+/// Runs the scenarios in a browser whose names contain a word.
+fn run_scenarios(browser: &Path, only: &str) {
     if !Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success()) {
         return report_skipped("no node here; Debian's package is called nodejs");
     }
@@ -57,11 +73,12 @@ fn the_configurator_works_in_a_browser() {
     let folder = tempfile::tempdir().unwrap();
     let job = serde_json::json!({
         "binary": env!("CARGO_BIN_EXE_pinswitch"),
-        "browser": browser_path(browser),
+        "browser": browser,
         "tools": TOOLS,
         "table": table(folder.path()),
         "pictures": repository("out/configurator"),
         "site": site(),
+        "only": only,
     });
     let file = folder.path().join("job.json");
     std::fs::write(&file, job.to_string()).unwrap();
@@ -71,8 +88,8 @@ fn the_configurator_works_in_a_browser() {
     assert!(run.status.success(), "checks of the configurator failed: {output}");
 }
 
-/// Returns the path of the browser, since puppeteer does not search PATH.
-fn browser_path(name: &str) -> PathBuf {
+/// Returns the path of a program, since puppeteer does not search PATH.
+fn executable(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file()).unwrap()
+    std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file())
 }

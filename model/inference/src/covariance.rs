@@ -239,34 +239,9 @@ impl Derivative {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-    use crate::random::Random;
-    use crate::test_problem::long_rows;
-
-    /// Rows of series with one load and with several, in one direction and in both, some excluded.
-    pub(crate) fn with_noise(autoregression: usize, check: impl Fn(&Noise<'_>, &Range<usize>)) {
-        let mut random = Random::new(8);
-        for (is_one_load, is_one_direction, is_excluded) in
-            [(true, false, false), (false, false, false), (true, true, false), (false, true, true)]
-        {
-            let mut rows = long_rows(1, 12);
-            for row in 0..rows.len() {
-                rows.load[row] = if is_one_load { 3.0 } else { 1.0 + random.uniform() };
-                rows.direction[row] = !is_one_direction && row % 3 == 1;
-                // Neither consecutive nor in the order of the rows.
-                rows.order[row] = (5 * row) % 13;
-            }
-            let readings: Vec<f64> = rows.load.iter().map(|load| load + 0.1 * random.normal()).collect();
-            let reference = NoiseReference { quantum: 0.03, ..NoiseReference::of_readings(&readings, &rows) };
-            let scales = Scales { log: [-2.0, -0.4, -1.5, -3.0, -1.0, -2.6], autoregression };
-            let weight = |row: usize| if is_excluded && row == 4 { EXCLUDED } else { 0.3 + random.uniform() };
-            let weights = DVector::from_iterator(rows.len(), (0..rows.len()).map(weight));
-            let friction: Vec<f64> = (0..rows.len()).map(|row| 0.3 + 0.1 * (row % 4) as f64).collect();
-            let noise = Noise::new(&rows, &reference, &scales, &weights, &friction);
-            check(&noise, &(0..rows.len()));
-        }
-    }
+    use crate::test_problem::with_noise;
 
     /// The parts of the covariance sum to it.
     #[test]

@@ -203,7 +203,7 @@ impl PrecisionRoot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::covariance::tests::with_noise;
+    use crate::test_problem::with_noise;
 
     /// All products agree with the dense covariance.
     #[test]
@@ -217,7 +217,7 @@ mod tests {
                 let root = whitening.whiten(&identity);
                 assert!((&root * &dense * root.transpose() - &identity).amax() < 1e-6);
                 let factor = dense.clone().cholesky().unwrap();
-                let log_determinant: f64 = 2.0 * factor.l().diagonal().map(|d| libm::log(d)).sum();
+                let log_determinant: f64 = 2.0 * factor.l().diagonal().map(libm::log).sum();
                 assert!((whitening.log_determinant - log_determinant).abs() < 1e-9);
                 let transposed = |x: DVector<f64>| whitening.whiten_transposed(&x);
                 let (diagonal, columns) = whitening.roots[0].precision();

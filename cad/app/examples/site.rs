@@ -10,24 +10,41 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use lzma_rust2::{CheckType, LzmaOptions, XzOptions, XzWriter};
 use pinswitch_app::page::{LIBRARIES, PackedModule, configurator_html};
-use pinswitch_app::strip::strip;
+use pinswitch_app::shared_texts::clear_texts;
+use walrus::{ModuleConfig, passes};
+
+/// Exports that the page uses.
+const EXPORTS: [&str; 4] = ["memory", "room", "answer", "free"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
     let [module, folder] = arguments.as_slice() else {
         return Err("expected two arguments: the module and the folder of the site".into());
     };
-    let stripped = strip(&std::fs::read(module)?, &LIBRARIES)
-        .ok_or_else(|| format!("{} is not a WebAssembly module", module.display()))?;
-    let module = PackedModule {
-        base64: STANDARD.encode(xz(&stripped.bytes)?),
-        library_offsets: stripped.text_offsets,
-    };
+    let mut bytes = reachable(&std::fs::read(module)?)
+        .map_err(|error| format!("{} is not a WebAssembly module: {error}", module.display()))?;
+    let library_offsets = clear_texts(&mut bytes, &LIBRARIES);
+    let module = PackedModule { base64: STANDARD.encode(xz(&bytes)?), library_offsets };
     std::fs::create_dir_all(folder)?;
     let page = folder.join("index.html");
     std::fs::write(&page, configurator_html(Some(&module)))?;
     println!("{}", page.display());
     Ok(())
+}
+
+/// Returns a module with what its page can reach: libraries export functions to a tool for bindings that it does not use.
+fn reachable(module: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut config = ModuleConfig::new();
+    config.generate_producers_section(false).generate_name_section(false).generate_dwarf(false);
+    let mut module = config.parse(module)?;
+    let is_unused = |name: &str| !EXPORTS.contains(&name);
+    let unused: Vec<_> =
+        module.exports.iter().filter(|export| is_unused(&export.name)).map(|export| export.id()).collect();
+    unused.into_iter().for_each(|export| module.exports.delete(export));
+    let customs: Vec<_> = module.customs.iter().map(|(custom, _)| custom).collect();
+    customs.into_iter().for_each(|custom| drop(module.customs.delete(custom)));
+    passes::gc::run(&mut module);
+    Ok(module.emit_wasm())
 }
 
 /// Packs a module as XZ. `lc` is the maximum, since in code the previous byte predicts the next one

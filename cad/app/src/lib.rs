@@ -15,7 +15,7 @@
 //!   [`configuration`] and [`changed_values`] convert them.
 //! - [`CalibratedSwitch`] and [`calibrated_curve`] apply a calibrated model to a design whose
 //!   dimensions differ from the rig's.
-//! - [`page`] is the HTML file of the configurator, and [`strip`] reduces the module that it
+//! - [`page`] is the HTML file of the configurator, and [`shared_texts`] clears texts in the module that it
 //!   contains.
 //!
 //! # Examples
@@ -65,7 +65,7 @@ mod refusal;
 mod request;
 #[cfg(feature = "server")]
 pub mod server;
-pub mod strip;
+pub mod shared_texts;
 mod values;
 
 use cache::Cache;

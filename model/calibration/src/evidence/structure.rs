@@ -47,6 +47,8 @@ const MOST_LEVELS: usize = 20;
 pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
 const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
+/// The same for what may also change the scale of the load cell: who measures, how fast, and after which pause.
+const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Gain];
 
 /// A function of the rows that returns a basis.
 type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
@@ -235,11 +237,12 @@ impl Collector<'_> {
         let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
         let time = |rows: &Covariates| rows.column(|p| p.time_s);
         let scale = Interval::of(&time(self.rows));
-        let basis: BasisOfRows = if edges.len() < FEW_SERIES {
-            Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12))
-        } else {
+        let wandering = || -> BasisOfRows {
+            if edges.len() < FEW_SERIES {
+                return Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12));
+            }
             // Between series time moves by steps, equal ones: pauses are not known.
-            let rank = edges.len().min(TIME_RANK);
+            let (edges, rank) = (edges.clone(), edges.len().min(TIME_RANK));
             let share =
                 move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
             Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
@@ -249,13 +252,14 @@ impl Collector<'_> {
         let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
         let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
         let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
-        let mut variants = self.variants(vec![basis], 1.0 - of_intervals - of_waves);
+        let mut variants = self.variants(vec![wandering()], 1.0 - of_intervals - of_waves);
         variants.extend(self.variants(waves, of_waves));
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
-        // The scale of the cell changes by a fault or a calibration; what wanders with the load is an offset.
-        let faults = interval_variants(self.rows.series_count(), 1.0);
-        self.add_variants("time", "time", Record::Time, &[Channel::Gain], faults);
+        // The scale of the cell drifts, as its bridge warms up, or changes by a fault or a calibration.
+        let mut of_gain = self.variants(vec![wandering()], 1.0 - of_intervals);
+        of_gain.extend(interval_variants(self.rows.series_count(), of_intervals));
+        self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
     }
 
     /// Adds offsets that wander from series to series in the order of time, in both directions alike or
@@ -382,7 +386,7 @@ impl Collector<'_> {
             let scale = Interval::of(&speeds);
             let curve: BasisOfRows =
                 Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
-            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), COMMON, vec![curve]);
+            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), MEASURING, vec![curve]);
         } else if distinct(&speeds) == 2 {
             let sign: BasisOfRows =
                 Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
@@ -404,7 +408,7 @@ impl Collector<'_> {
                 "dwell",
                 "dwell",
                 Record::Table(Abscissa::LogDwell, false),
-                &[Channel::Reading, Channel::Friction],
+                &[Channel::Reading, Channel::Friction, Channel::Gain],
                 vec![curve],
             );
         }
@@ -442,10 +446,22 @@ impl Collector<'_> {
         self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
             label.specimen.clone()
         });
-        self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| {
-            label.operator.clone()
-        });
-        self.levels("session", "session", Record::Table(Abscissa::Session, true), switches, |_, label| {
+        self.levels(
+            "operator",
+            "operator",
+            Record::Table(Abscissa::Operator, true),
+            MEASURING,
+            |_, label| label.operator.clone(),
+        );
+        let sessions = &[
+            Channel::Reading,
+            Channel::Drag,
+            Channel::Friction,
+            Channel::Pins,
+            Channel::Silicone,
+            Channel::Gain,
+        ];
+        self.levels("session", "session", Record::Table(Abscissa::Session, true), sessions, |_, label| {
             label.session.clone()
         });
     }

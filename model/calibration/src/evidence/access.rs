@@ -196,7 +196,8 @@ impl Evidence {
     pub(crate) fn is_change(&self, member: Member) -> bool {
         let Member::Kernel(kernel) = member else { return false };
         let structure = &self.setup.structures[kernel];
-        matches!(structure.covariate, "session" | "specimen") && !structure.channel.is_force()
+        let is_of_switch = !structure.channel.is_force() && structure.channel != Channel::Gain;
+        matches!(structure.covariate, "session" | "specimen") && is_of_switch
     }
 
     /// Returns the constant that a change multiplies.

@@ -9,9 +9,9 @@ const WIDTHS = [[375, 740], [820, 1100], [1440, 900]];
 const SLOW_MS = 240_000;
 
 // Walks at each width in a page of its own, as someone who never was there.
-async function at(widths, name, { browser }, site, { findings, pictures, scratch }, walk) {
+async function atEachWidth(name, { browser }, site, { findings, pictures, scratch }, walk) {
   if (site.name !== 'module') return;
-  for (const [width, height] of widths) {
+  for (const [width, height] of WIDTHS) {
     const saves = mkdtempSync(join(scratch, 'walk-'));
     const visit = await Visit.begin(browser, { width, height, findings, saves, showsAll: false });
     visit.saves = saves;
@@ -44,7 +44,7 @@ async function saved(visit, click) {
 }
 
 export async function walkToAFirstSwitch(visit, site, shared) {
-  await at(WIDTHS, 'first-switch', visit, site, shared, async (own) => {
+  await atEachWidth('first-switch', visit, site, shared, async (own) => {
     await own.open(site.address);
     await own.check('the page says what a switch is', () => /friction switch is a pulley/.test(document.querySelector('.intro').textContent));
     const before = await own.text('#friction-text');
@@ -63,7 +63,7 @@ export async function walkToAFirstSwitch(visit, site, shared) {
 }
 
 export async function walkToATarget(visit, site, shared) {
-  await at(WIDTHS, 'target', visit, site, shared, async (own) => {
+  await atEachWidth('target', visit, site, shared, async (own) => {
     await own.open(site.address);
     await own.type('#target-threshold', '24');
     await own.page.keyboard.press('Enter');
@@ -77,7 +77,7 @@ export async function walkToATarget(visit, site, shared) {
 }
 
 export async function walkToTheDrawing(visit, site, shared) {
-  await at(WIDTHS, 'drawing', visit, site, shared, async (own) => {
+  await atEachWidth('drawing', visit, site, shared, async (own) => {
     await own.open(site.address);
     await own.click('#download');
     await own.page.waitForSelector('#file-list button', { timeout: 60_000 });
@@ -87,7 +87,7 @@ export async function walkToTheDrawing(visit, site, shared) {
 }
 
 export async function walkWithATable(visit, site, shared) {
-  await at(WIDTHS, 'table', visit, site, shared, async (own) => {
+  await atEachWidth('table', visit, site, shared, async (own) => {
     await own.open(`${site.address}#v=1&layout.pins=5,8,11`);
     await own.drop('plateaus.csv', shared.table);
     await own.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
@@ -99,7 +99,7 @@ export async function walkWithATable(visit, site, shared) {
 }
 
 export async function walkThroughThePaper(visit, site, shared) {
-  await at(WIDTHS, 'paper', visit, site, shared, async (own) => {
+  await atEachWidth('paper', visit, site, shared, async (own) => {
     await own.open(site.address);
     const curves = [];
     for (const name of ['three-single', 'six-single', 'three-double']) {

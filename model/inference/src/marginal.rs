@@ -113,8 +113,7 @@ pub(crate) fn posterior_mean(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::covariance::Noise;
-    use crate::test_problem::{fitted, full_hypothesis, problem};
+    use crate::test_problem::{fitted, full_hypothesis, noise_of, problem};
 
     /// Density of a normal distribution with a dense covariance.
     fn dense_log_likelihood(target: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
@@ -127,13 +126,7 @@ mod tests {
     fn woodbury_matches_dense_covariance() {
         let problem = problem(6, 0.4);
         let (fit, design, point) = fitted(&problem, &full_hypothesis());
-        let noise = Noise::new(
-            &problem.rows,
-            &problem.reference,
-            &point.scales,
-            &fit.mode.weights,
-            &design.channels[1],
-        );
+        let noise = noise_of(&problem, &fit, &design, &point);
         let mut covariance = DMatrix::zeros(problem.len(), problem.len());
         for range in &problem.ranges {
             let at = (range.start, range.start);
@@ -150,13 +143,7 @@ mod tests {
     fn marginal_likelihood_matches_integration() {
         let problem = problem(3, 0.0);
         let (fit, design, point) = fitted(&problem, &crate::Hypothesis::default());
-        let noise = Noise::new(
-            &problem.rows,
-            &problem.reference,
-            &point.scales,
-            &fit.mode.weights,
-            &design.channels[1],
-        );
+        let noise = noise_of(&problem, &fit, &design, &point);
         let column = DMatrix::from_columns(&[design.matrix.column(0)]);
         let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
         let exact = marginal.log_likelihood(&[0.25]).unwrap();

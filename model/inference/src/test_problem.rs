@@ -144,6 +144,16 @@ pub(crate) fn at_mode(problem: &Problem, hypothesis: &Hypothesis, mode: &Mode) -
     (design, point)
 }
 
+/// The noise of a fit.
+pub(crate) fn noise_of<'a>(
+    problem: &'a Problem,
+    fit: &'a Fit,
+    design: &'a Design,
+    point: &ScalePoint,
+) -> Noise<'a> {
+    Noise::new(&problem.rows, &problem.reference, &point.scales, &fit.mode.weights, &design.channels[1])
+}
+
 /// Weights of 1 for every row.
 pub(crate) fn unit_weights(problem: &Problem) -> DVector<f64> {
     DVector::from_element(problem.len(), 1.0)

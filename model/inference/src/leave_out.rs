@@ -5,12 +5,12 @@
 //! precision. Nothing is fitted again.
 //!
 //! A series that alone determines a coefficient is predicted worse from the others than a new series
-//! at its conditions will be from all. The factor `H = S S'` standardises the residual, and that of
+//! at its conditions will be from all. The square root of `H^-1` standardises the residual, and that of
 //! `I + A_s C A_s'` gives it the spread of a new series.
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Design, Role};
 use crate::fit::{Fit, size_variances};
@@ -57,27 +57,67 @@ impl Linearised {
         for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
             let (first, length) = (range.start, range.len());
             let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
-            let explained = &part * part.transpose();
-            let share = DMatrix::identity(length, length) * (1.0 + 1e-10) - &explained;
-            let again = (DMatrix::identity(length, length) + explained).cholesky()?;
-            let share = share.cholesky()?;
+            let leverage = Leverage::new(&part);
+            // A series that determines a coefficient alone leaves none of its variance.
+            let left = |share: f64| 1.0 + 1e-10 - share;
+            if leverage.shares.iter().any(|share| left(*share) <= 0.0) {
+                return None;
+            }
             let own = residual.rows(first, length).into_owned();
-            let scaled = share.solve(&own);
+            let scaled = leverage.apply(|share| 1.0 / left(share), &own);
             let unscaled = &mut left_out.residuals[range.clone()];
             unscaled.copy_from_slice(scaled.as_slice());
             root.colour(unscaled);
-            // Standard normal under the model, whatever the leverage of the series.
-            let standard = share.l_dirty().lower_triangle().tr_mul(&scaled);
+            // Standard normal under the model, whatever the leverage of the series, and then with the spread of a new one.
+            let new_series = leverage.apply(|share| ((1.0 + share) / left(share)).sqrt(), &own);
             let new = &mut left_out.of_new_series[range.clone()];
-            new.copy_from_slice((again.l() * standard).as_slice());
+            new.copy_from_slice(new_series.as_slice());
             root.colour(new);
-            let precision = share.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>();
+            let precision = 0.5 * leverage.shares.iter().map(|share| libm::log(left(*share))).sum::<f64>();
             let normaliser = 0.5 * length as f64 * libm::log(2.0 * std::f64::consts::PI);
             left_out
                 .log_predictive
                 .push(-0.5 * own.dot(&scaled) + precision - root.log_determinant - normaliser);
         }
         Some(left_out)
+    }
+}
+
+/// Leverage `Z Z'` of a series on the coefficients, by its eigenvalues, which are shares of the variance, and their vectors: as
+/// many as the smaller of rows and coefficients.
+pub(crate) struct Leverage {
+    pub(crate) shares: Vec<f64>,
+    vectors: DMatrix<f64>,
+}
+
+/// Smallest share that changes a residual.
+const LEAST_SHARE: f64 = 1e-12;
+
+impl Leverage {
+    pub(crate) fn new(z: &DMatrix<f64>) -> Self {
+        let is_long = z.nrows() > z.ncols();
+        let eigen = if is_long { z.tr_mul(z) } else { z * z.transpose() }.symmetric_eigen();
+        let kept: Vec<usize> =
+            (0..eigen.eigenvalues.len()).filter(|i| eigen.eigenvalues[*i] > LEAST_SHARE).collect();
+        let shares: Vec<f64> = kept.iter().map(|i| eigen.eigenvalues[*i]).collect();
+        let mut vectors = eigen.eigenvectors.select_columns(&kept);
+        if is_long {
+            vectors = z * vectors;
+            for (mut vector, share) in vectors.column_iter_mut().zip(&shares) {
+                vector /= share.sqrt();
+            }
+        }
+        Self { shares, vectors }
+    }
+
+    /// Returns the product of a function of `Z Z'` and a vector.
+    pub(crate) fn apply(&self, function: impl Fn(f64) -> f64, x: &DVector<f64>) -> DVector<f64> {
+        let rest = function(0.0);
+        let mut along = self.vectors.tr_mul(x);
+        for (along, share) in along.iter_mut().zip(&self.shares) {
+            *along *= function(*share) - rest;
+        }
+        x * rest + &self.vectors * along
     }
 }
 

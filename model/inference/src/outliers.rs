@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::covariance::Noise;
 use crate::fit::Fit;
-use crate::leave_out::Linearised;
+use crate::leave_out::{Leverage, Linearised};
 use crate::noise::EXCLUDED;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, student_tail};
@@ -137,17 +137,12 @@ impl Outliers {
         for (series, range) in whitening.ranges.iter().enumerate() {
             let (first, length) = (range.start, range.len());
             let part = white_matrix.rows(first, length) * solution.root.transpose();
-            let explained = &part * part.transpose();
+            let leverage = Leverage::new(&part);
             let own = residual.rows(first, length).into_owned();
             // Precision of the residual given the other series, and its product with the residual.
             let is_excluded = fit.mode.weights[first] == EXCLUDED;
-            let (share, own) = if is_excluded {
-                let share = (DMatrix::identity(length, length) + explained).try_inverse()?;
-                let own = &share * own;
-                (share, own)
-            } else {
-                (DMatrix::identity(length, length) - explained, own)
-            };
+            let precision = |share: f64| if is_excluded { 1.0 / (1.0 + share) } else { 1.0 - share };
+            let own = if is_excluded { leverage.apply(precision, &own) } else { own };
             // The first direction, the second, or both alike.
             let choices = [vec![false], vec![true], vec![false, true]];
             let scored: Vec<_> = choices
@@ -161,7 +156,8 @@ impl Outliers {
                     }
                     let mut column = ones;
                     whitening.roots[series].whiten(column.as_mut_slice());
-                    let (information, score) = (column.dot(&(&share * &column)), column.dot(&own));
+                    let (information, score) =
+                        (column.dot(&leverage.apply(precision, &column)), column.dot(&own));
                     let scale = SERIES_SCALE * problem.reference.repetition_sd;
                     let matrix = DMatrix::from_element(1, 1, information);
                     let gain = variance_gain(scale, matrix, &DVector::from_element(1, score));

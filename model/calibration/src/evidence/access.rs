@@ -22,20 +22,9 @@ impl Evidence {
         self.source.iter().copied().zip(series).zip(&self.points).map(|((row, series), p)| (row, series, p))
     }
 
-    /// Returns the group of each block of the problem, of which a long series has several, for the group
-    /// of each series.
-    pub(crate) fn groups_of_blocks(&self, group_of_series: impl Fn(usize) -> usize) -> Vec<usize> {
-        let blocks = &self.problem.rows().series;
-        let mut groups = vec![0; blocks.last().map_or(0, |last| last + 1)];
-        for (block, series) in blocks.iter().zip(&self.series) {
-            groups[*block] = group_of_series(*series);
-        }
-        groups
-    }
-
-    /// Returns the first row of the table of a block of the problem.
-    pub(crate) fn row_of_block(&self, block: usize) -> Option<usize> {
-        let place = self.problem.rows().series.iter().position(|of| *of == block)?;
+    /// Returns the first row of the table of a series.
+    pub(crate) fn row_of_series(&self, series: usize) -> Option<usize> {
+        let place = self.series.iter().position(|of| *of == series)?;
         self.source(place)
     }
 
@@ -76,7 +65,7 @@ impl Evidence {
     /// predicted from the others under the best hypothesis; `None` without a finite fit.
     pub fn left_out_residuals_n(&self) -> Option<Vec<f64>> {
         let best = self.posterior.window.first()?;
-        let groups = self.groups_of_blocks(|series| series);
+        let groups = (0..self.series_count()).collect::<Vec<usize>>();
         let residuals = leave_groups_out(&self.problem, best, &groups, |_| Vec::new())?;
         Some(self.in_table_order(&residuals))
     }

@@ -5,9 +5,6 @@ use pinswitch_friction::sort_by_number;
 
 use crate::table::{Frame, PlateauRow, Point};
 
-/// Most rows of a series in the inference, whose time grows with their square.
-const MOST_SERIES_ROWS: usize = 60;
-
 /// Rows of a table with the covariates of kernels.
 #[derive(Clone, Debug)]
 pub(super) struct Covariates {
@@ -17,8 +14,6 @@ pub(super) struct Covariates {
     pub(super) readings: Vec<f64>,
     /// Number of the series of each row, in the order of their first rows.
     pub(super) series: Vec<usize>,
-    /// Number of the block of each row: its series, or a part of a long one.
-    pub(super) block: Vec<usize>,
     /// Rank of the series of each row in the order of sessions and of time.
     pub(super) sequence: Vec<usize>,
     /// Rank in time within the series, from 0.
@@ -85,14 +80,12 @@ impl Covariates {
             series_start_s: vec![0.0; points.len()],
             points,
             readings,
-            block: series.clone(),
             sequence: vec![0; series.len()],
             series,
             wrap_deg,
             labels,
         };
         covariates.order_series();
-        covariates.split_long_series();
         covariates.rank_series();
         Ok(covariates)
     }
@@ -110,20 +103,6 @@ impl Covariates {
                 self.series_start_s[*row] = start;
             }
             first += rows.len();
-        }
-    }
-
-    /// Splits series of more than [`MOST_SERIES_ROWS`] rows in blocks. These then have offsets of their
-    /// own, which is wider than one offset.
-    fn split_long_series(&mut self) {
-        let (mut number, mut rows) = (0, 0);
-        for row in 0..self.len() {
-            let is_new = row > 0 && self.series[row] != self.series[row - 1];
-            if is_new || rows == MOST_SERIES_ROWS {
-                (number, rows) = (number + 1, 0);
-            }
-            self.block[row] = number;
-            rows += 1;
         }
     }
 

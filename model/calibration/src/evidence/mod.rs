@@ -326,7 +326,7 @@ impl Setup {
         let discrepancies = self.priors.iter().map(|prior| self.discrepancies(prior, &forward.points));
         let relevant = self.priors.iter().map(|prior| relevant_changes(prior, rows));
         Rows {
-            series: rows.block.clone(),
+            series: rows.series.clone(),
             direction: rows.points.iter().map(|p| p.sign > 0.0).collect(),
             order: rows.order.clone(),
             load: rows.column(|p| p.load_n),

@@ -141,17 +141,18 @@ fn one_row_is_inconclusive() {
     assert!(!evidence.posterior().candidates.iter().any(|candidate| candidate.size.is_excluded()));
 }
 
-/// A series of many rows is split, so that the time of an inference stays proportional to the rows.
+/// The offset of a long series is one offset, and no drift, drag or other effect.
 #[test]
-fn long_series_are_split() {
-    let mut rows = session(10);
-    rows.truncate(150);
-    for (i, row) in rows.iter_mut().enumerate() {
-        row.series = "0".to_owned();
-        row.repetition = 1 + u32::try_from(i).unwrap();
+fn a_long_series_is_one() {
+    for seed in [10, 11] {
+        let mut rows = session(seed);
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.series = (i / 180).to_string();
+            row.repetition = 1 + u32::try_from(i % 180).unwrap();
+            row.force_n += [0.05, -0.08, 0.03, 0.1, -0.04, 0.02][i / 180];
+        }
+        let evidence = evidence(&rows);
+        assert_eq!(evidence.series_count(), 6);
+        assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
     }
-    let evidence = evidence(&rows);
-    assert_eq!(evidence.problem().rows().series.last(), Some(&2));
-    // Reports count the series, and not its parts.
-    assert_eq!(evidence.series_count(), 1);
 }

@@ -19,8 +19,8 @@ use nalgebra::{Cholesky, DMatrix};
 use crate::model::{Model, Noise, Spread};
 use crate::table::{PlateauRow, Point, groups};
 
-/// Most rows of a block, as in the inference, since the time grows with their square. The parts of a
-/// longer series have independent offsets.
+/// Most rows of a block, since the time grows with their square. The parts of a longer series have
+/// independent offsets, though the inference gives it one.
 const MOST_ROWS: usize = 60;
 
 /// Products of the columns of one series, friction last.

@@ -16,11 +16,7 @@ pub(super) fn bad_series(evidence: &Evidence, rows: &[PlateauRow]) -> Vec<BadSer
     let mut bad: Vec<BadSeries> = Vec::new();
     for wrong in &outliers.series {
         let direction = if wrong.direction { Direction::Concentric } else { Direction::Eccentric };
-        let Some(row) = evidence.row_of_block(wrong.series).and_then(|row| rows.get(row)) else { continue };
-        if bad.iter().any(|b| is_of(b, row, direction.as_str())) {
-            // Another block of the same series.
-            continue;
-        }
+        let Some(row) = evidence.row_of_series(wrong.series).and_then(|row| rows.get(row)) else { continue };
         bad.push(BadSeries {
             session: row.labels.session.clone(),
             series: row.series.clone(),

@@ -36,7 +36,7 @@ impl HeldOut {
 /// have, for lack of loads, is replaced by the other one. Gross errors do not count.
 pub(crate) fn held_out(evidence: &Evidence, fit: &Fit) -> Option<HeldOut> {
     let none = |_| Vec::new();
-    let series = evidence.groups_of_blocks(|series| series % FOLDS);
+    let series: Vec<usize> = (0..evidence.series_count()).map(|series| series % FOLDS).collect();
     let of_series = leave_groups_out(evidence.problem(), fit, &series, none)?;
     let series_n = evidence.root_mean_square_n(&of_series);
     let of_load = load_of_series(evidence);
@@ -45,7 +45,7 @@ pub(crate) fn held_out(evidence: &Evidence, fit: &Fit) -> Option<HeldOut> {
     loads.dedup();
     let loads_n = if loads.len() > FOLDS {
         let fold = |load: &f64| loads.partition_point(|known| *known < load.to_bits()) % FOLDS;
-        let groups = evidence.groups_of_blocks(|series| fold(&of_load[series]));
+        let groups: Vec<usize> = of_load.iter().map(fold).collect();
         evidence.root_mean_square_n(&leave_groups_out(evidence.problem(), fit, &groups, none)?)
     } else {
         series_n
@@ -81,8 +81,7 @@ fn layouts_n(evidence: &Evidence, fit: &Fit, conditions: &[Condition]) -> Option
         let devices = conditions.iter().filter(is_of).filter_map(|c| c.device);
         devices.flat_map(|device| evidence.device_constants(device)).collect()
     };
-    let of_blocks = evidence.groups_of_blocks(|series| groups[series]);
-    let mut residuals = leave_groups_out(evidence.problem(), fit, &of_blocks, own)?;
+    let mut residuals = leave_groups_out(evidence.problem(), fit, &groups, own)?;
     // Rows without pins belong to no layout.
     for ((_, series, _), residual) in evidence.rows().zip(&mut residuals) {
         if groups[series] == layouts.len() {

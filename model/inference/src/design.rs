@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::curved_channel::CurvedChannel;
 use crate::half_t::HalfT;
 use crate::hypothesis::{Hypothesis, Member};
 use crate::noise::Scales;
@@ -75,38 +76,7 @@ pub struct Mode {
     pub(crate) curved: BTreeMap<Component, Vec<f64>>,
 }
 
-/// Bounds of the curved channel: a share of the friction.
-const CURVED: (f64, f64) = (-0.9, 9.0);
-
 impl Mode {
-    /// Returns the value of the curved channel at each row; empty where it is zero.
-    pub(crate) fn curved_channel(&self, space: &Space, rows: &Rows, hypothesis: &Hypothesis) -> Vec<f64> {
-        let (Some(channel), false) = (space.curved_channel, self.curved.is_empty()) else {
-            return Vec::new();
-        };
-        let mut sum = vec![0.0; rows.len()];
-        for (i, random) in space.random_effects.iter().enumerate().filter(|(_, r)| r.channel == channel) {
-            let Some(levels) = self.curved.get(&Component::Random(i)).filter(|l| l.len() == random.levels)
-            else {
-                continue;
-            };
-            for (sum, level) in sum.iter_mut().zip(&rows.levels[i]) {
-                *sum += level.map_or(0.0, |level| levels[level]);
-            }
-        }
-        for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| space.kernels[*k].channel == channel) {
-            let basis = &rows.bases[kernel][variant];
-            let known =
-                self.curved.get(&Component::Kernel(kernel)).filter(|c| c.len() == basis.coefficients());
-            let Some(coefficients) = known else { continue };
-            for (sum, value) in sum.iter_mut().zip(basis.function(coefficients)) {
-                *sum += value;
-            }
-        }
-        sum.iter_mut().for_each(|value| *value = value.clamp(CURVED.0, CURVED.1));
-        sum
-    }
-
     /// Returns the effects of a hypothesis with sizes and shapes.
     pub(crate) fn sized(&self, hypothesis: &Hypothesis) -> Vec<SizedEffect> {
         let effects = hypothesis.effects();
@@ -132,6 +102,8 @@ pub(crate) struct Design {
     pub(crate) target: DVector<f64>,
     /// Sensitivity of the readings to each channel.
     pub(crate) channels: Vec<Vec<f64>>,
+    /// Value of the curved channel at the mode.
+    pub(crate) curved: CurvedChannel,
 }
 
 impl Design {
@@ -146,26 +118,27 @@ impl Design {
     pub(crate) fn of_rows(space: &Space, rows: &Rows, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
         let effects = mode.sized(hypothesis);
         let forward = &rows.forward;
-        let curved = mode.curved_channel(space, rows, hypothesis);
-        let baseline = forward.readings_at(&mode.constants, &effects, &curved);
-        let channels = forward.channels_at(&mode.constants, &effects, &curved);
+        let channel = CurvedChannel::new(mode, space, rows, hypothesis);
+        let curved = &channel.value;
+        let baseline = forward.readings_at(&mode.constants, &effects, curved);
+        let channels = forward.channels_at(&mode.constants, &effects, curved);
         let mut builder = Builder { rows: rows.len(), data: Vec::new(), roles: Vec::new(), mean: Vec::new() };
         let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
-        if let Some(channel) = space.curved_channel {
-            let linear = curved.iter().zip(&channels[channel]).map(|(value, slope)| value * slope);
-            target.iter_mut().zip(linear).for_each(|(target, linear)| *target += linear);
+        if let Some(index) = space.curved_channel {
+            let to_zero = channel.linear_change(&CurvedChannel::default(), &channels[index]);
+            target.iter_mut().zip(to_zero).for_each(|(target, change)| *target -= change);
         }
         for (i, constant) in space.constants.iter().enumerate() {
             let mut moved = mode.constants.clone();
             moved[i] += CONSTANT_STEP;
-            let column = slope(&forward.readings_at(&moved, &effects, &curved), &baseline, CONSTANT_STEP);
+            let column = slope(&forward.readings_at(&moved, &effects, curved), &baseline, CONSTANT_STEP);
             add_scaled(&mut target, &column, mode.constants[i] - constant.mean);
             builder.push(Role::Constant(i), constant.mean, column);
         }
         let sized = effects.iter().filter(|e| space.effects[e.effect].typical_size.is_some());
         let mut contributions = Vec::new();
         for effect in sized {
-            let column = size_sensitivity(space, rows, mode, &effects, *effect, (&baseline, &curved));
+            let column = size_sensitivity(space, rows, mode, &effects, *effect, (&baseline, curved));
             add_scaled(&mut target, &column, effect.size);
             contributions.push((*effect, column.iter().map(|x| x * effect.size).collect::<Vec<f64>>()));
             builder.push(Role::Size(effect.effect), 0.0, column);
@@ -175,7 +148,7 @@ impl Design {
                 let moved = |e: &SizedEffect| if e == effect { shifted(*e, i) } else { *e };
                 let moved: Vec<SizedEffect> = effects.iter().map(moved).collect();
                 let column =
-                    slope(&forward.readings_at(&mode.constants, &moved, &curved), &baseline, SHIFT_STEP);
+                    slope(&forward.readings_at(&mode.constants, &moved, curved), &baseline, SHIFT_STEP);
                 add_scaled(&mut target, &column, effect.shifts[i]);
                 builder.push(Role::Shape(effect.effect, i), 0.0, column);
             }
@@ -186,22 +159,29 @@ impl Design {
                 builder.push(Role::Discrepancy(effect.effect), 0.0, column);
             }
         }
+        let sensitivity = |component: Component| {
+            let slopes = &channels[component.channel(space)];
+            channel.sensitivity(component, slopes)
+        };
         for (i, random) in space.random_effects.iter().enumerate() {
+            let component = Component::Random(i);
+            let sensitivity = sensitivity(component);
             for level in 0..random.levels {
                 let at = |row: usize| rows.levels[i][row] == Some(level);
-                let channel = &channels[random.channel];
-                let column = (0..rows.len()).map(|row| if at(row) { channel[row] } else { 0.0 }).collect();
-                builder.push(Role::Variance(Component::Random(i)), 0.0, column);
+                let column =
+                    (0..rows.len()).map(|row| if at(row) { sensitivity[row] } else { 0.0 }).collect();
+                builder.push(Role::Variance(component), 0.0, column);
             }
         }
         for (kernel, variant) in hypothesis.kernels() {
-            let columns = kernel_columns(space, rows, &channels, kernel, variant);
+            let component = Component::Kernel(kernel);
+            let columns = rows.bases[kernel][variant].times(&sensitivity(component));
             for column in columns.column_iter() {
                 let column = column.iter().copied().collect();
-                builder.push(Role::Variance(Component::Kernel(kernel)), 0.0, column);
+                builder.push(Role::Variance(component), 0.0, column);
             }
         }
-        builder.finish(target, channels)
+        builder.finish(target, channels, channel)
     }
 
     /// Returns the prior variance of each coefficient. Sizes have the variance `size_variance` of
@@ -220,6 +200,11 @@ impl Design {
             Role::Variance(component) => log_sd.get(component).map_or(0.0, |log| libm::exp(2.0 * log)),
         };
         self.roles.iter().map(variance).collect()
+    }
+
+    /// Returns the sensitivity of the readings to the coefficients of a component.
+    pub(crate) fn sensitivity(&self, space: &Space, component: Component) -> Vec<f64> {
+        self.curved.sensitivity(component, &self.channels[component.channel(space)])
     }
 
     /// Returns the columns of a component.
@@ -258,7 +243,7 @@ impl Builder {
         self.mean.push(mean);
     }
 
-    fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>) -> Option<Design> {
+    fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>, curved: CurvedChannel) -> Option<Design> {
         let is_finite =
             self.data.iter().chain(&target).chain(channels.iter().flatten()).all(|x| x.is_finite());
         is_finite.then(|| Design {
@@ -267,6 +252,7 @@ impl Builder {
             prior_mean: self.mean,
             target: DVector::from_vec(target),
             channels,
+            curved,
         })
     }
 }
@@ -314,21 +300,10 @@ pub(crate) fn added_column(
     let start = space.effects[effect].starts.get(shape).copied()?;
     let mut with = rest.clone();
     with.push(SizedEffect { effect, shape, size: start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
-    let curved = mode.curved_channel(space, rows, hypothesis);
+    let curved = CurvedChannel::new(mode, space, rows, hypothesis).value;
     let before = rows.forward.readings_at(&mode.constants, &rest, &curved);
     let after = rows.forward.readings_at(&mode.constants, &with, &curved);
     let column = slope(&after, &before, start);
     let most = column.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     (most > 1e-9 && column.iter().all(|x| x.is_finite())).then(|| DVector::from_vec(column))
-}
-
-/// Returns the columns of a kernel: its basis times the sensitivity to its channel.
-pub(crate) fn kernel_columns(
-    space: &Space,
-    rows: &Rows,
-    channels: &[Vec<f64>],
-    kernel: usize,
-    variant: usize,
-) -> DMatrix<f64> {
-    rows.bases[kernel][variant].times(&channels[space.kernels[kernel].channel])
 }

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use crate::design::{Component, Design, Role};
 use crate::quadrature::{Mixture, log_normal_cdf, log_sum_exp};
 use crate::scales::{ScalePoint, ScaleProblem};
+use crate::variance_gain::VarianceGain;
 
 /// Posterior of the size of an effect, given a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +66,10 @@ pub(crate) fn log_evidence(at: &ScaleProblem<'_>, point: &ScalePoint, log_weight
 fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Component) -> (f64, f64) {
     let space = &at.problem.space;
     let prior = component.prior(space);
-    let mut terms = component_terms(at.design, point, component, &Mixture::half_t(prior));
+    let Some((at_zero, gain)) = component_gain(at.design, point, component) else {
+        return (f64::NEG_INFINITY, 0.0);
+    };
+    let mut terms = gain.terms(prior);
     let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
     if let Component::Random(i) = component {
         let predictive = space.random_effects[i].predictive_prior();
@@ -73,26 +77,17 @@ fn component_integral(at: &ScaleProblem<'_>, point: &ScalePoint, component: Comp
     }
     let all = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
     let variance = terms.iter().map(|(sd, term)| libm::exp(term - all) * sd * sd).sum();
-    (total - point.solution.log_likelihood, variance)
+    (at_zero + total - point.solution.log_likelihood, variance)
 }
 
-/// Returns the standard deviations of a component at the nodes of its prior, each with the logarithm of its joint probability
-/// with the readings.
-pub(crate) fn component_terms(
+/// Returns the log likelihood without the coefficients of a component, and what it gains by their variance; `None` if the
+/// information is not finite.
+pub(crate) fn component_gain(
     design: &Design,
     point: &ScalePoint,
     component: Component,
-    prior: &Mixture,
-) -> Vec<(f64, f64)> {
-    let columns = design.columns_of(component);
-    let mut variances = point.variances.clone();
-    let nodes = prior.nodes.iter().zip(&prior.log_weights);
-    nodes
-        .filter_map(|(sd, weight)| {
-            columns.iter().for_each(|i| variances[*i] = sd * sd);
-            Some((*sd, point.marginal.log_likelihood(&variances)? + weight))
-        })
-        .collect()
+) -> Option<(f64, VarianceGain)> {
+    point.marginal.variance_gain(&point.variances, &design.columns_of(component))
 }
 
 /// A size with a normal prior and its posterior, before the prior is replaced.

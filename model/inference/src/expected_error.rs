@@ -9,13 +9,13 @@
 use nalgebra::DVector;
 
 use crate::design::{Component, Role};
-use crate::evidence::component_terms;
+use crate::evidence::component_gain;
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
 use crate::outliers::Outliers;
 use crate::problem::Problem;
-use crate::quadrature::{Mixture, log_sum_exp};
+use crate::quadrature::log_sum_exp;
 use crate::random::Random;
 
 /// Most hypotheses that are averaged.
@@ -131,7 +131,7 @@ impl SessionView {
             if !of.is_session_bound && !of.is_level_of_session {
                 continue;
             }
-            let channel = &design.channels[of.channel];
+            let channel = design.sensitivity(&problem.space, Component::Kernel(kernel));
             let curve =
                 kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
             if of.is_level_of_session {
@@ -200,9 +200,8 @@ impl<'a> Simulation<'a> {
     fn new(problem: &'a Problem, fit: &'a Fit, linearised: &'a Linearised) -> Self {
         let mut redrawn = Vec::new();
         for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
-            let prior = Mixture::fine_half_t(effect.predictive_prior());
-            let (design, point) = (&linearised.design, &linearised.point);
-            let terms = component_terms(design, point, Component::Random(i), &prior);
+            let gain = component_gain(&linearised.design, &linearised.point, Component::Random(i));
+            let terms = gain.map_or_else(Vec::new, |(_, gain)| gain.fine_terms(effect.predictive_prior()));
             let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
             let mut sum = 0.0;
             let up_to = terms.into_iter().map(|(sd, term)| {
@@ -232,17 +231,16 @@ impl<'a> Simulation<'a> {
 
     /// Returns the mean square that new levels of random effects add.
     fn new_level_variance(&self, sound: &[usize]) -> f64 {
-        let of_row = |row: &usize| -> f64 {
-            let redrawn = self.problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn);
-            redrawn
-                .filter(|(i, _)| self.problem.rows.levels[*i][*row].is_some())
-                .map(|(i, effect)| {
-                    let sd = self.fit.random_effect_sd(i).unwrap_or(0.0);
-                    (sd * self.linearised.design.channels[effect.channel][*row]).powi(2)
-                })
-                .sum()
-        };
-        sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
+        let (problem, design) = (self.problem, &self.linearised.design);
+        let redrawn = problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn);
+        let mean_squares = redrawn.map(|(i, _)| {
+            let sd = self.fit.random_effect_sd(i).unwrap_or(0.0);
+            let channel = design.sensitivity(&problem.space, Component::Random(i));
+            let has_level = |row: &&usize| problem.rows.levels[i][**row].is_some();
+            let squares = sound.iter().filter(has_level).map(|row| (sd * channel[*row]).powi(2));
+            squares.sum::<f64>() / sound.len().max(1) as f64
+        });
+        mean_squares.sum()
     }
 
     /// Returns errors of a session: uncertainty of constants and sizes, and noise.
@@ -280,7 +278,7 @@ impl<'a> Simulation<'a> {
             let drawn = standard_deviations.iter().find(|(_, up_to)| share < *up_to);
             let Some((sd, _)) = drawn.or(standard_deviations.last()) else { continue };
             let values: Vec<f64> = (0..effect.levels).map(|_| sd * random.normal()).collect();
-            let channel = &self.linearised.design.channels[effect.channel];
+            let channel = self.linearised.design.sensitivity(&self.problem.space, Component::Random(*i));
             for (row, level) in self.problem.rows.levels[*i].iter().enumerate() {
                 errors[row] += level.map_or(0.0, |level| values[level] * channel[row]);
             }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::curved_channel::CurvedChannel;
 use crate::design::{Component, Design, Mode, Role};
 use crate::evidence::{Integrals, SizePosterior, log_evidence};
 use crate::hypothesis::{Element, Hypothesis, Member};
@@ -203,9 +204,9 @@ fn loss_by_curvature(
 ) -> f64 {
     let forward = &at.problem.rows.forward;
     let (space, rows) = (&at.problem.space, &at.problem.rows);
-    let [curved_from, curved_to] = [before, after].map(|mode| mode.curved_channel(space, rows, hypothesis));
-    let from = forward.readings_at(&before.constants, &before.sized(hypothesis), &curved_from);
-    let to = forward.readings_at(&after.constants, &after.sized(hypothesis), &curved_to);
+    let (curved_from, curved_to) = (&at.design.curved, CurvedChannel::new(after, space, rows, hypothesis));
+    let from = forward.readings_at(&before.constants, &before.sized(hypothesis), &curved_from.value);
+    let to = forward.readings_at(&after.constants, &after.sized(hypothesis), &curved_to.value);
     let value = |mode: &Mode, role: &Role| match role {
         Role::Constant(i) => mode.constants[*i],
         Role::Size(effect) => mode.sizes.get(effect).copied().unwrap_or(0.0),
@@ -214,11 +215,8 @@ fn loss_by_curvature(
     };
     let mut change = DVector::from_iterator(to.len(), to.iter().zip(&from).map(|(to, from)| to - from));
     if let Some(channel) = space.curved_channel {
-        let value = |curved: &[f64], row: usize| curved.get(row).copied().unwrap_or(0.0);
-        for (row, change) in change.iter_mut().enumerate() {
-            let moved = value(&curved_to, row) - value(&curved_from, row);
-            *change -= at.design.channels[channel][row] * moved;
-        }
+        let linear = curved_from.linear_change(&curved_to, &at.design.channels[channel]);
+        change -= DVector::from_vec(linear);
     }
     let mut coefficients = point.solution.mean.clone();
     for (i, role) in at.design.roles.iter().enumerate() {

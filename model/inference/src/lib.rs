@@ -107,6 +107,7 @@ mod basis;
 mod candidates;
 mod coefficients;
 mod covariance;
+mod curved_channel;
 mod design;
 mod evidence;
 mod expected_error;
@@ -131,6 +132,7 @@ mod search;
 mod test_problem;
 mod thinning;
 mod uncertainty;
+mod variance_gain;
 mod whitening;
 
 pub use basis::Basis;

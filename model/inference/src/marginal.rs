@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use crate::covariance::Noise;
+use crate::variance_gain::VarianceGain;
 use crate::whitening::Whitening;
 
 /// Products of a design with the precision of the noise.
@@ -57,12 +58,7 @@ impl Marginal {
         Some(Self { gram, moment, constant, whitening, white_matrix, white_target })
     }
 
-    /// Returns `ln p(r)` for prior variances `l`, each zero or positive.
-    pub(crate) fn log_likelihood(&self, variances: &[f64]) -> Option<f64> {
-        Some(self.factor(variances)?.2)
-    }
-
-    /// Returns the posterior of the coefficients for prior variances.
+    /// Returns the posterior of the coefficients for prior variances `l`, each zero or positive.
     pub(crate) fn solve(&self, variances: &[f64]) -> Option<Solution> {
         let (factor, sd, log_likelihood) = self.factor(variances)?;
         // C = S (I + S G S)^-1 S with S = sqrt(diag(l)).
@@ -71,6 +67,26 @@ impl Marginal {
         let covariance = root.transpose() * &root;
         let mean = &covariance * &self.moment;
         Some(Solution { log_likelihood, mean, covariance, root })
+    }
+
+    /// Returns `ln p(r)` without some coefficients, and what it gains by a common prior variance of them.
+    pub(crate) fn variance_gain(
+        &self,
+        variances: &[f64],
+        coefficients: &[usize],
+    ) -> Option<(f64, VarianceGain)> {
+        let mut rest = variances.to_vec();
+        coefficients.iter().for_each(|i| rest[*i] = 0.0);
+        let (factor, sd, log_likelihood) = self.factor(&rest)?;
+        let cross = self.gram.select_columns(coefficients);
+        let mut explained = cross.clone();
+        explained.column_iter_mut().for_each(|mut column| column.component_mul_assign(&sd));
+        factor.solve_lower_triangular_mut(&mut explained);
+        let moment = factor.solve_lower_triangular(&self.moment.component_mul(&sd))?;
+        let information = cross.select_rows(coefficients) - explained.transpose() * &explained;
+        let score = self.moment.select_rows(coefficients) - explained.tr_mul(&moment);
+        let is_finite = information.iter().chain(score.iter()).all(|x| x.is_finite());
+        is_finite.then(|| (log_likelihood, VarianceGain::new(information, &score)))
     }
 
     fn factor(&self, variances: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
@@ -138,6 +154,23 @@ mod tests {
         assert!((point.solution.log_likelihood - dense).abs() < 1e-7, "{dense}");
     }
 
+    /// The gain by a variance is that of the likelihood with the variance.
+    #[test]
+    fn variance_gain_matches_the_likelihood() {
+        let problem = problem(6, 0.4);
+        let (_, design, point) = fitted(&problem, &full_hypothesis());
+        for component in design.components() {
+            let columns = design.columns_of(component);
+            let (at_zero, gain) = point.marginal.variance_gain(&point.variances, &columns).unwrap();
+            for variance in [0.0, 1e-6, 0.01, 3.0] {
+                let mut variances = point.variances.clone();
+                columns.iter().for_each(|i| variances[*i] = variance);
+                let exact = point.marginal.solve(&variances).unwrap().log_likelihood;
+                assert!((at_zero + gain.at(variance) - exact).abs() < 1e-7, "{component:?} {variance}");
+            }
+        }
+    }
+
     /// One coefficient, integrated on a grid.
     #[test]
     fn marginal_likelihood_matches_integration() {
@@ -146,7 +179,7 @@ mod tests {
         let noise = noise_of(&problem, &fit, &design, &point);
         let column = DMatrix::from_columns(&[design.matrix.column(0)]);
         let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
-        let exact = marginal.log_likelihood(&[0.25]).unwrap();
+        let exact = marginal.solve(&[0.25]).unwrap().log_likelihood;
         let flat = |b: f64| {
             let residual = marginal.white_residual(&DVector::from_element(1, b));
             let likelihood = residual.norm_squared()

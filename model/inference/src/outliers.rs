@@ -9,11 +9,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::covariance::Noise;
 use crate::fit::Fit;
+use crate::half_t::HalfT;
 use crate::leave_out::{Leverage, Linearised};
 use crate::noise::EXCLUDED;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, student_tail};
-use crate::score::variance_gain;
+use crate::variance_gain::VarianceGain;
 use crate::whitening::Whitening;
 
 /// Prior probability that a series has a gross error, in one direction or both.
@@ -160,7 +161,8 @@ impl Outliers {
                         (column.dot(&leverage.apply(precision, &column)), column.dot(&own));
                     let scale = SERIES_SCALE * problem.reference.repetition_sd;
                     let matrix = DMatrix::from_element(1, 1, information);
-                    let gain = variance_gain(scale, matrix, &DVector::from_element(1, score));
+                    let gain = VarianceGain::new(matrix, &DVector::from_element(1, score))
+                        .integral(HalfT::cauchy(scale));
                     Some((gain, directions, score / information, 1.0 / information.sqrt()))
                 })
                 .collect();

@@ -1,7 +1,7 @@
 //! Prediction of the rows of new series, with the constants and effects of the fitted ones.
 
 use crate::covariance::Noise;
-use crate::design::Design;
+use crate::design::{Component, Design};
 use crate::expected_error::SessionView;
 use crate::fit::{DEGREES_OF_FREEDOM, Fit};
 use crate::leave_out::Linearised;
@@ -64,7 +64,7 @@ fn predictions_of_fit(problem: &Problem, fit: &Fit, rows: &Rows) -> Option<Vec<P
     let mut new_variance = vec![redrawn; rows.len()];
     for (i, random) in space.random_effects.iter().enumerate() {
         let variance = fit.random_effect_sd(i).unwrap_or(0.0).powi(2);
-        let channel = &design.channels[random.channel];
+        let channel = design.sensitivity(space, Component::Random(i));
         for row in (0..rows.len()).filter(|row| random.levels > 0 && rows.levels[i][*row].is_none()) {
             new_variance[row] += variance * channel[row].powi(2);
         }

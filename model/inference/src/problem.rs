@@ -146,7 +146,8 @@ pub trait ForwardModel {
         self.readings(constants, effects)
     }
 
-    /// Returns the derivatives as [`ForwardModel::channels`] there.
+    /// Returns the derivatives as [`ForwardModel::channels`] there; that of the curved channel with respect to the logarithm
+    /// of one plus it.
     fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[f64]) -> Vec<Vec<f64>> {
         self.channels(constants, effects)
     }

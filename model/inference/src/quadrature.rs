@@ -4,9 +4,8 @@ use std::f64::consts::{PI, SQRT_2};
 
 use crate::half_t::HalfT;
 
-/// Nodes of a distribution over standard deviations, a factor of 1.65 and of 1.13 apart.
-const NODES: i32 = 15;
-const FINE_NODES: i32 = 57;
+/// Logarithm of the range of a distribution over standard deviations, in scales of its prior.
+const LOG_RANGE: f64 = 3.5;
 
 /// A discrete distribution over positive nodes: variances of normals, or standard deviations.
 #[derive(Clone, Debug)]
@@ -33,20 +32,11 @@ impl Mixture {
         Self::new(nodes, log_weights)
     }
 
-    /// Returns a half-t distribution over standard deviations.
-    pub(crate) fn half_t(prior: HalfT) -> Self {
-        Self::of_scales(prior, NODES)
-    }
-
-    /// Returns the same with nodes so close that a posterior has several, from which standard deviations are drawn.
-    pub(crate) fn fine_half_t(prior: HalfT) -> Self {
-        Self::of_scales(prior, FINE_NODES)
-    }
-
-    /// Returns a distribution over standard deviations of any size: on a geometric grid the width of a cell is proportional to
-    /// its node.
-    fn of_scales(prior: HalfT, count: i32) -> Self {
-        let nodes = geometric(libm::exp(-3.5), libm::exp(3.5), count);
+    /// Returns a half-t distribution over standard deviations of any size, whose logarithms are at most `spacing` apart: on a
+    /// geometric grid the width of a cell is proportional to its node.
+    pub(crate) fn half_t(prior: HalfT, spacing: f64) -> Self {
+        let count = (2.0 * LOG_RANGE / spacing).ceil() as i32 + 1;
+        let nodes = geometric(libm::exp(-LOG_RANGE), libm::exp(LOG_RANGE), count);
         let log_weights = nodes.iter().map(|x| libm::log(*x) + prior.log_kernel(*x * prior.scale)).collect();
         Self::new(nodes.iter().map(|x| x * prior.scale).collect(), log_weights)
     }
@@ -134,7 +124,7 @@ mod tests {
     /// size, so that a well known standard deviation lies between two of them.
     #[test]
     fn half_t_has_its_mean_and_tail() {
-        let prior = Mixture::half_t(HalfT { scale: 1.0, degrees: 3.0 });
+        let prior = Mixture::half_t(HalfT { scale: 1.0, degrees: 3.0 }, 0.5);
         let weights: Vec<f64> = prior.log_weights.iter().map(|w| libm::exp(*w)).collect();
         let mean: f64 = prior.nodes.iter().zip(&weights).map(|(x, w)| x * w).sum();
         assert!((mean / (2.0 * 3f64.sqrt() / PI) - 1.0).abs() < 0.05, "{mean}");

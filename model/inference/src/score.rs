@@ -15,6 +15,7 @@ use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
 use crate::problem::Problem;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
 use crate::scales::ScaleProblem;
+use crate::variance_gain::VarianceGain;
 
 /// Prior standard deviation of the sizes of a fit for scores, in typical sizes: nearly free.
 const FREE_SIZE_SD: f64 = 100.0;
@@ -173,7 +174,10 @@ impl<'a> Scores<'a> {
                         limits.expected_gain += odds;
                         (found.gain, found.size.map(|size| (effect, size)), Some(limits))
                     }
-                    Member::Kernel(kernel) => (self.kernel_gain(kernel, information, &score), None, None),
+                    Member::Kernel(kernel) => {
+                        let prior = HalfT::cauchy(self.problem.space.kernels[kernel].scale);
+                        (VarianceGain::new(information, &score).integral(prior), None, None)
+                    }
                 };
                 Some(Addition {
                     score: gain + prior + odds,
@@ -234,27 +238,6 @@ impl<'a> Scores<'a> {
         }
         (gain, size)
     }
-
-    fn kernel_gain(&self, kernel: usize, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
-        variance_gain(self.problem.space.kernels[kernel].scale, information, score)
-    }
-}
-
-/// Returns the gain of the log evidence by coefficients with a common standard deviation, whose prior
-/// is half-Cauchy with this scale.
-pub(crate) fn variance_gain(scale: f64, information: DMatrix<f64>, score: &DVector<f64>) -> f64 {
-    let prior = Mixture::half_t(HalfT::cauchy(scale));
-    let eigen = information.symmetric_eigen();
-    let rotated = eigen.eigenvectors.tr_mul(score);
-    let gain = |v: f64| -> f64 {
-        let terms = eigen.eigenvalues.iter().zip(rotated.iter()).map(|(value, u)| {
-            let growth = 1.0 + v * value.max(0.0);
-            -0.5 * libm::log(growth) + 0.5 * v * u * u / growth
-        });
-        terms.sum()
-    };
-    let nodes = prior.nodes.iter().zip(&prior.log_weights);
-    log_sum_exp(&nodes.map(|(sd, weight)| weight + gain(sd * sd)).collect::<Vec<f64>>())
 }
 
 /// Returns the largest change of a reading, relative to the smallest relevant one.

@@ -271,9 +271,7 @@ impl ForwardModel for FrictionModel {
             after.iter().zip(&before).map(|(a, b)| (a - b) / CHANNEL_STEP).collect()
         };
         let up = 1.0 + CHANNEL_STEP;
-        // The factor of the exponent is 1 + the channel: a relative step is larger by it.
-        let mut friction = slope(Factors { exponent: up, ..NO_CHANGE });
-        friction.iter_mut().zip(curved).for_each(|(slope, change)| *slope /= 1.0 + change);
+        let friction = slope(Factors { exponent: up, ..NO_CHANGE });
         let pins = slope(Factors { pins: up, ..NO_CHANGE });
         let silicone = slope(Factors { silicone: up, ..NO_CHANGE });
         let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();

@@ -1,0 +1,130 @@
+//! The channel in which readings are not linear, such as friction: one plus it is a product over the
+//! random effects and kernels that act through it.
+//!
+//! As a product, a level that all rows share is the same as another value of a constant, whatever the
+//! other coefficients are. In a sum it would also scale them all, and a level that nothing supports would gain by
+//! bringing them closer to zero.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::design::{Component, Mode};
+use crate::hypothesis::Hypothesis;
+use crate::problem::{Rows, Space};
+
+/// Bounds of the channel, and of each part.
+const RANGE: (f64, f64) = (-0.9, 9.0);
+
+/// Value of the curved channel at the rows of a mode.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CurvedChannel {
+    /// Function of each component, in the order of the rows.
+    parts: BTreeMap<Component, Vec<f64>>,
+    /// Value at each row; empty where it is zero.
+    pub(crate) value: Vec<f64>,
+}
+
+impl CurvedChannel {
+    /// Multiplies the parts.
+    fn of_parts(mut parts: BTreeMap<Component, Vec<f64>>, rows: usize) -> Self {
+        let mut value = vec![0.0; rows];
+        for part in parts.values_mut() {
+            part.iter_mut().for_each(|x| *x = x.clamp(RANGE.0, RANGE.1));
+            value.iter_mut().zip(part).for_each(|(value, x)| *value = (1.0 + *value) * (1.0 + *x) - 1.0);
+        }
+        value.iter_mut().for_each(|value| *value = value.clamp(RANGE.0, RANGE.1));
+        Self { parts, value }
+    }
+
+    /// Evaluates the channel.
+    pub(crate) fn new(mode: &Mode, space: &Space, rows: &Rows, hypothesis: &Hypothesis) -> Self {
+        let (Some(channel), false) = (space.curved_channel, mode.curved.is_empty()) else {
+            return Self::default();
+        };
+        let mut parts = BTreeMap::new();
+        for (i, random) in space.random_effects.iter().enumerate().filter(|(_, r)| r.channel == channel) {
+            let component = Component::Random(i);
+            let Some(levels) = mode.curved.get(&component).filter(|l| l.len() == random.levels) else {
+                continue;
+            };
+            let part = rows.levels[i].iter().map(|level| level.map_or(0.0, |level| levels[level]));
+            parts.insert(component, part.collect::<Vec<f64>>());
+        }
+        for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| space.kernels[*k].channel == channel) {
+            let component = Component::Kernel(kernel);
+            let basis = &rows.bases[kernel][variant];
+            if let Some(known) = mode.curved.get(&component).filter(|c| c.len() == basis.coefficients()) {
+                parts.insert(component, basis.function(known));
+            }
+        }
+        Self::of_parts(parts, rows.len())
+    }
+
+    /// Returns the sensitivity of the readings to a component from that to the logarithm of one plus the channel.
+    pub(crate) fn sensitivity(&self, component: Component, channel: &[f64]) -> Vec<f64> {
+        match self.parts.get(&component) {
+            Some(part) => channel.iter().zip(part).map(|(slope, x)| slope / (1.0 + x)).collect(),
+            None => channel.to_vec(),
+        }
+    }
+
+    /// Returns the change of the readings from here to another value by the linear model.
+    pub(crate) fn linear_change(&self, to: &Self, channel: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; channel.len()];
+        let components: BTreeSet<&Component> = self.parts.keys().chain(to.parts.keys()).collect();
+        for component in components {
+            let value = |of: &Self, row: usize| of.parts.get(component).map_or(0.0, |part| part[row]);
+            for (row, (sum, slope)) in sum.iter_mut().zip(channel).enumerate() {
+                let from = value(self, row);
+                *sum += slope * (value(to, row) - from) / (1.0 + from);
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOUNT: Component = Component::Random(0);
+    const CURVE: Component = Component::Kernel(2);
+
+    fn channel(mount: [f64; 2], curve: [f64; 2]) -> CurvedChannel {
+        CurvedChannel::of_parts([(MOUNT, mount.to_vec()), (CURVE, curve.to_vec())].into(), 2)
+    }
+
+    /// Readings of the square of one plus the channel.
+    fn readings(at: &CurvedChannel) -> Vec<f64> {
+        at.value.iter().map(|value| (1.0 + value).powi(2)).collect()
+    }
+
+    /// Derivatives of the readings with respect to the logarithm of one plus the channel.
+    fn slopes(at: &CurvedChannel) -> Vec<f64> {
+        readings(at).iter().map(|reading| 2.0 * reading).collect()
+    }
+
+    #[test]
+    fn sensitivities_match_finite_differences() {
+        let (at, step) = (channel([0.2, -0.1], [-0.3, 0.4]), 1e-6);
+        let moved = [
+            (MOUNT, channel([0.2 + step, -0.1 + step], [-0.3, 0.4])),
+            (CURVE, channel([0.2, -0.1], [-0.3 + step, 0.4 + step])),
+        ];
+        for (component, moved) in moved {
+            let sensitivity = at.sensitivity(component, &slopes(&at));
+            let change = at.linear_change(&moved, &slopes(&at));
+            for row in 0..2 {
+                let slope = (readings(&moved)[row] - readings(&at)[row]) / step;
+                assert!((sensitivity[row] - slope).abs() < 1e-4, "{component:?} {row}");
+                assert!((change[row] - slope * step).abs() < 1e-9, "{component:?} {row}");
+            }
+        }
+    }
+
+    /// A level of a component that is zero changes the readings as any other factor of all rows does.
+    #[test]
+    fn a_common_level_is_a_common_factor() {
+        let at = channel([0.2, -0.1], [0.0, 0.0]);
+        assert_eq!(at.sensitivity(CURVE, &slopes(&at)), slopes(&at));
+    }
+}

@@ -76,11 +76,18 @@ pub struct Posterior {
 /// seed is that of the interval of the expected error.
 pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Posterior> {
     let mut excluded: Vec<bool> = Vec::new();
+    let mut gross_errors = vec![false; problem.len()];
     let mut search = Search::new(problem, options, &excluded);
     let mut window = search.run();
     let mut fits = search.fit_count;
     for _ in 0..MOST_EXCLUSIONS {
-        let suspected = Outliers::suspected(problem, window.first()?);
+        let best = window.first()?;
+        let mut suspected = Outliers::suspected(problem, best);
+        gross_errors
+            .iter_mut()
+            .zip(rows_in_error(problem, &best.hypothesis))
+            .for_each(|(all, new)| *all |= new);
+        suspected.iter_mut().zip(&gross_errors).for_each(|(suspected, is_wrong)| *suspected |= is_wrong);
         let is_new = suspected
             .iter()
             .enumerate()
@@ -120,6 +127,18 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
         baseline_error,
         fit_count,
     })
+}
+
+/// Returns whether each row is in error by a kernel of a hypothesis.
+fn rows_in_error(problem: &Problem, hypothesis: &Hypothesis) -> Vec<bool> {
+    let mut rows = vec![false; problem.len()];
+    for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| problem.space.kernels[*k].is_gross_error) {
+        let basis = &problem.rows.bases[kernel][variant];
+        rows.iter_mut()
+            .enumerate()
+            .for_each(|(row, is_in)| *is_in |= basis.at(row).iter().any(|x| *x != 0.0));
+    }
+    rows
 }
 
 /// An effect that is not reported.

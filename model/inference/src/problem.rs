@@ -63,6 +63,9 @@ pub struct Kernel {
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
     pub noise_probability: Option<f64>,
+    /// Whether it is a gross error of the rows where its basis is not zero: where it belongs to the best
+    /// hypothesis, they are excluded.
+    pub is_gross_error: bool,
 }
 
 /// A random effect that every hypothesis contains, such as that of mounts.

@@ -82,6 +82,7 @@ pub(crate) fn space() -> Space {
             is_session_bound: false,
             is_level_of_session: false,
             noise_probability: None,
+            is_gross_error: false,
         }],
         random_effects: vec![RandomEffect {
             name: "mount".to_owned(),

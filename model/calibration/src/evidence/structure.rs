@@ -33,6 +33,13 @@ const SERIES_OF_CYCLE: f64 = 2.0;
 const MOST_INTERVAL_SERIES: usize = 24;
 /// Covariate of noise.
 pub(super) const NOISE: &str = "noise";
+/// Covariate of gross errors of a series.
+const GROSS_ERROR: &str = "gross error";
+/// Prior probability that a series has a gross error.
+const GROSS_ERROR_PROBABILITY: f64 = 0.01;
+/// Series up to which a gross error of each is a variant. It raises the scatter between series, behind which it hides among
+/// few; among `n` it is at most `sqrt(n)` standard deviations of them.
+const MOST_HIDING_SERIES: usize = 200;
 /// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
 const WANDERING_PROBABILITY: f64 = 0.05;
 /// Correlations of consecutive series, and the rank of their process: what is finer has little variance
@@ -102,7 +109,12 @@ impl Structure {
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
             is_level_of_session: self.record == Record::Table(Abscissa::Session, true),
-            noise_probability: (self.covariate == NOISE).then_some(WANDERING_PROBABILITY),
+            noise_probability: match self.covariate {
+                NOISE => Some(WANDERING_PROBABILITY),
+                GROSS_ERROR => Some(gross_error_probability(self.bases.len())),
+                _ => None,
+            },
+            is_gross_error: self.covariate == GROSS_ERROR,
         }
     }
 
@@ -155,6 +167,7 @@ pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit
         collector.wandering();
         collector.previous_load();
     }
+    collector.gross_errors();
     collector.along_a_series();
     collector.load();
     collector.protocol();
@@ -272,6 +285,23 @@ impl Collector<'_> {
         });
         let channels = [Channel::Reading, Channel::Drag];
         self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
+    }
+
+    /// Adds a gross error of each series.
+    fn gross_errors(&mut self) {
+        let count = self.rows.series_count();
+        if count > MOST_HIDING_SERIES {
+            return;
+        }
+        let probability = 1.0 / count as f64;
+        let of_series = |series: usize| {
+            let is_in = move |of: &usize| f64::from(u8::from(*of == series));
+            let basis: BasisOfRows =
+                Box::new(move |rows| kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>()));
+            Variant { basis, factor: 1.0, probability }
+        };
+        let variants = (0..count).map(of_series).collect();
+        self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
     }
 
     fn along_a_series(&mut self) {
@@ -495,6 +525,12 @@ fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
         .collect()
 }
 
+/// Returns the probability of a kernel with a gross error of one of `count` series, each of which has the prior odds of one.
+fn gross_error_probability(count: usize) -> f64 {
+    let odds = count as f64 * GROSS_ERROR_PROBABILITY / (1.0 - GROSS_ERROR_PROBABILITY);
+    odds / (1.0 + odds)
+}
+
 /// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
 /// lasts for a while. Brownian motion prices one large step as many small ones.
 fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
@@ -502,7 +538,9 @@ fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
     let mut bases: Vec<BasisOfRows> = Vec::new();
     for from in 0..count {
         for until in (if is_long { count } else { from + 1 })..=count {
-            if until - from < count {
+            // One series that differs from all others is a gross error of it.
+            let inside = until - from;
+            if inside.min(count - inside) > 1 {
                 bases.push(Box::new(move |rows| {
                     let is_in = |sequence: &usize| f64::from(u8::from((from..until).contains(sequence)));
                     kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())

@@ -156,3 +156,43 @@ fn a_long_series_is_one() {
         assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
     }
 }
+
+/// Series that are wrong among few are gross errors: they do not hide behind the scatter that they make, and are no structure.
+#[test]
+fn a_wrong_series_among_few_is_a_gross_error() {
+    for (seed, series, change) in [(12, "4", 3.0), (13, "0", -1.0), (14, "11", 1.0)] {
+        let mut rows = session(seed);
+        rows.retain(|row| row.series.parse::<usize>().unwrap() < 12);
+        let sound = evidence(&rows);
+        assert!(sound.posterior().outliers.series.is_empty() && reported(&sound).is_empty());
+        rows.iter_mut().filter(|row| row.series == series).for_each(|row| row.force_n += change);
+        let evidence = evidence(&rows);
+        assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
+        let wrong: Vec<String> =
+            evidence.posterior().outliers.series.iter().map(|wrong| wrong.series.to_string()).collect();
+        assert!(!wrong.is_empty() && wrong.iter().all(|wrong| wrong == series), "{wrong:?}");
+    }
+}
+
+/// Mounts that differ in friction, many of them: structure that all rows share would gain by bringing them closer to zero.
+#[test]
+fn many_mounts_are_no_structure() {
+    for seed in [15, 16, 17] {
+        let mut rows = session(seed);
+        for row in &mut rows {
+            let mount = 2 * row.series.parse::<usize>().unwrap() + usize::from(row.repetition > 4);
+            row.labels.mount = mount.to_string();
+            // Quantiles of a normal distribution in shuffled order.
+            let share = (mount * 53 % 120) as f64 / 120.0 + 1.0 / 240.0;
+            let normal = libm::log(share / (1.0 - share)) / 1.7;
+            row.force_n = row.load_n * libm::pow(row.force_n / row.load_n, 1.0 + 0.015 * normal);
+        }
+        let evidence = evidence(&rows);
+        let probable = evidence.posterior().members().into_iter().find(|(_, p)| *p > 0.5);
+        assert!(
+            probable.is_none(),
+            "{:?}",
+            probable.map(|(member, p)| (evidence.name(member).to_owned(), p))
+        );
+    }
+}

@@ -85,6 +85,10 @@ impl CurvedChannel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hypothesis::{Element, Member};
+    use crate::problem::{ForwardModel, Problem, SizedEffect};
+    use crate::random::Random;
+    use crate::test_problem::{fitted, long_rows, space};
 
     const MOUNT: Component = Component::Random(0);
     const CURVE: Component = Component::Kernel(2);
@@ -126,5 +130,62 @@ mod tests {
     fn a_common_level_is_a_common_factor() {
         let at = channel([0.2, -0.1], [0.0, 0.0]);
         assert_eq!(at.sensitivity(CURVE, &slopes(&at)), slopes(&at));
+    }
+
+    /// Friction in proportion to the load.
+    struct Friction(Vec<f64>);
+
+    impl ForwardModel for Friction {
+        fn readings(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
+            self.readings_at(constants, effects, &[])
+        }
+
+        fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>> {
+            self.channels_at(constants, effects, &[])
+        }
+
+        fn readings_at(&self, constants: &[f64], _: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
+            let factor = |row: usize| 1.0 + curved.get(row).copied().unwrap_or(0.0);
+            let readings = self.0.iter().enumerate();
+            readings.map(|(row, load)| libm::exp(constants[0]) * load * factor(row)).collect()
+        }
+
+        fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<Vec<f64>> {
+            vec![vec![1.0; self.0.len()], self.readings_at(constants, effects, curved)]
+        }
+
+        fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {
+            Box::new(Self(rows.iter().map(|row| self.0[*row]).collect()))
+        }
+    }
+
+    /// A hundred mounts that differ, and levels that do not: they gain nothing by bringing the mounts closer to zero.
+    #[test]
+    fn many_mounts_are_no_structure() {
+        let mut rows = long_rows(300, 4);
+        rows.levels = vec![rows.series.iter().map(|series| Some(series / 3)).collect()];
+        rows.load.iter_mut().for_each(|load| *load *= 10.0);
+        rows.forward = Box::new(Friction(rows.load.clone()));
+        let mut space = space();
+        space.effects.clear();
+        space.usual_effects.clear();
+        (rows.discrepancies, rows.relevant) = (Vec::new(), Vec::new());
+        space.kernels[0].channel = 1;
+        space.random_effects[0].levels = 100;
+        space.curved_channel = Some(1);
+        let mut random = Random::new(5);
+        let mounts: Vec<f64> = (0..100).map(|_| 0.02 * random.normal()).collect();
+        let mount = |row: usize| rows.levels[0][row].map_or(0.0, |level| mounts[level]);
+        let readings = (0..rows.len()).map(|row| {
+            let error = 0.03 * random.normal();
+            2.0 * rows.load[row] * (1.0 + mount(row)) + error
+        });
+        let readings = readings.collect();
+        let problem = Problem::new(space, rows, readings).unwrap();
+        let (none, ..) = fitted(&problem, &Hypothesis::default());
+        let levels = Hypothesis::from_elements([Element { member: Member::Kernel(0), form: 0 }]);
+        let (levels, ..) = fitted(&problem, &levels);
+        let gain = levels.log_evidence - none.log_evidence;
+        assert!(gain < 0.0, "{gain}");
     }
 }

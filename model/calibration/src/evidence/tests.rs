@@ -173,26 +173,3 @@ fn a_wrong_series_among_few_is_a_gross_error() {
         assert!(!wrong.is_empty() && wrong.iter().all(|wrong| wrong == series), "{wrong:?}");
     }
 }
-
-/// Mounts that differ in friction, many of them: structure that all rows share would gain by bringing them closer to zero.
-#[test]
-fn many_mounts_are_no_structure() {
-    for seed in [15, 16, 17] {
-        let mut rows = session(seed);
-        for row in &mut rows {
-            let mount = 2 * row.series.parse::<usize>().unwrap() + usize::from(row.repetition > 4);
-            row.labels.mount = mount.to_string();
-            // Quantiles of a normal distribution in shuffled order.
-            let share = (mount * 53 % 120) as f64 / 120.0 + 1.0 / 240.0;
-            let normal = libm::log(share / (1.0 - share)) / 1.7;
-            row.force_n = row.load_n * libm::pow(row.force_n / row.load_n, 1.0 + 0.015 * normal);
-        }
-        let evidence = evidence(&rows);
-        let probable = evidence.posterior().members().into_iter().find(|(_, p)| *p > 0.5);
-        assert!(
-            probable.is_none(),
-            "{:?}",
-            probable.map(|(member, p)| (evidence.name(member).to_owned(), p))
-        );
-    }
-}

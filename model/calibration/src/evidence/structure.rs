@@ -37,9 +37,9 @@ pub(super) const NOISE: &str = "noise";
 const GROSS_ERROR: &str = "gross error";
 /// Prior probability that a series has a gross error.
 const GROSS_ERROR_PROBABILITY: f64 = 0.01;
-/// Series up to which a gross error of each is a variant. It raises the scatter between series, behind which it hides among
-/// few; among `n` it is at most `sqrt(n)` standard deviations of them.
-const MOST_HIDING_SERIES: usize = 200;
+/// Series up to which a gross error of each is a variant. It raises the scatter between `n` series, of which it is at most
+/// `sqrt(n)` standard deviations: among more, it is listed in any case.
+const MOST_HIDING_SERIES: usize = 30;
 /// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
 const WANDERING_PROBABILITY: f64 = 0.05;
 /// Correlations of consecutive series, and the rank of their process: what is finer has little variance

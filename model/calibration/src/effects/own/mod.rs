@@ -106,11 +106,15 @@ impl OwnEffect {
     }
 
     /// Returns the start values, followed by variants with the shapes at other places within their
-    /// bounds, so that a fit of a nonlinear shape does not end in a local minimum.
+    /// bounds, so that a fit of a nonlinear shape does not end in a local minimum. A derived effect has the
+    /// place where it was derived: at another one it would be another effect, which its readings did not show.
     pub(super) fn shape_starts(&self) -> Vec<Vec<f64>> {
         let parameters = &self.definition.parameters;
         let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
         let mut all = vec![start.clone()];
+        if self.definition.drawn_from.as_ref().is_some_and(|readings| !readings.is_empty()) {
+            return all;
+        }
         let shapes: Vec<(usize, (f64, f64))> =
             parameters.iter().enumerate().filter_map(|(i, p)| Some((i, p.bounds?))).collect();
         // Two shapes are varied jointly, more than two one at a time.

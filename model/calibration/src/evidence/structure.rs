@@ -54,6 +54,8 @@ const MOST_LEVELS: usize = 20;
 pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
 const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
+/// The same for what may also change the scale of the load cell: who measures, how fast, and after which pause.
+const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Gain];
 
 /// A function of the rows that returns a basis.
 type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
@@ -414,7 +416,7 @@ impl Collector<'_> {
             let scale = Interval::of(&speeds);
             let curve: BasisOfRows =
                 Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
-            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), COMMON, vec![curve]);
+            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), MEASURING, vec![curve]);
         } else if distinct(&speeds) == 2 {
             let sign: BasisOfRows =
                 Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
@@ -436,7 +438,7 @@ impl Collector<'_> {
                 "dwell",
                 "dwell",
                 Record::Table(Abscissa::LogDwell, false),
-                &[Channel::Reading, Channel::Friction],
+                &[Channel::Reading, Channel::Friction, Channel::Gain],
                 vec![curve],
             );
         }
@@ -474,10 +476,22 @@ impl Collector<'_> {
         self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
             label.specimen.clone()
         });
-        self.levels("operator", "operator", Record::Table(Abscissa::Operator, true), COMMON, |_, label| {
-            label.operator.clone()
-        });
-        self.levels("session", "session", Record::Table(Abscissa::Session, true), switches, |_, label| {
+        self.levels(
+            "operator",
+            "operator",
+            Record::Table(Abscissa::Operator, true),
+            MEASURING,
+            |_, label| label.operator.clone(),
+        );
+        let sessions = &[
+            Channel::Reading,
+            Channel::Drag,
+            Channel::Friction,
+            Channel::Pins,
+            Channel::Silicone,
+            Channel::Gain,
+        ];
+        self.levels("session", "session", Record::Table(Abscissa::Session, true), sessions, |_, label| {
             label.session.clone()
         });
     }

@@ -124,13 +124,23 @@ fn structure_is_reported_with_its_covariate() {
     assert!(curve.iter().all(|value| (value.abs() - 0.1).abs() < 0.01));
 }
 
-/// A cell whose scale drifts is named by its covariate and its channel.
+/// A cell whose scale drifts, or differs by operator, is named by its covariate and its channel.
 #[test]
-fn a_scale_of_the_cell_that_drifts_is_the_cells() {
-    let mut rows = session(11);
-    let end = rows.iter().map(|row| row.time_s).fold(1.0, f64::max);
-    rows.iter_mut().for_each(|row| row.force_n *= 1.0 + 0.04 * row.time_s / end);
-    assert_eq!(reported(&evidence(&rows)), ["gain over time"]);
+fn a_scale_of_the_cell_that_changes_is_the_cells() {
+    let end = session(11).iter().map(|row| row.time_s).fold(1.0, f64::max);
+    let gains: [(&str, &dyn Fn(&PlateauRow) -> f64); 2] = [
+        ("gain over time", &|row| 0.04 * row.time_s / end),
+        ("gain over operator", &|row| if row.labels.operator == "B" { 0.04 } else { 0.0 }),
+    ];
+    for (name, gain) in gains {
+        let mut rows = session(11);
+        for row in &mut rows {
+            let is_second = row.series.len() % 2 == 0 || row.series.ends_with(['1', '4', '5', '8']);
+            row.labels.operator = if is_second { "B" } else { "A" }.to_owned();
+            row.force_n *= 1.0 + gain(row);
+        }
+        assert_eq!(reported(&evidence(&rows)), [name]);
+    }
 }
 
 /// One reading determines nothing.

@@ -19,10 +19,6 @@ use nalgebra::{Cholesky, DMatrix};
 use crate::model::{Model, Noise, Spread};
 use crate::table::{PlateauRow, Point, groups};
 
-/// Most rows of a block, since the time grows with their square. The parts of a longer series have
-/// independent offsets, though the inference gives it one.
-const MOST_ROWS: usize = 60;
-
 /// Products of the columns of one series, friction last.
 #[derive(Clone, Debug)]
 pub(super) struct Series {
@@ -47,15 +43,15 @@ pub(super) fn white_series(
     let has_mounts = rows.iter().any(|row| !row.labels.mount.is_empty());
     let series = members.into_iter().map(|mut members| {
         members.sort_by(|a, b| rows[*a].time_s.total_cmp(&rows[*b].time_s));
-        let mut products = DMatrix::zeros(columns.len() + 1, columns.len() + 1);
-        for block in members.chunks(MOST_ROWS) {
-            let factor = Cholesky::new(covariance(noise, block, points, &friction))?;
-            let mut white = DMatrix::from_fn(block.len(), columns.len() + 1, |i, j| {
-                columns.get(j).unwrap_or(&friction)[block[i]]
-            });
-            factor.l_dirty().solve_lower_triangular_mut(&mut white);
-            products += white.tr_mul(&white);
-        }
+        let white = |columns: &[&[f64]]| white_columns(noise, &members, points, columns);
+        let own: Vec<&[f64]> = columns.iter().chain([&friction]).map(Vec::as_slice).collect();
+        let shared = shared_columns(noise, points, &friction);
+        let shared: Vec<&[f64]> = shared.iter().map(Vec::as_slice).collect();
+        let (own, shared) = (white(&own), white(&shared));
+        // Woodbury's identity: `V = R + U U'`.
+        let cross = shared.tr_mul(&own);
+        let capacity = DMatrix::identity(shared.ncols(), shared.ncols()) + shared.tr_mul(&shared);
+        let products = own.tr_mul(&own) - cross.tr_mul(&Cholesky::new(capacity)?.solve(&cross));
         let row = &rows[*members.first()?];
         let labels = &row.labels;
         let mount = if has_mounts {
@@ -108,17 +104,32 @@ fn without_friction(products: &DMatrix<f64>) -> DMatrix<f64> {
     products.view((0, 0), (n, n)).into_owned()
 }
 
-fn covariance(noise: Noise, block: &[usize], points: &[Point], friction: &[f64]) -> DMatrix<f64> {
-    DMatrix::from_fn(block.len(), block.len(), |i, j| {
-        let (a, b) = (&points[block[i]], &points[block[j]]);
-        let offset = |part: Spread| part.constant_n.powi(2) + part.per_load.powi(2) * a.load_n * b.load_n;
-        let correlation = noise.correlation.powi(i32::try_from(i.abs_diff(j)).unwrap_or(i32::MAX));
-        let repetition = noise.repetition.at(a.load_n) * noise.repetition.at(b.load_n);
-        let same_direction = if a.sign == b.sign { offset(noise.series) } else { 0.0 };
-        repetition * correlation
-            + same_direction
-            + offset(noise.series_common)
-            + noise.series_scale.powi(2) * friction[block[i]] * friction[block[j]]
+/// Returns the columns of the offsets that the rows of a series share, and of its scale of friction, in newtons.
+fn shared_columns(noise: Noise, points: &[Point], friction: &[f64]) -> Vec<Vec<f64>> {
+    let of_points = |value: &dyn Fn(&Point) -> f64| points.iter().map(value).collect::<Vec<f64>>();
+    let offsets = |spread: Spread, is_in: &dyn Fn(&Point) -> bool| {
+        let inside = |point: &Point, value: f64| if is_in(point) { value } else { 0.0 };
+        [
+            of_points(&|point| inside(point, spread.constant_n)),
+            of_points(&|point| inside(point, spread.per_load * point.load_n)),
+        ]
+    };
+    let mut columns = Vec::new();
+    columns.extend(offsets(noise.series, &|point| point.sign < 0.0));
+    columns.extend(offsets(noise.series, &|point| point.sign >= 0.0));
+    columns.extend(offsets(noise.series_common, &|_| true));
+    columns.push(friction.iter().map(|g| noise.series_scale * g).collect());
+    columns
+}
+
+/// Returns columns at the members of a series, in order, in standard deviations of the repetition noise: what a reading has
+/// in addition to the one before, with which it correlates.
+fn white_columns(noise: Noise, members: &[usize], points: &[Point], columns: &[&[f64]]) -> DMatrix<f64> {
+    let sd: Vec<f64> = members.iter().map(|row| noise.repetition.at(points[*row].load_n)).collect();
+    let innovation = (1.0 - noise.correlation.powi(2)).sqrt();
+    DMatrix::from_fn(members.len(), columns.len(), |i, j| {
+        let at = |i: usize| columns[j][members[i]] / sd[i];
+        if i == 0 { at(0) } else { (at(i) - noise.correlation * at(i - 1)) / innovation }
     })
 }
 
@@ -127,6 +138,20 @@ mod tests {
     use super::*;
     use crate::table::Frame;
     use crate::test_session::session;
+
+    fn covariance(noise: Noise, block: &[usize], points: &[Point], friction: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_fn(block.len(), block.len(), |i, j| {
+            let (a, b) = (&points[block[i]], &points[block[j]]);
+            let offset = |part: Spread| part.constant_n.powi(2) + part.per_load.powi(2) * a.load_n * b.load_n;
+            let correlation = noise.correlation.powi(i32::try_from(i.abs_diff(j)).unwrap_or(i32::MAX));
+            let repetition = noise.repetition.at(a.load_n) * noise.repetition.at(b.load_n);
+            let same_direction = if a.sign == b.sign { offset(noise.series) } else { 0.0 };
+            repetition * correlation
+                + same_direction
+                + offset(noise.series_common)
+                + noise.series_scale.powi(2) * friction[block[i]] * friction[block[j]]
+        })
+    }
 
     /// The products of columns agree with the covariance of all rows, inverted as a whole.
     #[test]

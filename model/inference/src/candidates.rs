@@ -35,8 +35,6 @@ pub(crate) struct Candidates<'a> {
     marginal: &'a Marginal,
     channels: &'a [Vec<f64>],
     of_series: BTreeMap<usize, SeriesProducts>,
-    /// The white matrix of the fit, transposed.
-    transposed: DMatrix<f64>,
     /// Element, relevance and number of columns of each candidate of the block.
     waiting: Vec<(Element, f64, usize)>,
     /// Their columns, one after the other.
@@ -50,7 +48,6 @@ impl<'a> Candidates<'a> {
             marginal,
             channels,
             of_series: BTreeMap::new(),
-            transposed: marginal.white_matrix.transpose(),
             waiting: Vec::new(),
             columns: Vec::new(),
             done: Vec::new(),
@@ -92,7 +89,7 @@ impl<'a> Candidates<'a> {
         let mut columns = std::mem::take(&mut self.columns);
         self.marginal.whitening.whiten_mut(&mut columns);
         let white = DMatrix::from_vec(self.marginal.white_target.len(), count, columns);
-        let cross = &self.transposed * &white;
+        let cross = self.marginal.white_design.transposed_times(&white);
         let moment = white.tr_mul(&self.marginal.white_target);
         let mut first = 0;
         for (element, relevance, count) in self.waiting.drain(..) {
@@ -134,15 +131,10 @@ impl SeriesProducts {
         let largest = |series: usize| {
             sensitivity[ranges[series].clone()].iter().fold(0.0f64, |most, c| most.max(c.abs()))
         };
-        let mut cross = DMatrix::zeros(marginal.white_matrix.ncols(), ranges.len());
-        for (series, range) in ranges.iter().enumerate() {
-            let matrix = marginal.white_matrix.rows(range.start, range.len());
-            cross.column_mut(series).gemv_tr(1.0, &matrix, &part(series), 0.0);
-        }
         let target = |series: usize| marginal.white_target.rows(ranges[series].start, ranges[series].len());
         Self {
             gram: DVector::from_fn(ranges.len(), |series, _| part(series).norm_squared()),
-            cross,
+            cross: marginal.white_design.transposed_times_series(&white),
             moment: DVector::from_fn(ranges.len(), |series, _| part(series).dot(&target(series))),
             largest: DVector::from_fn(ranges.len(), |series, _| largest(series)),
         }

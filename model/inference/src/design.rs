@@ -1,6 +1,7 @@
 //! The linear model at a mode: one column per coefficient that the evidence integrates.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,6 +10,7 @@ use crate::half_t::HalfT;
 use crate::hypothesis::{Hypothesis, Member};
 use crate::noise::Scales;
 use crate::problem::{MOST_SHAPE_CONSTANTS, Problem, Rows, SizedEffect, Space};
+use crate::white_design::SeriesColumns;
 
 /// Standard deviation of the discrepancy of an effect, relative to its contribution.
 pub(crate) const DISCREPANCY_SD: f64 = 0.15;
@@ -104,6 +106,8 @@ pub(crate) struct Design {
     pub(crate) channels: Vec<Vec<f64>>,
     /// Value of the curved channel at the mode.
     pub(crate) curved: CurvedChannel,
+    /// Components whose columns are constant within each series, times a sensitivity.
+    pub(crate) of_series: Vec<SeriesColumns>,
 }
 
 impl Design {
@@ -122,7 +126,7 @@ impl Design {
         let curved = &channel.value;
         let baseline = forward.readings_at(&mode.constants, &effects, curved);
         let channels = forward.channels_at(&mode.constants, &effects, curved);
-        let mut builder = Builder { rows: rows.len(), data: Vec::new(), roles: Vec::new(), mean: Vec::new() };
+        let mut builder = Builder { rows: rows.len(), ..Builder::default() };
         let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
         if let Some(index) = space.curved_channel {
             let to_zero = channel.linear_change(&CurvedChannel::default(), &channels[index]);
@@ -163,23 +167,31 @@ impl Design {
             let slopes = &channels[component.channel(space)];
             channel.sensitivity(component, slopes)
         };
+        let ranges = rows.ranges();
         for (i, random) in space.random_effects.iter().enumerate() {
             let component = Component::Random(i);
             let sensitivity = sensitivity(component);
-            for level in 0..random.levels {
-                let at = |row: usize| rows.levels[i][row] == Some(level);
-                let column =
-                    (0..rows.len()).map(|row| if at(row) { sensitivity[row] } else { 0.0 }).collect();
-                builder.push(Role::Variance(component), 0.0, column);
-            }
+            let value = |row: usize, level: usize| f64::from(u8::from(rows.levels[i][row] == Some(level)));
+            let columns = DMatrix::from_fn(rows.len(), random.levels, |row, level| {
+                sensitivity[row] * value(row, level)
+            });
+            let is_constant = |range: &Range<usize>| {
+                let levels = &rows.levels[i][range.clone()];
+                levels.iter().all(|level| *level == levels[0])
+            };
+            let by_series = ranges.iter().all(is_constant).then(|| {
+                DMatrix::from_fn(ranges.len(), random.levels, |series, level| {
+                    value(ranges[series].start, level)
+                })
+            });
+            builder.push_component(component, &columns, sensitivity, by_series);
         }
         for (kernel, variant) in hypothesis.kernels() {
             let component = Component::Kernel(kernel);
-            let columns = rows.bases[kernel][variant].times(&sensitivity(component));
-            for column in columns.column_iter() {
-                let column = column.iter().copied().collect();
-                builder.push(Role::Variance(component), 0.0, column);
-            }
+            let sensitivity = sensitivity(component);
+            let basis = &rows.bases[kernel][variant];
+            let columns = basis.times(&sensitivity);
+            builder.push_component(component, &columns, sensitivity, basis.of_series(&ranges));
         }
         builder.finish(target, channels, channel)
     }
@@ -229,11 +241,13 @@ impl Design {
 }
 
 /// Columns under construction.
+#[derive(Default)]
 struct Builder {
     rows: usize,
     data: Vec<f64>,
     roles: Vec<Role>,
     mean: Vec<f64>,
+    of_series: Vec<SeriesColumns>,
 }
 
 impl Builder {
@@ -241,6 +255,24 @@ impl Builder {
         self.data.extend(column);
         self.roles.push(role);
         self.mean.push(mean);
+    }
+
+    /// Adds the columns of a component; `by_series` are those of its basis, if they are constant within each series.
+    fn push_component(
+        &mut self,
+        component: Component,
+        columns: &DMatrix<f64>,
+        sensitivity: Vec<f64>,
+        by_series: Option<DMatrix<f64>>,
+    ) {
+        let first = self.roles.len();
+        for column in columns.column_iter() {
+            self.push(Role::Variance(component), 0.0, column.iter().copied().collect());
+        }
+        if let Some(by_series) = by_series.filter(|rows| rows.ncols() > 0) {
+            let sensitivity = DVector::from_vec(sensitivity);
+            self.of_series.push(SeriesColumns { columns: first..self.roles.len(), sensitivity, by_series });
+        }
     }
 
     fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>, curved: CurvedChannel) -> Option<Design> {
@@ -253,6 +285,7 @@ impl Builder {
             target: DVector::from_vec(target),
             channels,
             curved,
+            of_series: self.of_series,
         })
     }
 }

@@ -17,7 +17,7 @@ pub fn information(problem: &Problem, fit: &Fit, change: &[f64], others: &[Vec<f
     let columns = std::iter::once(change).chain(others.iter().map(Vec::as_slice)).flatten().copied();
     let columns = DMatrix::from_iterator(problem.len(), 1 + others.len(), columns);
     let white = point.marginal.whitening.whiten(&columns);
-    let cross = &point.solution.root * point.marginal.white_matrix.tr_mul(&white);
+    let cross = &point.solution.root * point.marginal.white_design.transposed_times(&white);
     let all = white.tr_mul(&white) - cross.tr_mul(&cross);
     let known = others.len();
     let of_others = all.view((1, 1), (known, known)) + DMatrix::identity(known, known);

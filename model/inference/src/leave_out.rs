@@ -54,9 +54,10 @@ impl Linearised {
         let zeros = vec![0.0; residual.len()];
         let mut left_out =
             LeftOut { residuals: zeros.clone(), of_new_series: zeros, log_predictive: Vec::new() };
+        let parts = marginal.white_design.times(&solution.root.transpose());
         for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
             let (first, length) = (range.start, range.len());
-            let part = marginal.white_matrix.rows(first, length) * solution.root.transpose();
+            let part = parts.rows(first, length).into_owned();
             let leverage = Leverage::new(&part);
             // A series that determines a coefficient alone leaves none of its variance.
             let left = |share: f64| 1.0 + 1e-10 - share;
@@ -140,8 +141,9 @@ pub fn leave_groups_out(
             groups.entry(*group).or_default().push(row);
         }
     }
+    let white_columns = marginal.white_design.columns();
     for (group, out) in groups {
-        let matrix = marginal.white_matrix.select_rows(&out);
+        let matrix = white_columns.select_rows(&out);
         let target = marginal.white_target.select_rows(&out);
         let gram = &marginal.gram - matrix.tr_mul(&matrix);
         let moment = &marginal.moment - matrix.tr_mul(&target);
@@ -197,7 +199,7 @@ mod tests {
         let noise = Noise::new(&fewer, &problem.reference, &point.scales, &weights, &design.channels[1]);
         let matrix = design.matrix.rows(0, kept).into_owned();
         let target = design.target.rows(0, kept).into_owned();
-        let marginal = Marginal::new(&matrix, &target, &noise, &fewer.ranges()).unwrap();
+        let marginal = Marginal::new(&matrix, &[], &target, &noise, &fewer.ranges()).unwrap();
         let solution = marginal.solve(&point.variances).unwrap();
         let predicted = &design.matrix * &solution.mean;
         for row in kept..problem.len() {

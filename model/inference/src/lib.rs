@@ -133,6 +133,7 @@ mod test_problem;
 mod thinning;
 mod uncertainty;
 mod variance_gain;
+mod white_design;
 mod whitening;
 
 pub use basis::Basis;

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::covariance::Noise;
 use crate::variance_gain::VarianceGain;
+use crate::white_design::{SeriesColumns, WhiteDesign};
 use crate::whitening::Whitening;
 
 /// Products of a design with the precision of the noise.
@@ -23,7 +24,7 @@ pub(crate) struct Marginal {
     constant: f64,
     pub(crate) whitening: Whitening,
     /// `W A`, with `W V W' = I`.
-    pub(crate) white_matrix: DMatrix<f64>,
+    pub(crate) white_design: WhiteDesign,
     /// `W r`.
     pub(crate) white_target: DVector<f64>,
 }
@@ -42,20 +43,22 @@ impl Marginal {
     /// Computes the products; `None` if the covariance of the noise is not positive definite.
     pub(crate) fn new(
         matrix: &DMatrix<f64>,
+        of_series: &[SeriesColumns],
         target: &DVector<f64>,
         noise: &Noise<'_>,
         ranges: &[std::ops::Range<usize>],
     ) -> Option<Self> {
         let whitening = Whitening::new(noise, ranges)?;
-        let white_matrix = whitening.whiten(matrix);
+        let white_design = WhiteDesign::new(matrix, of_series, &whitening);
         let white_target = whitening.whiten_vector(target);
-        let transposed = white_matrix.transpose();
-        let gram = &transposed * &white_matrix;
-        let moment = &transposed * &white_target;
+        let gram = white_design.gram();
+        let moment =
+            white_design.transposed_times(&DMatrix::from_columns(std::slice::from_ref(&white_target)));
+        let moment = moment.column(0).into_owned();
         let constant = white_target.norm_squared()
             + whitening.log_determinant
             + target.len() as f64 * libm::log(2.0 * PI);
-        Some(Self { gram, moment, constant, whitening, white_matrix, white_target })
+        Some(Self { gram, moment, constant, whitening, white_design, white_target })
     }
 
     /// Returns the posterior of the coefficients for prior variances `l`, each zero or positive.
@@ -99,7 +102,7 @@ impl Marginal {
 
     /// Returns `W (r - A b)`.
     pub(crate) fn white_residual(&self, mean: &DVector<f64>) -> DVector<f64> {
-        &self.white_target - &self.white_matrix * mean
+        &self.white_target - self.white_design.times_vector(mean)
     }
 }
 
@@ -178,7 +181,7 @@ mod tests {
         let (fit, design, point) = fitted(&problem, &crate::Hypothesis::default());
         let noise = noise_of(&problem, &fit, &design, &point);
         let column = DMatrix::from_columns(&[design.matrix.column(0)]);
-        let marginal = Marginal::new(&column, &design.target, &noise, &problem.ranges).unwrap();
+        let marginal = Marginal::new(&column, &[], &design.target, &noise, &problem.ranges).unwrap();
         let exact = marginal.solve(&[0.25]).unwrap().log_likelihood;
         let flat = |b: f64| {
             let residual = marginal.white_residual(&DVector::from_element(1, b));

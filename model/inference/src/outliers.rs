@@ -15,6 +15,7 @@ use crate::noise::EXCLUDED;
 use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, student_tail};
 use crate::variance_gain::VarianceGain;
+use crate::white_design::WhiteDesign;
 use crate::whitening::Whitening;
 
 /// Prior probability that a series has a gross error, in one direction or both.
@@ -132,12 +133,14 @@ impl Outliers {
         let noise = noise_of(problem, linearised, &weights);
         let prior = libm::log(SERIES_PROBABILITY / (1.0 - SERIES_PROBABILITY));
         let whitening = Whitening::new(&noise, &problem.ranges)?;
-        let white_matrix = whitening.whiten(&linearised.design.matrix);
+        let design = &linearised.design;
+        let white_design = WhiteDesign::new(&design.matrix, &design.of_series, &whitening);
+        let parts = white_design.times(&solution.root.transpose());
         let difference = &linearised.design.target - &linearised.design.matrix * &solution.mean;
         let residual = whitening.whiten_vector(&difference);
         for (series, range) in whitening.ranges.iter().enumerate() {
             let (first, length) = (range.start, range.len());
-            let part = white_matrix.rows(first, length) * solution.root.transpose();
+            let part = parts.rows(first, length).into_owned();
             let leverage = Leverage::new(&part);
             let own = residual.rows(first, length).into_owned();
             // Precision of the residual given the other series, and its product with the residual.

@@ -70,7 +70,8 @@ impl ScaleProblem<'_> {
     pub(crate) fn at(&self, scales: Scales, log_sd: &BTreeMap<Component, f64>) -> Option<ScalePoint> {
         let (problem, design) = (self.problem, self.design);
         let noise = self.noise(&scales);
-        let marginal = Marginal::new(&design.matrix, &design.target, &noise, &problem.ranges)?;
+        let marginal =
+            Marginal::new(&design.matrix, &design.of_series, &design.target, &noise, &problem.ranges)?;
         let size = |effect: usize| self.size_variances.get(&effect).copied().unwrap_or(0.0);
         let variances = design.prior_variances(&problem.space, log_sd, size);
         let solution = marginal.solve(&variances)?;
@@ -140,7 +141,7 @@ impl ScaleProblem<'_> {
     pub(crate) fn slopes(&self, point: &ScalePoint) -> Slopes {
         let (mut gradient, tangents) = self.likelihood_gradient(point);
         let white = point.marginal.whitening.whiten(&tangents);
-        let projected = point.marginal.white_matrix.transpose() * &white;
+        let projected = point.marginal.white_design.transposed_times(&white);
         let explained = &point.solution.root * &projected;
         let mut information = (white.transpose() * &white - explained.transpose() * &explained) * 0.5;
         for (i, (slope, curvature)) in self.prior_slopes(point).into_iter().enumerate() {
@@ -169,7 +170,7 @@ impl ScaleProblem<'_> {
         let noise = self.noise(&point.scales);
         let (marginal, solution) = (&point.marginal, &point.solution);
         let white_residual = marginal.white_residual(&solution.mean);
-        let leverage = &marginal.white_matrix * solution.root.transpose();
+        let leverage = marginal.white_design.times(&solution.root.transpose());
         for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
             let (first, length) = (range.start, range.len());
             let mut alpha = white_residual.rows(first, length).into_owned();

@@ -68,7 +68,7 @@ impl Linearised {
 
 /// Returns the derivatives of the posterior mean with respect to the logarithms of the scales, from the columns `dV P r`.
 fn derivatives_of_mean(at: &ScaleProblem<'_>, point: &ScalePoint, tangents: &DMatrix<f64>) -> DMatrix<f64> {
-    let projected = point.marginal.white_matrix.tr_mul(&point.marginal.whitening.whiten(tangents));
+    let projected = point.marginal.white_design.transposed_times(&point.marginal.whitening.whiten(tangents));
     let mut shifts = &point.solution.covariance * projected;
     shifts.iter_mut().for_each(|shift| *shift = -*shift);
     for (i, component) in point.log_sd.keys().enumerate() {
@@ -83,7 +83,7 @@ fn derivatives_of_mean(at: &ScaleProblem<'_>, point: &ScalePoint, tangents: &DMa
 fn derivatives_of_variance(at: &ScaleProblem<'_>, point: &ScalePoint, coefficient: usize) -> DVector<f64> {
     let mut slopes = DVector::zeros(SCALES + point.log_sd.len());
     let column = point.solution.covariance.column(coefficient);
-    let white = &point.marginal.white_matrix * column;
+    let white = point.marginal.white_design.times_vector(&column.into_owned());
     let noise = at.noise(&point.scales);
     for (range, root) in point.marginal.whitening.ranges.iter().zip(&point.marginal.whitening.roots) {
         let mut alpha = white.rows(range.start, range.len()).into_owned();

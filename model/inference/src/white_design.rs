@@ -1,0 +1,186 @@
+//! The design in standard deviations of the noise, with the columns that are constant within each series apart.
+//!
+//! A component such as mounts, or a curve over time, has the columns `c_s b_s'` at the rows of series `s`, with the sensitivity
+//! `c_s` to its channel and one row `b_s` for the series. White, they are `v_s b_s'` with `v_s = W_s c_s`: their products need one
+//! column and sums over the series, however many columns the component has.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::whitening::Whitening;
+
+/// Columns of a component that are constant within each series, times the sensitivity to its channel.
+#[derive(Clone, Debug)]
+pub(crate) struct SeriesColumns {
+    /// Indices of the columns.
+    pub(crate) columns: Range<usize>,
+    /// Sensitivity of each row.
+    pub(crate) sensitivity: DVector<f64>,
+    /// One row per series, one column per column.
+    pub(crate) by_series: DMatrix<f64>,
+}
+
+/// `W A`, with `W V W' = I`.
+#[derive(Clone, Debug)]
+pub(crate) struct WhiteDesign {
+    /// Indices of the columns that vary within a series, and these.
+    own: (Vec<usize>, DMatrix<f64>),
+    /// The others, each with its white sensitivity in place of it.
+    of_series: Vec<SeriesColumns>,
+    ranges: Vec<Range<usize>>,
+    columns: usize,
+}
+
+impl WhiteDesign {
+    pub(crate) fn new(matrix: &DMatrix<f64>, of_series: &[SeriesColumns], whitening: &Whitening) -> Self {
+        let is_own = |column: &usize| !of_series.iter().any(|of| of.columns.contains(column));
+        let own: Vec<usize> = (0..matrix.ncols()).filter(is_own).collect();
+        let white_own = whitening.whiten(&matrix.select_columns(&own));
+        let white = |of: &SeriesColumns| SeriesColumns {
+            sensitivity: whitening.whiten_vector(&of.sensitivity),
+            ..of.clone()
+        };
+        Self {
+            own: (own, white_own),
+            of_series: of_series.iter().map(white).collect(),
+            ranges: whitening.ranges.clone(),
+            columns: matrix.ncols(),
+        }
+    }
+
+    /// Returns one row per series: the products of two columns there.
+    fn products_of_series(&self, first: &DVector<f64>, second: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(self.ranges.len(), second.ncols(), |series, j| {
+            let range = &self.ranges[series];
+            let rows = (range.start, range.len());
+            first.rows(rows.0, rows.1).dot(&second.column(j).rows(rows.0, rows.1))
+        })
+    }
+
+    /// Returns `A'W'W A`.
+    pub(crate) fn gram(&self) -> DMatrix<f64> {
+        let (indices, own) = &self.own;
+        let mut gram = DMatrix::zeros(self.columns, self.columns);
+        let of_own = own.transpose() * own;
+        for (i, row) in indices.iter().enumerate() {
+            indices.iter().enumerate().for_each(|(j, column)| gram[(*row, *column)] = of_own[(i, j)]);
+        }
+        for (nth, of) in self.of_series.iter().enumerate() {
+            let with_own = self.products_of_series(&of.sensitivity, own).transpose() * &of.by_series;
+            for (i, row) in indices.iter().enumerate() {
+                for (j, column) in of.columns.clone().enumerate() {
+                    gram[(*row, column)] = with_own[(i, j)];
+                    gram[(column, *row)] = with_own[(i, j)];
+                }
+            }
+            for other in &self.of_series[..=nth] {
+                let other_column = DMatrix::from_columns(std::slice::from_ref(&other.sensitivity));
+                let weights = self.products_of_series(&of.sensitivity, &other_column);
+                let weighted = DMatrix::from_fn(self.ranges.len(), of.columns.len(), |series, j| {
+                    weights[series] * of.by_series[(series, j)]
+                });
+                let product = weighted.transpose() * &other.by_series;
+                for (i, row) in of.columns.clone().enumerate() {
+                    for (j, column) in other.columns.clone().enumerate() {
+                        gram[(row, column)] = product[(i, j)];
+                        gram[(column, row)] = product[(i, j)];
+                    }
+                }
+            }
+        }
+        gram
+    }
+
+    /// Returns `W A B`.
+    pub(crate) fn times(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        let (indices, own) = &self.own;
+        let mut product = own * right.select_rows(indices);
+        for of in &self.of_series {
+            let of_series = &of.by_series * right.rows(of.columns.start, of.columns.len());
+            for (j, mut column) in product.column_iter_mut().enumerate() {
+                for (series, range) in self.ranges.iter().enumerate() {
+                    let factor = of_series[(series, j)];
+                    if factor != 0.0 {
+                        let sensitivity = of.sensitivity.rows(range.start, range.len());
+                        column.rows_mut(range.start, range.len()).axpy(factor, &sensitivity, 1.0);
+                    }
+                }
+            }
+        }
+        product
+    }
+
+    /// Returns `W A b`.
+    pub(crate) fn times_vector(&self, right: &DVector<f64>) -> DVector<f64> {
+        self.times(&DMatrix::from_columns(std::slice::from_ref(right))).column(0).into_owned()
+    }
+
+    /// Returns `A'W'X` for white columns.
+    pub(crate) fn transposed_times(&self, white: &DMatrix<f64>) -> DMatrix<f64> {
+        let (indices, own) = &self.own;
+        let mut product = DMatrix::zeros(self.columns, white.ncols());
+        let of_own = own.transpose() * white;
+        indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.row(i)));
+        for of in &self.of_series {
+            let rows = of.by_series.transpose() * self.products_of_series(&of.sensitivity, white);
+            product.rows_mut(of.columns.start, of.columns.len()).copy_from(&rows);
+        }
+        product
+    }
+
+    /// Returns `A_s'W_s'x_s`, one column per series, for a white column.
+    pub(crate) fn transposed_times_series(&self, white: &DVector<f64>) -> DMatrix<f64> {
+        let (indices, own) = &self.own;
+        let mut product = DMatrix::zeros(self.columns, self.ranges.len());
+        let of_own = self.products_of_series(white, own);
+        indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.column(i).transpose()));
+        let white = DMatrix::from_columns(std::slice::from_ref(white));
+        for of in &self.of_series {
+            let shared = self.products_of_series(&of.sensitivity, &white);
+            for (i, row) in of.columns.clone().enumerate() {
+                for series in 0..self.ranges.len() {
+                    product[(row, series)] = shared[series] * of.by_series[(series, i)];
+                }
+            }
+        }
+        product
+    }
+
+    /// Returns all columns.
+    pub(crate) fn columns(&self) -> DMatrix<f64> {
+        self.times(&DMatrix::identity(self.columns, self.columns))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::test_problem::{fitted, full_hypothesis, long_problem};
+
+    /// Products agree with those of all columns, whichever of them are apart.
+    #[test]
+    fn products_are_those_of_all_columns() {
+        let problem = long_problem(7, 9, 0.4);
+        let (_, design, point) = fitted(&problem, &full_hypothesis());
+        assert!(design.of_series.len() > 1, "mounts and levels of the load");
+        let whitening = &point.marginal.whitening;
+        let apart = WhiteDesign::new(&design.matrix, &design.of_series, whitening);
+        let columns = whitening.whiten(&design.matrix);
+        let mut random = Random::new(3);
+        let right = DMatrix::from_fn(design.matrix.ncols(), 4, |_, _| random.normal());
+        let white = DMatrix::from_fn(problem.len(), 3, |_, _| random.normal());
+        let is_close = |found: &DMatrix<f64>, expected: &DMatrix<f64>| {
+            assert!((found - expected).amax() < 1e-9 * expected.amax(), "{found} {expected}");
+        };
+        is_close(&apart.columns(), &columns);
+        is_close(&apart.gram(), &columns.tr_mul(&columns));
+        is_close(&apart.times(&right), &(&columns * &right));
+        is_close(&apart.transposed_times(&white), &columns.tr_mul(&white));
+        let first = white.column(0).into_owned();
+        let by_series = apart.transposed_times_series(&first);
+        let sum = DMatrix::from_columns(&[by_series.column_sum()]);
+        is_close(&sum, &columns.tr_mul(&white.columns(0, 1)));
+    }
+}

@@ -128,7 +128,7 @@ impl SessionView {
         let mut steps = vec![0.0; problem.len()];
         for (kernel, _) in fit.hypothesis.kernels() {
             let of = &problem.space.kernels[kernel];
-            if !of.is_session_bound && !of.is_level_of_session {
+            if of.is_gross_error || (!of.is_session_bound && !of.is_level_of_session) {
                 continue;
             }
             let channel = design.sensitivity(&problem.space, Component::Kernel(kernel));

@@ -5,11 +5,15 @@
 //! hypothesis. Single readings are tested one by one with Bonferroni's correction, against Student's t
 //! distribution of the noise.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::covariance::Noise;
+use crate::design::Component;
 use crate::fit::Fit;
 use crate::half_t::HalfT;
+use crate::hypothesis::Member;
 use crate::leave_out::{Leverage, Linearised};
 use crate::noise::EXCLUDED;
 use crate::problem::Problem;
@@ -97,6 +101,42 @@ impl Outliers {
         outliers.find_readings(problem, fit, &linearised);
         outliers.find_series(problem, fit, &linearised)?;
         Some(outliers)
+    }
+
+    /// Adds the series whose gross error is a probable member of the best hypothesis.
+    pub(crate) fn add_gross_errors(
+        &mut self,
+        problem: &Problem,
+        best: &Fit,
+        probability_of: impl Fn(Member) -> f64,
+    ) {
+        let kernels = best.hypothesis.kernels().filter(|(k, _)| problem.space.kernels[*k].is_gross_error);
+        let probable: Vec<(usize, usize, f64)> = kernels
+            .map(|(kernel, variant)| (kernel, variant, probability_of(Member::Kernel(kernel))))
+            .filter(|(.., probability)| *probability > LISTED_PROBABILITY)
+            .collect();
+        if probable.is_empty() {
+            return;
+        }
+        let Some(Linearised { design, point }) = Linearised::new(problem, best) else { return };
+        for (kernel, variant, probability) in probable {
+            let basis = &problem.rows.bases[kernel][variant];
+            let rows: Vec<usize> =
+                (0..problem.len()).filter(|row| basis.at(*row).iter().any(|x| *x != 0.0)).collect();
+            let Some(column) = design.columns_of(Component::Kernel(kernel)).first().copied() else {
+                continue;
+            };
+            let (offset, sd) =
+                (point.solution.mean[column], point.solution.covariance[(column, column)].sqrt());
+            let found: BTreeSet<(usize, bool)> =
+                rows.iter().map(|row| (problem.rows.series[*row], problem.rows.direction[*row])).collect();
+            for (series, direction) in found {
+                self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
+            }
+            rows.into_iter().for_each(|row| self.rows[row] = true);
+        }
+        self.series.sort_by_key(|of| (of.series, of.direction));
+        self.series.dedup_by_key(|of| (of.series, of.direction));
     }
 
     /// Returns whether a row has a gross error, or belongs to a series that has one.

@@ -76,18 +76,11 @@ pub struct Posterior {
 /// seed is that of the interval of the expected error.
 pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Posterior> {
     let mut excluded: Vec<bool> = Vec::new();
-    let mut gross_errors = vec![false; problem.len()];
     let mut search = Search::new(problem, options, &excluded);
     let mut window = search.run();
     let mut fits = search.fit_count;
     for _ in 0..MOST_EXCLUSIONS {
-        let best = window.first()?;
-        let mut suspected = Outliers::suspected(problem, best);
-        gross_errors
-            .iter_mut()
-            .zip(rows_in_error(problem, &best.hypothesis))
-            .for_each(|(all, new)| *all |= new);
-        suspected.iter_mut().zip(&gross_errors).for_each(|(suspected, is_wrong)| *suspected |= is_wrong);
+        let suspected = Outliers::suspected(problem, window.first()?);
         let is_new = suspected
             .iter()
             .enumerate()
@@ -107,7 +100,12 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     // The baseline alone is a start for other hypotheses, which are scored later.
     let is_baseline = options.members == 0;
     let candidates = if is_baseline { Vec::new() } else { candidates(problem, best, &reported) };
-    let outliers = Outliers::new(problem, best);
+    let mut outliers = Outliers::new(problem, best);
+    let probability_of = |member: Member| {
+        let inside = window.iter().zip(&probabilities).filter(|(fit, _)| fit.hypothesis.contains(member));
+        inside.map(|(_, probability)| probability).sum::<f64>().min(1.0)
+    };
+    outliers.add_gross_errors(problem, best, probability_of);
     let error_of =
         |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
     let expected_error = error_of(&window, &probabilities);
@@ -127,18 +125,6 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
         baseline_error,
         fit_count,
     })
-}
-
-/// Returns whether each row is in error by a kernel of a hypothesis.
-fn rows_in_error(problem: &Problem, hypothesis: &Hypothesis) -> Vec<bool> {
-    let mut rows = vec![false; problem.len()];
-    for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| problem.space.kernels[*k].is_gross_error) {
-        let basis = &problem.rows.bases[kernel][variant];
-        rows.iter_mut()
-            .enumerate()
-            .for_each(|(row, is_in)| *is_in |= basis.at(row).iter().any(|x| *x != 0.0));
-    }
-    rows
 }
 
 /// An effect that is not reported.

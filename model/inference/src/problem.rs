@@ -63,8 +63,7 @@ pub struct Kernel {
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
     pub noise_probability: Option<f64>,
-    /// Whether it is a gross error of the rows where its basis is not zero: where it belongs to the best
-    /// hypothesis, they are excluded.
+    /// Whether it is a gross error of the rows where its basis is not zero, which no other session has.
     pub is_gross_error: bool,
 }
 

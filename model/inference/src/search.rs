@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::fit::{Fit, Start};
 use crate::hypothesis::{Element, Hypothesis, Member};
+use crate::noise::EXCLUDED;
 use crate::problem::Problem;
 use crate::score::{Addition, Scores};
 use crate::thinning::Thinned;
@@ -46,6 +47,8 @@ impl SearchOptions {
 const LARGE_TABLE: usize = 1000;
 /// Loss in nats up to which a usual effect is removed at the start.
 const THINNING_LOSS: f64 = 1.0;
+/// Gross errors that are fitted in an expansion.
+const GROSS_ERRORS: usize = 2;
 /// Forms of a member that are fitted in an expansion.
 const MOST_FORMS: usize = 8;
 /// Exchanges that are fitted for each member.
@@ -241,7 +244,8 @@ impl<'a> Search<'a> {
 
     fn expand(&mut self, fit: &Fit) {
         let Some(scores) = Scores::new(self.problem, fit) else { return };
-        if fit.hypothesis.len() < self.options.members {
+        let gross_errors = fit.hypothesis.members().filter(|member| self.is_gross_error(*member)).count();
+        if fit.hypothesis.len() - gross_errors < self.options.members {
             self.add(fit, &scores.additions(None));
             // Scatter that stands for missing structure hides it: the additions count again by the
             // noise of repeated readings.
@@ -258,6 +262,24 @@ impl<'a> Search<'a> {
         }
     }
 
+    fn is_gross_error(&self, member: Member) -> bool {
+        matches!(member, Member::Kernel(kernel) if self.problem.space.kernels[kernel].is_gross_error)
+    }
+
+    /// Fits a gross error that is added, from the noise of repeated readings, where its rows count: scatter between series and
+    /// small weights of Student's t explain it, too, and a fit would stay with them.
+    fn fit_gross_error(&mut self, fit: &Fit, addition: &Addition) {
+        let Element { member: Member::Kernel(kernel), form } = addition.element else { return };
+        let mut start = fit.clone();
+        start.mode.scales = fit.mode.scales.quiet(&self.problem.reference).unwrap_or(fit.mode.scales);
+        let basis = &self.problem.rows.bases[kernel][form];
+        let in_error = (0..self.problem.len()).filter(|row| basis.at(*row).iter().any(|x| *x != 0.0));
+        for row in in_error.filter(|row| fit.mode.weights[*row] != EXCLUDED) {
+            start.mode.weights[row] = 1.0;
+        }
+        self.fit(&addition.hypothesis, start_of(&start, addition));
+    }
+
     /// Fits the best additions.
     fn add(&mut self, fit: &Fit, additions: &[Addition]) {
         let Some(top) = additions.first().map(|a| a.score) else { return };
@@ -266,15 +288,21 @@ impl<'a> Search<'a> {
         let least = usual.max(base - self.selectivity.added_loss);
         let mut effects: Vec<Member> = Vec::new();
         let mut kernels: Vec<Member> = Vec::new();
+        let mut gross_errors: Vec<Member> = Vec::new();
         for addition in additions.iter().filter(|a| a.score > least) {
             let member = addition.element.member;
             let (members, most) = match member {
                 Member::Effect(_) => (&mut effects, self.options.width),
+                member if self.is_gross_error(member) => (&mut gross_errors, GROSS_ERRORS),
                 Member::Kernel(_) => (&mut kernels, (self.options.width / 2).max(2)),
             };
             if members.len() < most && !members.contains(&member) {
                 members.push(member);
-                self.fit(&addition.hypothesis, start_of(fit, addition));
+                if self.is_gross_error(member) {
+                    self.fit_gross_error(fit, addition);
+                } else {
+                    self.fit(&addition.hypothesis, start_of(fit, addition));
+                }
             }
         }
         let least = (top - self.selectivity.form).max(base - 2.0);

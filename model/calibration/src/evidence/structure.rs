@@ -37,7 +37,7 @@ pub(super) const NOISE: &str = "noise";
 const GROSS_ERROR: &str = "gross error";
 /// Prior probability that a series has a gross error.
 const GROSS_ERROR_PROBABILITY: f64 = 0.01;
-/// Series up to which a gross error of each is a variant. It raises the scatter between `n` series, of which it is at most
+/// Series up to which a gross error of each is a hypothesis. It raises the scatter between `n` series, of which it is at most
 /// `sqrt(n)` standard deviations: among more, it is listed in any case.
 const MOST_HIDING_SERIES: usize = 30;
 /// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
@@ -113,7 +113,7 @@ impl Structure {
             is_level_of_session: self.record == Record::Table(Abscissa::Session, true),
             noise_probability: match self.covariate {
                 NOISE => Some(WANDERING_PROBABILITY),
-                GROSS_ERROR => Some(gross_error_probability(self.bases.len())),
+                GROSS_ERROR => Some(GROSS_ERROR_PROBABILITY),
                 _ => None,
             },
             is_gross_error: self.covariate == GROSS_ERROR,
@@ -216,7 +216,10 @@ impl Collector<'_> {
         if variants.is_empty() {
             return;
         }
-        let mean = |variant: &Variant| variant.columns(self.rows).row_mean().iter().copied().collect();
+        // No other session has a gross error of this one.
+        let share = if covariate == GROSS_ERROR { 0.0 } else { 1.0 };
+        let mean =
+            |variant: &Variant| variant.columns(self.rows).row_mean().iter().map(|x| share * x).collect();
         let means: Vec<Vec<f64>> = variants.iter().map(mean).collect();
         let bases = std::rc::Rc::new(variants);
         for channel in channels {
@@ -295,15 +298,13 @@ impl Collector<'_> {
         if count > MOST_HIDING_SERIES {
             return;
         }
-        let probability = 1.0 / count as f64;
-        let of_series = |series: usize| {
+        for series in 0..count {
             let is_in = move |of: &usize| f64::from(u8::from(*of == series));
             let basis: BasisOfRows =
                 Box::new(move |rows| kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>()));
-            Variant { basis, factor: 1.0, probability }
-        };
-        let variants = (0..count).map(of_series).collect();
-        self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
+            let variants = vec![Variant { basis, factor: 1.0, probability: 1.0 }];
+            self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
+        }
     }
 
     fn along_a_series(&mut self) {
@@ -537,12 +538,6 @@ fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
             Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
         })
         .collect()
-}
-
-/// Returns the probability of a kernel with a gross error of one of `count` series, each of which has the prior odds of one.
-fn gross_error_probability(count: usize) -> f64 {
-    let odds = count as f64 * GROSS_ERROR_PROBABILITY / (1.0 - GROSS_ERROR_PROBABILITY);
-    odds / (1.0 + odds)
 }
 
 /// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that

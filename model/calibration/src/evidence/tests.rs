@@ -128,16 +128,16 @@ fn structure_is_reported_with_its_covariate() {
 #[test]
 fn a_scale_of_the_cell_that_changes_is_the_cells() {
     let end = session(11).iter().map(|row| row.time_s).fold(1.0, f64::max);
-    let gains: [(&str, &dyn Fn(&PlateauRow) -> f64); 2] = [
-        ("gain over time", &|row| 0.04 * row.time_s / end),
-        ("gain over operator", &|row| if row.labels.operator == "B" { 0.04 } else { 0.0 }),
-    ];
-    for (name, gain) in gains {
+    for name in ["gain over time", "gain over operator"] {
         let mut rows = session(11);
         for row in &mut rows {
             let is_second = row.series.len() % 2 == 0 || row.series.ends_with(['1', '4', '5', '8']);
             row.labels.operator = if is_second { "B" } else { "A" }.to_owned();
-            row.force_n *= 1.0 + gain(row);
+            row.force_n *= match name {
+                "gain over time" => 1.0 + 0.04 * row.time_s / end,
+                _ if is_second => 1.04,
+                _ => 1.0,
+            };
         }
         assert_eq!(reported(&evidence(&rows)), [name]);
     }
@@ -170,7 +170,7 @@ fn a_long_series_is_one() {
 /// Series that are wrong among few are gross errors: they do not hide behind the scatter that they make, and are no structure.
 #[test]
 fn a_wrong_series_among_few_is_a_gross_error() {
-    for (seed, series, change) in [(12, "4", 3.0), (13, "0", -1.0), (14, "11", 1.0)] {
+    for (seed, series, change) in [(12, "4", 3.0), (13, "0", -1.0), (14, "11", 15.0)] {
         let mut rows = session(seed);
         rows.retain(|row| row.series.parse::<usize>().unwrap() < 12);
         let sound = evidence(&rows);

@@ -34,6 +34,11 @@ impl Basis {
         &self.values[row * self.columns..(row + 1) * self.columns]
     }
 
+    /// Returns the readings where it is not zero.
+    pub(crate) fn support(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.readings()).filter(|reading| self.at(*reading).iter().any(|x| *x != 0.0))
+    }
+
     /// Returns the function with these coefficients at each reading.
     pub fn function(&self, coefficients: &[f64]) -> Vec<f64> {
         let value = |reading| self.at(reading).iter().zip(coefficients).map(|(x, c)| x * c).sum();

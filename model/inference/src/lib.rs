@@ -146,7 +146,7 @@ pub use hypothesis::{Element, Hypothesis, Member};
 pub use information::information;
 pub use leave_out::leave_groups_out;
 pub use noise::{NoiseReference, Scales};
-pub use outliers::{Outliers, OutlyingReading, OutlyingSeries};
+pub use outliers::{Outliers, OutlyingReading, OutlyingSeries, SERIES_PROBABILITY};
 pub use posterior::{Candidate, Posterior, Reported, SizeEstimate, best_additions, infer};
 pub use prediction::Prediction;
 pub use problem::{

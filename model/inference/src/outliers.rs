@@ -23,7 +23,7 @@ use crate::white_design::WhiteDesign;
 use crate::whitening::Whitening;
 
 /// Prior probability that a series has a gross error, in one direction or both.
-const SERIES_PROBABILITY: f64 = 0.01;
+pub const SERIES_PROBABILITY: f64 = 0.01;
 /// Scale of the half-Cauchy prior of the offset of such a series, in repetition noise.
 const SERIES_SCALE: f64 = 10.0;
 /// Posterior probability above which a series is listed, and excluded from the fits: a gross error inflates
@@ -120,9 +120,7 @@ impl Outliers {
         }
         let Some(Linearised { design, point }) = Linearised::new(problem, best) else { return };
         for (kernel, variant, probability) in probable {
-            let basis = &problem.rows.bases[kernel][variant];
-            let rows: Vec<usize> =
-                (0..problem.len()).filter(|row| basis.at(*row).iter().any(|x| *x != 0.0)).collect();
+            let rows: Vec<usize> = problem.rows.bases[kernel][variant].support().collect();
             let Some(column) = design.columns_of(Component::Kernel(kernel)).first().copied() else {
                 continue;
             };

@@ -101,11 +101,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let is_baseline = options.members == 0;
     let candidates = if is_baseline { Vec::new() } else { candidates(problem, best, &reported) };
     let mut outliers = Outliers::new(problem, best);
-    let probability_of = |member: Member| {
-        let inside = window.iter().zip(&probabilities).filter(|(fit, _)| fit.hypothesis.contains(member));
-        inside.map(|(_, probability)| probability).sum::<f64>().min(1.0)
-    };
-    outliers.add_gross_errors(problem, best, probability_of);
+    outliers.add_gross_errors(problem, best, |member| probability(&window, &probabilities, member));
     let error_of =
         |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
     let expected_error = error_of(&window, &probabilities);
@@ -125,6 +121,22 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
         baseline_error,
         fit_count,
     })
+}
+
+/// Returns the fits of a window that contain a member, with their probabilities.
+fn containing<'a>(
+    window: &'a [Fit],
+    probabilities: &'a [f64],
+    member: Member,
+) -> impl Iterator<Item = (&'a Fit, f64)> {
+    let fits = window.iter().zip(probabilities.iter().copied());
+    fits.filter(move |(fit, _)| fit.hypothesis.contains(member))
+}
+
+/// Returns the probability of a member.
+fn probability(window: &[Fit], probabilities: &[f64], member: Member) -> f64 {
+    // A sum of rounded probabilities may exceed 1.
+    containing(window, probabilities, member).map(|(_, probability)| probability).sum::<f64>().min(1.0)
 }
 
 /// An effect that is not reported.
@@ -219,13 +231,11 @@ impl Posterior {
 
     /// Returns the probability of a member.
     pub fn probability(&self, member: Member) -> f64 {
-        // A sum of rounded probabilities may exceed 1.
-        self.containing(member).map(|(_, probability)| probability).sum::<f64>().min(1.0)
+        probability(&self.window, &self.probabilities, member)
     }
 
     fn containing(&self, member: Member) -> impl Iterator<Item = (&Fit, f64)> {
-        let fits = self.window.iter().zip(self.probabilities.iter().copied());
-        fits.filter(move |(fit, _)| fit.hypothesis.contains(member))
+        containing(&self.window, &self.probabilities, member)
     }
 
     /// Returns the size of an effect, given that it acts: a mixture over the window. `None` for an effect

@@ -273,8 +273,7 @@ impl<'a> Search<'a> {
         let mut start = fit.clone();
         start.mode.scales = fit.mode.scales.quiet(&self.problem.reference).unwrap_or(fit.mode.scales);
         let basis = &self.problem.rows.bases[kernel][form];
-        let in_error = (0..self.problem.len()).filter(|row| basis.at(*row).iter().any(|x| *x != 0.0));
-        for row in in_error.filter(|row| fit.mode.weights[*row] != EXCLUDED) {
+        for row in basis.support().filter(|row| fit.mode.weights[*row] != EXCLUDED) {
             start.mode.weights[row] = 1.0;
         }
         self.fit(&addition.hypothesis, start_of(&start, addition));

@@ -2,7 +2,7 @@
 //! sampling.
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Basis, Kernel, kernel};
+use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, kernel};
 
 use super::Session;
 use super::covariates::{Covariates, RowLabels, distinct};
@@ -35,8 +35,6 @@ const MOST_INTERVAL_SERIES: usize = 24;
 pub(super) const NOISE: &str = "noise";
 /// Covariate of gross errors of a series.
 const GROSS_ERROR: &str = "gross error";
-/// Prior probability that a series has a gross error.
-const GROSS_ERROR_PROBABILITY: f64 = 0.01;
 /// Series up to which a gross error of each is a hypothesis. It raises the scatter between `n` series, of which it is at most
 /// `sqrt(n)` standard deviations: among more, it is listed in any case.
 const MOST_HIDING_SERIES: usize = 30;
@@ -113,7 +111,7 @@ impl Structure {
             is_level_of_session: self.record == Record::Table(Abscissa::Session, true),
             noise_probability: match self.covariate {
                 NOISE => Some(WANDERING_PROBABILITY),
-                GROSS_ERROR => Some(GROSS_ERROR_PROBABILITY),
+                GROSS_ERROR => Some(SERIES_PROBABILITY),
                 _ => None,
             },
             is_gross_error: self.covariate == GROSS_ERROR,
@@ -484,14 +482,7 @@ impl Collector<'_> {
             MEASURING,
             |_, label| label.operator.clone(),
         );
-        let sessions = &[
-            Channel::Reading,
-            Channel::Drag,
-            Channel::Friction,
-            Channel::Pins,
-            Channel::Silicone,
-            Channel::Gain,
-        ];
+        let sessions = &[switches.as_slice(), &[Channel::Gain]].concat();
         self.levels("session", "session", Record::Table(Abscissa::Session, true), sessions, |_, label| {
             label.session.clone()
         });

@@ -5,7 +5,8 @@ use pinswitch_inference::{Coefficient, Coefficients, Fit, Member, Outliers, Size
 
 use super::forward::Channel;
 use super::priors::EffectPrior;
-use super::structure::{MEMORY_REPETITIONS, Record, Structure};
+use super::structure::{Record, Structure};
+use super::table_kernels::MEMORY_REPETITIONS;
 use super::{Evidence, SPECIMEN};
 use crate::effects::{self, Abscissa, Covariate, REFERENCE_LOAD_N, Shape};
 use crate::model::{Discrepancy, Model, Noise, Spread, Term, Wandering};

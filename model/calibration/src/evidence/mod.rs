@@ -11,8 +11,10 @@ mod fitted;
 mod forward;
 mod priors;
 mod structure;
+mod table_kernels;
 #[cfg(test)]
 mod tests;
+mod time_kernels;
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -29,7 +31,8 @@ use pinswitch_inference::{
 use self::covariates::{Covariates, RowLabels};
 use self::forward::{Baseline, Channel, FrictionModel, is_of_friction};
 use self::priors::EffectPrior;
-use self::structure::{Structure, structures};
+use self::structure::Structure;
+use self::table_kernels::structures;
 use crate::effects::Vocabulary;
 use crate::model::{DiscrepancyFactor, Largest, Model};
 use crate::table::{Condition, Frame, PlateauRow, Point, Unknown};

@@ -1,62 +1,22 @@
-//! Unnamed structure that a table can show: kernels over its covariates, none finer than the
-//! sampling.
+//! A kernel of unnamed structure, with its bases at the rows of the fitted session and of a new one.
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, kernel};
+use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY};
 
 use super::Session;
-use super::covariates::{Covariates, RowLabels, distinct};
+use super::covariates::Covariates;
 use super::forward::Channel;
-use crate::effects::{Abscissa, REFERENCE_LOAD_N};
-use crate::table::Point;
+use crate::effects::Abscissa;
 
-/// Scale of the standard deviation of structure: a force in newtons, and relative.
-const FORCE_SCALE_N: f64 = 0.3;
-const RELATIVE_SCALE: f64 = 0.08;
-/// The same for the scale of the load cell, which is more exact than friction.
-const GAIN_SCALE: f64 = 0.02;
-/// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
-const TIME_RANK: usize = 24;
-/// Series up to which time also varies within them.
-const FEW_SERIES: usize = 4;
-/// Probability that structure over time acts in one interval, rather than as Brownian motion.
-const INTERVAL_PROBABILITY: f64 = 0.4;
-/// Probability that it is a wave.
-const WAVE_PROBABILITY: f64 = 0.2;
-/// Steps between the numbers of cycles of waves, and the largest number.
-const WAVE_STEP: f64 = 0.5;
-const MOST_CYCLES: f64 = 40.0;
-/// Series of a cycle, below which a wave is finer than the sampling (Nyquist's limit); one of a series is
-/// its schedule.
-const SERIES_OF_CYCLE: f64 = 2.0;
-/// Series up to which every interval is a variant; in a longer table, only those up to its end.
-const MOST_INTERVAL_SERIES: usize = 24;
 /// Covariate of noise.
 pub(super) const NOISE: &str = "noise";
 /// Covariate of gross errors of a series.
-const GROSS_ERROR: &str = "gross error";
-/// Series up to which a gross error of each is a hypothesis. It raises the scatter between `n` series, of which it is at most
-/// `sqrt(n)` standard deviations: among more, it is listed in any case.
-const MOST_HIDING_SERIES: usize = 30;
+pub(super) const GROSS_ERROR: &str = "gross error";
 /// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
 const WANDERING_PROBABILITY: f64 = 0.05;
-/// Correlations of consecutive series, and the rank of their process: what is finer has little variance
-/// next to independent offsets.
-const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
-/// Fewest series for a memory of six series, which is then shorter than the table.
-const LEAST_WANDERING_SERIES: usize = 24;
-/// Most loads and most conditions that are levels of a factor.
-const MOST_LOADS: usize = 14;
-const MOST_LEVELS: usize = 20;
-/// Repetitions after which the memory of the previous load has decayed to 1/e.
-pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
-/// Channels of structure that may be a force or friction.
-const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
-/// The same for what may also change the scale of the load cell: who measures, how fast, and after which pause.
-const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Gain];
 
 /// A function of the rows that returns a basis.
-type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
+pub(super) type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
 
 /// How a model file keeps the function of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,15 +32,15 @@ pub(super) enum Record {
 }
 
 /// A discrete form of a kernel.
-struct Variant {
-    basis: BasisOfRows,
+pub(super) struct Variant {
+    pub(super) basis: BasisOfRows,
     /// Factor of the basis.
-    factor: f64,
-    probability: f64,
+    pub(super) factor: f64,
+    pub(super) probability: f64,
 }
 
 impl Variant {
-    fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
+    pub(super) fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
         (self.basis)(rows) * self.factor
     }
 }
@@ -91,11 +51,11 @@ pub(super) struct Structure {
     pub(super) name: String,
     pub(super) channel: Channel,
     pub(super) record: Record,
-    is_session_bound: bool,
-    scale: f64,
-    bases: std::rc::Rc<Vec<Variant>>,
+    pub(super) is_session_bound: bool,
+    pub(super) scale: f64,
+    pub(super) bases: std::rc::Rc<Vec<Variant>>,
     /// Mean rows of the bases on the fitted table.
-    means: Vec<Vec<f64>>,
+    pub(super) means: Vec<Vec<f64>>,
 }
 
 impl Structure {
@@ -146,451 +106,4 @@ pub(super) fn bases(structures: &[Structure], rows: &Covariates, session: Sessio
         }));
     }
     all
-}
-
-/// Collects the kernels of a table.
-struct Collector<'a> {
-    rows: &'a Covariates,
-    force_unit: f64,
-    has_both_materials: bool,
-    structures: Vec<Structure>,
-}
-
-/// Returns the kernels that a table supports. Forces are `force_unit` times larger than on the
-/// paper's rig.
-pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
-    let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
-    // Without a clock the order of the series is not known.
-    let has_clock = distinct(&rows.column(|p| p.time_s)) > 1;
-    if has_clock {
-        collector.time();
-        collector.wandering();
-        collector.previous_load();
-    }
-    collector.gross_errors();
-    collector.along_a_series();
-    collector.load();
-    collector.protocol();
-    collector.factors();
-    collector.structures
-}
-
-impl Collector<'_> {
-    /// Adds a kernel whose bases are scaled to unit variance.
-    fn add(
-        &mut self,
-        name: &str,
-        covariate: &'static str,
-        record: Record,
-        channels: &[Channel],
-        bases: Vec<BasisOfRows>,
-    ) {
-        let variants = self.variants(bases, 1.0);
-        self.add_variants(name, covariate, record, channels, variants);
-    }
-
-    /// Returns the variants of bases that are scaled to unit variance, of this total probability.
-    fn variants(&self, bases: Vec<BasisOfRows>, probability: f64) -> Vec<Variant> {
-        let probability = probability / bases.len().max(1) as f64;
-        bases
-            .into_iter()
-            .filter_map(|basis| {
-                let norm = kernel::rms_norm(&basis(self.rows));
-                (norm > 1e-9).then(|| Variant { basis, factor: 1.0 / norm, probability })
-            })
-            .collect()
-    }
-
-    fn add_variants(
-        &mut self,
-        name: &str,
-        covariate: &'static str,
-        record: Record,
-        channels: &[Channel],
-        variants: Vec<Variant>,
-    ) {
-        // A new session draws again what a model file does not keep.
-        let is_session_bound = matches!(record, Record::Time | Record::Nothing);
-        if variants.is_empty() {
-            return;
-        }
-        // No other session has a gross error of this one.
-        let share = if covariate == GROSS_ERROR { 0.0 } else { 1.0 };
-        let mean =
-            |variant: &Variant| variant.columns(self.rows).row_mean().iter().map(|x| share * x).collect();
-        let means: Vec<Vec<f64>> = variants.iter().map(mean).collect();
-        let bases = std::rc::Rc::new(variants);
-        for channel in channels {
-            // Without two materials their friction is the friction.
-            if !self.has_both_materials && matches!(channel, Channel::Pins | Channel::Silicone) {
-                continue;
-            }
-            let scale = match channel {
-                Channel::Gain => GAIN_SCALE,
-                channel if channel.is_force() => FORCE_SCALE_N * self.force_unit,
-                _ => RELATIVE_SCALE,
-            };
-            self.structures.push(Structure {
-                covariate,
-                name: format!("{} over {name}", channel.as_str()),
-                channel: *channel,
-                record,
-                is_session_bound,
-                scale,
-                bases: bases.clone(),
-                means: means.clone(),
-            });
-        }
-    }
-
-    fn time(&mut self) {
-        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Silicone, Channel::Pins];
-        let mut starts: Vec<f64> = self.rows.series_start_s.clone();
-        starts.sort_by(f64::total_cmp);
-        starts.dedup();
-        let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
-        let time = |rows: &Covariates| rows.column(|p| p.time_s);
-        let scale = Interval::of(&time(self.rows));
-        let wandering = || -> BasisOfRows {
-            if edges.len() < FEW_SERIES {
-                return Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12));
-            }
-            // Between series time moves by steps, equal ones: pauses are not known.
-            let (edges, rank) = (edges.clone(), edges.len().min(TIME_RANK));
-            let share =
-                move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
-            Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
-        };
-        let waves = waves(scale, starts.len());
-        let intervals = interval_variants(self.rows.series_count(), INTERVAL_PROBABILITY);
-        let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
-        let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
-        let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
-        let mut variants = self.variants(vec![wandering()], 1.0 - of_intervals - of_waves);
-        variants.extend(self.variants(waves, of_waves));
-        variants.extend(intervals);
-        self.add_variants("time", "time", Record::Time, &channels, variants);
-        // The scale of the cell drifts, as its bridge warms up, or changes by a fault or a calibration.
-        let mut of_gain = self.variants(vec![wandering()], 1.0 - of_intervals);
-        of_gain.extend(interval_variants(self.rows.series_count(), of_intervals));
-        self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
-    }
-
-    /// Adds offsets that wander from series to series in the order of time, in both directions alike or
-    /// oppositely.
-    fn wandering(&mut self) {
-        let count = self.rows.series_count();
-        if count < LEAST_WANDERING_SERIES {
-            return;
-        }
-        let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
-            Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
-        });
-        let channels = [Channel::Reading, Channel::Drag];
-        self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
-    }
-
-    /// Adds a gross error of each series.
-    fn gross_errors(&mut self) {
-        let count = self.rows.series_count();
-        if count > MOST_HIDING_SERIES {
-            return;
-        }
-        for series in 0..count {
-            let is_in = move |of: &usize| f64::from(u8::from(*of == series));
-            let basis: BasisOfRows =
-                Box::new(move |rows| kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>()));
-            let variants = vec![Variant { basis, factor: 1.0, probability: 1.0 }];
-            self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
-        }
-    }
-
-    fn along_a_series(&mut self) {
-        let position = |rows: &Covariates| rows.column(|p| p.position);
-        let at = position(self.rows);
-        if distinct(&at) > 2 {
-            let scale = Interval::of(&at);
-            let waves: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
-            let steps: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
-            self.add(
-                "position",
-                "position",
-                Record::Table(Abscissa::Position, false),
-                COMMON,
-                vec![waves, steps],
-            );
-        }
-        let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
-        let at = repetition(self.rows);
-        if distinct(&at) > 2 {
-            let scale = Interval::of(&at);
-            let settling: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
-            self.add(
-                "repetition",
-                "repetition",
-                Record::Table(Abscissa::LogRepetition, false),
-                COMMON,
-                vec![settling],
-            );
-            let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
-            let alternation: BasisOfRows = Box::new(move |rows| kernel::single(&rows.column(sign)));
-            self.add(
-                "alternate repetitions",
-                "repetition",
-                Record::Table(Abscissa::Alternation, true),
-                COMMON,
-                vec![alternation],
-            );
-            // The same mistake in every series: the first reading after a reversal, or any other.
-            let directed = |row: &RowFactors, _: &RowLabels| format!("{:+}", row.directed_repetition);
-            let record = Record::Table(Abscissa::DirectedRepetition, true);
-            let channels = &[Channel::Reading, Channel::Friction];
-            self.levels("repetition of a direction", "repetition", record, channels, directed);
-            let scale = Interval::of(&self.rows.series_time_s);
-            let creep: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
-            let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
-            self.add(
-                "time in a series",
-                "repetition",
-                Record::Table(Abscissa::SeriesReadings, false),
-                COMMON,
-                creep,
-            );
-        }
-    }
-
-    fn load(&mut self) {
-        let load = |rows: &Covariates| rows.column(|p| p.load_n);
-        let loads = load(self.rows);
-        if distinct(&loads) > 2 {
-            let most = loads.iter().copied().fold(1e-9, f64::max);
-            let scale = Interval { low: 0.0, high: most };
-            let channels = [
-                Channel::Reading,
-                Channel::Drag,
-                Channel::Friction,
-                Channel::Pins,
-                Channel::Silicone,
-                Channel::DirectionFriction,
-            ];
-            let curve: BasisOfRows = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
-            self.add("load", "load", Record::Table(Abscissa::Load, false), &channels, vec![curve]);
-        }
-        if (4..=MOST_LOADS).contains(&distinct(&loads)) {
-            self.levels(
-                "weight",
-                "load",
-                Record::Table(Abscissa::Load, true),
-                &[Channel::Reading, Channel::Gain],
-                load_level,
-            );
-        }
-    }
-
-    fn previous_load(&mut self) {
-        let memories = MEMORY_REPETITIONS.map(|repetitions| -> BasisOfRows {
-            let memory = move |p: &Point| {
-                let decay = libm::exp(-p.through / repetitions);
-                (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
-            };
-            Box::new(move |rows| kernel::single(&rows.column(memory)))
-        });
-        self.add(
-            "previous load",
-            "load",
-            Record::Memory,
-            &[Channel::Silicone, Channel::Friction, Channel::Reading],
-            memories.into(),
-        );
-    }
-
-    fn protocol(&mut self) {
-        let speed = |rows: &Covariates| rows.column(|p| p.log_speed);
-        let speeds = speed(self.rows);
-        if distinct(&speeds) > 2 {
-            let scale = Interval::of(&speeds);
-            let curve: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
-            self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), MEASURING, vec![curve]);
-        } else if distinct(&speeds) == 2 {
-            let sign: BasisOfRows =
-                Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
-            self.add(
-                "speed",
-                "speed",
-                Record::Table(Abscissa::LogSpeed, false),
-                &[Channel::Drag],
-                vec![sign],
-            );
-        }
-        let dwell = |rows: &Covariates| rows.column(|p| p.log_dwell);
-        let dwells = dwell(self.rows);
-        if distinct(&dwells) > 1 {
-            let scale = Interval::of(&dwells);
-            let curve: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
-            self.add(
-                "dwell",
-                "dwell",
-                Record::Table(Abscissa::LogDwell, false),
-                &[Channel::Reading, Channel::Friction, Channel::Gain],
-                vec![curve],
-            );
-        }
-        let descending = self.rows.column(|p| p.descending);
-        if distinct(&descending) == 2 {
-            let sweep: BasisOfRows = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
-            self.add("sweep", "sweep", Record::Table(Abscissa::Descending, true), COMMON, vec![sweep]);
-        }
-    }
-
-    fn factors(&mut self) {
-        self.levels(
-            "condition",
-            "condition",
-            Record::Table(Abscissa::Condition, true),
-            COMMON,
-            |_, label| label.condition.clone(),
-        );
-        let wraps = distinct(&self.rows.wrap_deg);
-        if wraps < self.rows.level_names(|label| &label.condition).len() {
-            let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
-            self.levels(
-                "wrap angle",
-                "condition",
-                Record::Table(Abscissa::Condition, true),
-                &[Channel::Reading, Channel::Friction],
-                wrap,
-            );
-        }
-        // The mount effect on friction is in every hypothesis.
-        let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
-        self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
-        let switches =
-            &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
-        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
-            label.specimen.clone()
-        });
-        self.levels(
-            "operator",
-            "operator",
-            Record::Table(Abscissa::Operator, true),
-            MEASURING,
-            |_, label| label.operator.clone(),
-        );
-        let sessions = &[switches.as_slice(), &[Channel::Gain]].concat();
-        self.levels("session", "session", Record::Table(Abscissa::Session, true), sessions, |_, label| {
-            label.session.clone()
-        });
-    }
-
-    /// Adds independent levels of a factor that has several.
-    fn levels(
-        &mut self,
-        name: &str,
-        covariate: &'static str,
-        record: Record,
-        channels: &[Channel],
-        level: impl Fn(&RowFactors, &RowLabels) -> String + 'static,
-    ) {
-        let all = names_of(self.rows, &level);
-        let names: std::collections::BTreeSet<String> = all.into_iter().collect();
-        let names: Vec<String> = names.into_iter().collect();
-        let least = if name == "condition" { 3 } else { 2 };
-        if names.len() < least || names.len() > MOST_LEVELS || 5 * names.len() > 4 * self.rows.series_count()
-        {
-            return;
-        }
-        // A new session is like the last one.
-        let latest =
-            names_of(self.rows, &level).pop().filter(|_| record == Record::Table(Abscissa::Session, true));
-        let latest = latest.and_then(|name| names.binary_search(&name).ok());
-        let basis: BasisOfRows = Box::new(move |rows| {
-            let level_of: Vec<Option<usize>> =
-                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok().or(latest)).collect();
-            kernel::levels(&level_of, names.len())
-        });
-        self.add(name, covariate, record, channels, vec![basis]);
-    }
-}
-
-/// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles
-/// is a smooth course, which Brownian motion prices as many steps.
-fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
-    let most = MOST_CYCLES.min(series as f64 / SERIES_OF_CYCLE);
-    let cycles = std::iter::successors(Some(1.0), |cycles| Some(cycles + WAVE_STEP));
-    cycles
-        .take_while(|cycles| *cycles <= most)
-        .map(|cycles| -> BasisOfRows {
-            Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
-        })
-        .collect()
-}
-
-/// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
-/// lasts for a while. Brownian motion prices one large step as many small ones.
-fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
-    let is_long = count > MOST_INTERVAL_SERIES;
-    let mut bases: Vec<BasisOfRows> = Vec::new();
-    for from in 0..count {
-        for until in (if is_long { count } else { from + 1 })..=count {
-            // One series that differs from all others is a gross error of it.
-            let inside = until - from;
-            if inside.min(count - inside) > 1 {
-                bases.push(Box::new(move |rows| {
-                    let is_in = |sequence: &usize| f64::from(u8::from((from..until).contains(sequence)));
-                    kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
-                }));
-            }
-        }
-    }
-    let probability = probability / bases.len().max(1) as f64;
-    bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
-}
-
-/// Numbers of a row that may be levels of a factor.
-struct RowFactors {
-    wrap_deg: f64,
-    load_n: f64,
-    /// Repetition, negative in the eccentric direction.
-    directed_repetition: f64,
-}
-
-fn names_of(rows: &Covariates, level: &impl Fn(&RowFactors, &RowLabels) -> String) -> Vec<String> {
-    let factors = |i: usize| RowFactors {
-        wrap_deg: rows.wrap_deg[i],
-        load_n: rows.points[i].load_n,
-        directed_repetition: rows.points[i].sign * rows.points[i].repetition,
-    };
-    (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
-}
-
-/// Returns the name of a load as a level, to a hundredth of a newton.
-fn load_level(row: &RowFactors, _: &RowLabels) -> String {
-    format!("{:.2}", row.load_n)
-}
-
-/// Range of a covariate on the fitted table.
-#[derive(Clone, Copy)]
-struct Interval {
-    low: f64,
-    high: f64,
-}
-
-impl Interval {
-    fn of(values: &[f64]) -> Self {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Self { low, high }
-    }
-
-    /// Returns the shares 0..1 of values in the range; those outside have the nearest end.
-    fn shares(self, values: &[f64]) -> Vec<f64> {
-        let width = (self.high - self.low).max(1e-9);
-        values.iter().map(|v| ((v - self.low) / width).clamp(0.0, 1.0)).collect()
-    }
 }

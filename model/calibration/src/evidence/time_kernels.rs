@@ -1,0 +1,131 @@
+//! Kernels over the time of a session, and over its series in the order of time.
+
+use pinswitch_inference::kernel;
+
+use super::covariates::Covariates;
+use super::forward::Channel;
+use super::structure::{BasisOfRows, GROSS_ERROR, NOISE, Record, Variant};
+use super::table_kernels::{Collector, Interval};
+
+/// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
+const TIME_RANK: usize = 24;
+/// Series up to which time also varies within them.
+const FEW_SERIES: usize = 4;
+/// Probability that structure over time acts in one interval, rather than as Brownian motion.
+const INTERVAL_PROBABILITY: f64 = 0.4;
+/// Probability that it is a wave.
+const WAVE_PROBABILITY: f64 = 0.2;
+/// Steps between the numbers of cycles of waves, and the largest number.
+const WAVE_STEP: f64 = 0.5;
+const MOST_CYCLES: f64 = 40.0;
+/// Series of a cycle, below which a wave is finer than the sampling (Nyquist's limit); one of a series is
+/// its schedule.
+const SERIES_OF_CYCLE: f64 = 2.0;
+/// Series up to which every interval is a variant; in a longer table, only those up to its end.
+const MOST_INTERVAL_SERIES: usize = 24;
+/// Series up to which a gross error of each is a hypothesis. It raises the scatter between `n` series, of which it is at most
+/// `sqrt(n)` standard deviations: among more, it is listed in any case.
+const MOST_HIDING_SERIES: usize = 30;
+/// Correlations of consecutive series, and the rank of their process: what is finer has little variance
+/// next to independent offsets.
+const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
+/// Fewest series for a memory of six series, which is then shorter than the table.
+const LEAST_WANDERING_SERIES: usize = 24;
+
+impl Collector<'_> {
+    pub(super) fn time(&mut self) {
+        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Silicone, Channel::Pins];
+        let mut starts: Vec<f64> = self.rows.series_start_s.clone();
+        starts.sort_by(f64::total_cmp);
+        starts.dedup();
+        let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
+        let time = |rows: &Covariates| rows.column(|p| p.time_s);
+        let scale = Interval::of(&time(self.rows));
+        let wandering = || -> BasisOfRows {
+            if edges.len() < FEW_SERIES {
+                return Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12));
+            }
+            // Between series time moves by steps, equal ones: pauses are not known.
+            let (edges, rank) = (edges.clone(), edges.len().min(TIME_RANK));
+            let share =
+                move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
+            Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
+        };
+        let waves = waves(scale, starts.len());
+        let intervals = interval_variants(self.rows.series_count(), INTERVAL_PROBABILITY);
+        let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
+        let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
+        let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
+        let mut variants = self.variants(vec![wandering()], 1.0 - of_intervals - of_waves);
+        variants.extend(self.variants(waves, of_waves));
+        variants.extend(intervals);
+        self.add_variants("time", "time", Record::Time, &channels, variants);
+        // The scale of the cell drifts, as its bridge warms up, or changes by a fault or a calibration.
+        let mut of_gain = self.variants(vec![wandering()], 1.0 - of_intervals);
+        of_gain.extend(interval_variants(self.rows.series_count(), of_intervals));
+        self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
+    }
+
+    /// Adds offsets that wander from series to series in the order of time, in both directions alike or
+    /// oppositely.
+    pub(super) fn wandering(&mut self) {
+        let count = self.rows.series_count();
+        if count < LEAST_WANDERING_SERIES {
+            return;
+        }
+        let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
+            Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
+        });
+        let channels = [Channel::Reading, Channel::Drag];
+        self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
+    }
+
+    /// Adds a gross error of each series.
+    pub(super) fn gross_errors(&mut self) {
+        let count = self.rows.series_count();
+        if count > MOST_HIDING_SERIES {
+            return;
+        }
+        for series in 0..count {
+            let is_in = move |of: &usize| f64::from(u8::from(*of == series));
+            let basis: BasisOfRows =
+                Box::new(move |rows| kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>()));
+            let variants = vec![Variant { basis, factor: 1.0, probability: 1.0 }];
+            self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
+        }
+    }
+}
+
+/// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles
+/// is a smooth course, which Brownian motion prices as many steps.
+fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
+    let most = MOST_CYCLES.min(series as f64 / SERIES_OF_CYCLE);
+    let cycles = std::iter::successors(Some(1.0), |cycles| Some(cycles + WAVE_STEP));
+    cycles
+        .take_while(|cycles| *cycles <= most)
+        .map(|cycles| -> BasisOfRows {
+            Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
+        })
+        .collect()
+}
+
+/// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
+/// lasts for a while. Brownian motion prices one large step as many small ones.
+fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
+    let is_long = count > MOST_INTERVAL_SERIES;
+    let mut bases: Vec<BasisOfRows> = Vec::new();
+    for from in 0..count {
+        for until in (if is_long { count } else { from + 1 })..=count {
+            // One series that differs from all others is a gross error of it.
+            let inside = until - from;
+            if inside.min(count - inside) > 1 {
+                bases.push(Box::new(move |rows| {
+                    let is_in = |sequence: &usize| f64::from(u8::from((from..until).contains(sequence)));
+                    kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+                }));
+            }
+        }
+    }
+    let probability = probability / bases.len().max(1) as f64;
+    bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
+}

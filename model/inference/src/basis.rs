@@ -61,6 +61,27 @@ impl Basis {
         ranges.iter().all(is_constant).then(|| DMatrix::from_fn(ranges.len(), self.columns, value))
     }
 
+    /// Returns one row per series and direction, if the basis is constant in each: those of the first direction, then those of
+    /// the second; zeros where a series has no reading.
+    pub(crate) fn of_cells(&self, ranges: &[Range<usize>], is_second: &[bool]) -> Option<DMatrix<f64>> {
+        let mut cells = DMatrix::zeros(2 * ranges.len(), self.columns);
+        let mut numbers = vec![None; 2 * ranges.len()];
+        for (series, range) in ranges.iter().enumerate() {
+            for reading in range.clone() {
+                let cell = if is_second[reading] { ranges.len() + series } else { series };
+                match numbers[cell] {
+                    Some(number) if number != self.of_reading[reading] => return None,
+                    Some(_) => {}
+                    None => {
+                        numbers[cell] = Some(self.of_reading[reading]);
+                        cells.row_mut(cell).copy_from_slice(self.at(reading));
+                    }
+                }
+            }
+        }
+        Some(cells)
+    }
+
     /// Returns the columns, multiplied by a factor for each reading.
     pub(crate) fn times(&self, factors: &[f64]) -> DMatrix<f64> {
         DMatrix::from_fn(self.readings(), self.columns, |i, j| self.at(i)[j] * factors[i])

@@ -1,10 +1,11 @@
 //! Products of the columns of the elements that could be added to a fit with the precision of the noise.
 //!
-//! The columns of a kernel are its basis times the sensitivity `c` to its channel. Most bases are constant within each series.
-//! With the row `phi_s` of the basis for series `s` their products follow from those of the one column `c`, for any columns `Z`:
-//! `X'V^-1 Z = sum_s phi_s (c_s'V_s^-1 Z_s)`.
+//! The columns of a kernel are its basis times the sensitivity `c` to its channel. Most bases are constant within each series, or
+//! within each direction of it: a cell. With the row `phi` of the basis for each cell their products follow from those of the
+//! part of `c` in the cell, for any columns `Z`: `X'V^-1 Z = sum phi (c'V^-1 Z)`. Two cells of one series are correlated.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,35 +23,41 @@ pub(crate) struct Candidate {
     pub(crate) element: Element,
     /// `x'V^-1 x`, before the coefficients of the fit are integrated.
     pub(crate) gram: DMatrix<f64>,
-    /// `A'V^-1 x`.
-    pub(crate) cross: DMatrix<f64>,
     /// `x'V^-1 r`.
     pub(crate) moment: DVector<f64>,
     /// Largest change of a reading per size, relative to the smallest relevant one.
     pub(crate) relevance: f64,
+    /// Its columns among those of all candidates.
+    pub(crate) columns: Range<usize>,
 }
 
 /// Collects candidates of a fit.
 pub(crate) struct Candidates<'a> {
     marginal: &'a Marginal,
     channels: &'a [Vec<f64>],
-    of_series: BTreeMap<usize, SeriesProducts>,
+    is_second: &'a [bool],
+    of_cells: BTreeMap<usize, CellProducts>,
     /// Element, relevance and number of columns of each candidate of the block.
     waiting: Vec<(Element, f64, usize)>,
     /// Their columns, one after the other.
     columns: Vec<f64>,
     done: Vec<Candidate>,
+    /// `A'V^-1 x` of these, one column after the other.
+    cross: Vec<f64>,
 }
 
 impl<'a> Candidates<'a> {
-    pub(crate) fn new(marginal: &'a Marginal, channels: &'a [Vec<f64>]) -> Self {
+    /// `is_second` has the direction of each row.
+    pub(crate) fn new(marginal: &'a Marginal, channels: &'a [Vec<f64>], is_second: &'a [bool]) -> Self {
         Self {
             marginal,
             channels,
-            of_series: BTreeMap::new(),
+            is_second,
+            of_cells: BTreeMap::new(),
             waiting: Vec::new(),
             columns: Vec::new(),
             done: Vec::new(),
+            cross: Vec::new(),
         }
     }
 
@@ -63,11 +70,15 @@ impl<'a> Candidates<'a> {
     /// Adds a kernel that acts through a channel, unless it changes no reading.
     pub(crate) fn add_kernel(&mut self, element: Element, basis: &Basis, channel: usize) {
         let sensitivity = &self.channels[channel];
-        if let Some(rows) = basis.of_series(&self.marginal.whitening.ranges) {
-            let marginal = self.marginal;
-            let products =
-                self.of_series.entry(channel).or_insert_with(|| SeriesProducts::new(marginal, sensitivity));
-            self.done.extend(products.candidate(element, &rows));
+        if let Some(rows) = basis.of_cells(&self.marginal.whitening.ranges, self.is_second) {
+            let (marginal, is_second) = (self.marginal, self.is_second);
+            let products = self
+                .of_cells
+                .entry(channel)
+                .or_insert_with(|| CellProducts::new(marginal, sensitivity, is_second));
+            if let Some((candidate, cross)) = products.candidate(element, &rows) {
+                self.is_done(candidate, &cross);
+            }
             return;
         }
         let columns = basis.times(sensitivity);
@@ -92,65 +103,92 @@ impl<'a> Candidates<'a> {
         let cross = self.marginal.white_design.transposed_times(&white);
         let moment = white.tr_mul(&self.marginal.white_target);
         let mut first = 0;
-        for (element, relevance, count) in self.waiting.drain(..) {
+        for (element, relevance, count) in std::mem::take(&mut self.waiting) {
             let own = white.columns(first, count);
-            self.done.push(Candidate {
-                element,
-                gram: own.tr_mul(&own),
-                cross: cross.columns(first, count).into_owned(),
-                moment: moment.rows(first, count).into_owned(),
-                relevance,
-            });
+            let (gram, moment) = (own.tr_mul(&own), moment.rows(first, count).into_owned());
+            let candidate = Candidate { element, gram, moment, relevance, columns: 0..0 };
+            self.is_done(candidate, &cross.columns(first, count).into_owned());
             first += count;
         }
     }
 
-    pub(crate) fn finish(mut self) -> Vec<Candidate> {
+    fn is_done(&mut self, mut candidate: Candidate, cross: &DMatrix<f64>) {
+        let first = self.done.last().map_or(0, |last| last.columns.end);
+        candidate.columns = first..first + cross.ncols();
+        self.cross.extend_from_slice(cross.as_slice());
+        self.done.push(candidate);
+    }
+
+    /// Returns the candidates, and `A'V^-1 x` of all their columns.
+    pub(crate) fn finish(mut self) -> (Vec<Candidate>, DMatrix<f64>) {
         self.whiten();
-        self.done
+        let count = self.done.last().map_or(0, |last| last.columns.end);
+        (self.done, DMatrix::from_vec(self.marginal.gram.nrows(), count, self.cross))
     }
 }
 
-/// Products of the sensitivity `c_s` to a channel of each series.
-struct SeriesProducts {
-    /// `c_s'V_s^-1 c_s`.
+/// Products of the part `c` of the sensitivity to a channel in each cell: those of the first direction of every series, then
+/// those of the second.
+struct CellProducts {
+    /// `c'V^-1 c`.
     gram: DVector<f64>,
-    /// `A_s'V_s^-1 c_s`, one column per series.
+    /// `c'V^-1 c` of both cells of each series.
+    between: DVector<f64>,
+    /// `A'V^-1 c`, one column per cell.
     cross: DMatrix<f64>,
-    /// `c_s'V_s^-1 r_s`.
+    /// `c'V^-1 r`.
     moment: DVector<f64>,
-    /// Largest entry of `c_s`.
+    /// Largest entry of `c`.
     largest: DVector<f64>,
 }
 
-impl SeriesProducts {
-    fn new(marginal: &Marginal, sensitivity: &[f64]) -> Self {
-        let white = marginal.whitening.whiten_vector(&DVector::from_column_slice(sensitivity));
+impl CellProducts {
+    fn new(marginal: &Marginal, sensitivity: &[f64], is_second: &[bool]) -> Self {
         let ranges = &marginal.whitening.ranges;
-        let part = |series: usize| white.rows(ranges[series].start, ranges[series].len());
-        let largest = |series: usize| {
-            sensitivity[ranges[series].clone()].iter().fold(0.0f64, |most, c| most.max(c.abs()))
+        let count = ranges.len();
+        let part = |direction: bool| {
+            let of_row = |row: usize, _| if is_second[row] == direction { sensitivity[row] } else { 0.0 };
+            DVector::from_fn(sensitivity.len(), of_row)
         };
-        let target = |series: usize| marginal.white_target.rows(ranges[series].start, ranges[series].len());
+        let parts = [part(false), part(true)];
+        let white = [false, true].map(|i| marginal.whitening.whiten_vector(&parts[usize::from(i)]));
+        let cut = |whole: &DVector<f64>, series: usize| {
+            whole.rows(ranges[series].start, ranges[series].len()).into_owned()
+        };
+        let of_cell = |value: &dyn Fn(&DVector<f64>, &DVector<f64>, usize) -> f64| {
+            let at = |cell: usize, _| value(&white[cell / count], &parts[cell / count], cell % count);
+            DVector::from_fn(2 * count, at)
+        };
+        let mut cross = DMatrix::zeros(marginal.gram.nrows(), 2 * count);
+        for (i, white) in white.iter().enumerate() {
+            cross
+                .columns_mut(i * count, count)
+                .copy_from(&marginal.white_design.transposed_times_series(white));
+        }
         Self {
-            gram: DVector::from_fn(ranges.len(), |series, _| part(series).norm_squared()),
-            cross: marginal.white_design.transposed_times_series(&white),
-            moment: DVector::from_fn(ranges.len(), |series, _| part(series).dot(&target(series))),
-            largest: DVector::from_fn(ranges.len(), |series, _| largest(series)),
+            gram: of_cell(&|white, _, series| cut(white, series).norm_squared()),
+            between: DVector::from_fn(count, |series, _| cut(&white[0], series).dot(&cut(&white[1], series))),
+            cross,
+            moment: of_cell(&|white, _, series| cut(white, series).dot(&cut(&marginal.white_target, series))),
+            largest: of_cell(&|_, part, series| cut(part, series).amax()),
         }
     }
 
-    /// Returns the candidate of a basis with one row per series; `None` if it changes no reading.
-    fn candidate(&self, element: Element, rows: &DMatrix<f64>) -> Option<Candidate> {
-        let weighted = |weights: &DVector<f64>| {
-            DMatrix::from_fn(rows.nrows(), rows.ncols(), |series, j| weights[series] * rows[(series, j)])
-        };
-        (weighted(&self.largest).amax() > LEAST_ENTRY).then(|| Candidate {
-            element,
-            gram: rows.tr_mul(&weighted(&self.gram)),
-            cross: &self.cross * rows,
-            moment: rows.tr_mul(&self.moment),
-            relevance: 0.0,
+    /// Returns the candidate of a basis with one row per cell, and its `A'V^-1 x`; `None` if it changes no reading.
+    fn candidate(&self, element: Element, rows: &DMatrix<f64>) -> Option<(Candidate, DMatrix<f64>)> {
+        let (cells, count) = (rows.nrows(), self.between.len());
+        let largest = |cell: usize| self.largest[cell] * rows.row(cell).amax();
+        // Most cells of a basis with many columns are in few of them, and a gross error is in one series.
+        let own: Vec<usize> = (0..cells).filter(|cell| largest(*cell) > 0.0).collect();
+        own.iter().any(|cell| largest(*cell) > LEAST_ENTRY).then(|| {
+            let precise = DMatrix::from_fn(own.len(), rows.ncols(), |i, j| {
+                let (cell, other) = (own[i], (own[i] + count) % cells);
+                self.gram[cell] * rows[(cell, j)] + self.between[cell % count] * rows[(other, j)]
+            });
+            let rows = rows.select_rows(&own);
+            let cross = self.cross.select_columns(&own) * &rows;
+            let (gram, moment) = (rows.tr_mul(&precise), rows.tr_mul(&self.moment.select_rows(&own)));
+            (Candidate { element, gram, moment, relevance: 0.0, columns: 0..0 }, cross)
         })
     }
 }
@@ -162,17 +200,18 @@ mod tests {
     use crate::random::Random;
     use crate::test_problem::{fitted, full_hypothesis, long_problem};
 
-    /// A basis that is constant within each series has the products of its columns.
+    /// A basis that is constant within each direction of a series has the products of its columns.
     #[test]
-    fn products_by_series_are_those_of_the_columns() {
+    fn products_by_cell_are_those_of_the_columns() {
         let problem = long_problem(7, 9, 0.4);
         let (_, design, point) = fitted(&problem, &full_hypothesis());
         let mut random = Random::new(3);
-        let values = DMatrix::from_fn(7, 3, |_, _| random.normal());
-        let rows = DMatrix::from_fn(problem.len(), 3, |row, j| values[(problem.rows.series[row], j)]);
+        let values = DMatrix::from_fn(14, 3, |_, _| random.normal());
+        let cell = |row: usize| 2 * problem.rows.series[row] + usize::from(problem.rows.direction[row]);
+        let rows = DMatrix::from_fn(problem.len(), 3, |row, j| values[(cell(row), j)]);
         let basis = Basis::from(rows);
         let element = Element { member: Member::Kernel(0), form: 0 };
-        let mut candidates = Candidates::new(&point.marginal, &design.channels);
+        let mut candidates = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
         candidates.add_kernel(element, &basis, 1);
         let columns = basis.times(&design.channels[1]);
         for column in columns.column_iter() {
@@ -180,13 +219,13 @@ mod tests {
         }
         let zero = Basis::from(DMatrix::zeros(problem.len(), 2));
         candidates.add_kernel(element, &zero, 1);
-        let found = candidates.finish();
+        let (found, cross) = candidates.finish();
         assert_eq!(found.len(), 1 + 3);
         for (j, single) in found[1..].iter().enumerate() {
             let scale = found[0].gram[(j, j)];
             assert!((found[0].gram[(j, j)] - single.gram[(0, 0)]).abs() < 1e-9 * scale);
             assert!((found[0].moment[j] - single.moment[0]).abs() < 1e-9 * scale);
-            assert!((found[0].cross.column(j) - single.cross.column(0)).amax() < 1e-9 * scale);
+            assert!((cross.column(j) - cross.column(single.columns.start)).amax() < 1e-9 * scale);
         }
         let white = point.marginal.whitening.whiten(&columns);
         assert!((&found[0].gram - white.tr_mul(&white)).amax() < 1e-9 * found[0].gram.amax());

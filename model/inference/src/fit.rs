@@ -157,17 +157,11 @@ impl Fit {
         }
     }
 
-    /// Returns the fit with the noise of repeated readings, every one of which counts; `None` if its own noise is not much larger
-    /// and no gross error can hide behind small weights.
+    /// Returns the fit with the noise of repeated readings; `None` if its own noise is not much larger.
     pub(crate) fn quiet(&self, problem: &Problem) -> Option<Self> {
-        let scales = self.mode.scales.quiet(&problem.reference);
-        let has_gross_errors = problem.space.kernels.iter().any(|kernel| kernel.is_gross_error);
-        let scales = scales.or_else(|| has_gross_errors.then_some(self.mode.scales))?;
+        let scales = self.mode.scales.quiet(&problem.reference)?;
         let mut quiet = self.clone();
         quiet.mode.scales = scales;
-        if has_gross_errors {
-            quiet.mode.weights.iter_mut().filter(|w| **w != EXCLUDED).for_each(|weight| *weight = 1.0);
-        }
         Some(quiet)
     }
 

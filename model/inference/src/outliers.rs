@@ -29,6 +29,10 @@ const SERIES_SCALE: f64 = 10.0;
 /// Posterior probability above which a series is listed, and excluded from the fits: a gross error inflates
 /// the scatter between series, which hides it.
 const LISTED_PROBABILITY: f64 = 0.5;
+/// Forms of such an error, as one row of columns for each direction: one direction, the other, both alike, and each by an
+/// amount of its own.
+const FORMS: [[&[f64]; 2]; 4] =
+    [[&[1.0], &[0.0]], [&[0.0], &[1.0]], [&[1.0], &[1.0]], [&[1.0, 0.0], &[0.0, 1.0]]];
 /// Probability that any reading of a table without gross errors is listed.
 const FAMILY_PROBABILITY: f64 = 0.05;
 
@@ -120,16 +124,19 @@ impl Outliers {
         }
         let Some(Linearised { design, point }) = Linearised::new(problem, best) else { return };
         for (kernel, variant, probability) in probable {
-            let rows: Vec<usize> = problem.rows.bases[kernel][variant].support().collect();
-            let Some(column) = design.columns_of(Component::Kernel(kernel)).first().copied() else {
-                continue;
-            };
-            let (offset, sd) =
-                (point.solution.mean[column], point.solution.covariance[(column, column)].sqrt());
-            let found: BTreeSet<(usize, bool)> =
-                rows.iter().map(|row| (problem.rows.series[*row], problem.rows.direction[*row])).collect();
-            for (series, direction) in found {
-                self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
+            let basis = &problem.rows.bases[kernel][variant];
+            let rows: Vec<usize> = basis.support().collect();
+            let columns = design.columns_of(Component::Kernel(kernel));
+            let covariance = point.solution.covariance.select_rows(&columns).select_columns(&columns);
+            let mean = point.solution.mean.select_rows(&columns);
+            let mut found: BTreeSet<(usize, bool)> = BTreeSet::new();
+            for row in &rows {
+                let (series, direction) = (problem.rows.series[*row], problem.rows.direction[*row]);
+                if found.insert((series, direction)) {
+                    let values = DVector::from_column_slice(basis.at(*row));
+                    let (offset, sd) = (values.dot(&mean), values.dot(&(&covariance * &values)).sqrt());
+                    self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
+                }
             }
             rows.into_iter().for_each(|row| self.rows[row] = true);
         }
@@ -185,42 +192,49 @@ impl Outliers {
             let is_excluded = fit.mode.weights[first] == EXCLUDED;
             let precision = |share: f64| if is_excluded { 1.0 / (1.0 + share) } else { 1.0 - share };
             let own = if is_excluded { leverage.apply(precision, &own) } else { own };
-            // The first direction, the second, or both alike.
-            let choices = [vec![false], vec![true], vec![false, true]];
-            let scored: Vec<_> = choices
+            let scored: Vec<_> = FORMS
                 .into_iter()
-                .filter_map(|directions| {
-                    let is_of = |row: usize| directions.contains(&problem.rows.direction[first + row]);
-                    let ones = DVector::from_fn(length, |row, _| if is_of(row) { 1.0 } else { 0.0 });
+                .filter_map(|form| {
+                    let value = |row: usize, column: usize| {
+                        form[usize::from(problem.rows.direction[first + row])][column]
+                    };
+                    let mut columns = DMatrix::from_fn(length, form[0].len(), value);
                     // One wrong reading is not a wrong series.
-                    if ones.sum() < 1.5 {
+                    if columns.row_sum().iter().any(|count| *count < 1.5) {
                         return None;
                     }
-                    let mut column = ones;
-                    whitening.roots[series].whiten(column.as_mut_slice());
-                    let (information, score) =
-                        (column.dot(&leverage.apply(precision, &column)), column.dot(&own));
+                    columns
+                        .column_iter_mut()
+                        .for_each(|mut column| whitening.roots[series].whiten(column.as_mut_slice()));
+                    let score = columns.tr_mul(&own);
+                    let precise: Vec<DVector<f64>> = columns
+                        .column_iter()
+                        .map(|column| leverage.apply(precision, &column.into_owned()))
+                        .collect();
+                    let information = columns.tr_mul(&DMatrix::from_columns(&precise));
+                    let covariance = information.clone().try_inverse()?;
                     let scale = SERIES_SCALE * problem.reference.repetition_sd;
-                    let matrix = DMatrix::from_element(1, 1, information);
-                    let gain = VarianceGain::new(matrix, &DVector::from_element(1, score))
-                        .integral(HalfT::cauchy(scale));
-                    Some((gain, directions, score / information, 1.0 / information.sqrt()))
+                    let gain = VarianceGain::new(information, &score).integral(HalfT::cauchy(scale));
+                    Some((gain, form, &covariance * score, covariance))
                 })
                 .collect();
             let total = log_sum_exp(&scored.iter().map(|(gain, ..)| *gain).collect::<Vec<f64>>());
-            // The prior odds are spread over the choices.
+            // The prior odds are spread over the forms.
             let odds = total - libm::log(scored.len().max(1) as f64) + prior;
             let probability = 1.0 / (1.0 + libm::exp(-odds));
             let best = scored.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, directions, offset, sd)) = best.filter(|_| probability > LISTED_PROBABILITY) else {
+            let Some((_, form, sizes, covariance)) = best.filter(|_| probability > LISTED_PROBABILITY) else {
                 continue;
             };
-            for direction in directions {
+            for direction in [false, true] {
                 let rows: Vec<usize> =
                     range.clone().filter(|row| problem.rows.direction[*row] == direction).collect();
-                if !rows.is_empty() {
-                    self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
+                let values = DVector::from_column_slice(form[usize::from(direction)]);
+                if rows.is_empty() || values.amax() == 0.0 {
+                    continue;
                 }
+                let (offset, sd) = (values.dot(&sizes), values.dot(&(&covariance * &values)).sqrt());
+                self.series.push(OutlyingSeries { series, direction, probability, offset, sd });
                 rows.into_iter().for_each(|row| self.rows[row] = true);
             }
         }

@@ -83,6 +83,8 @@ pub(crate) struct Scores<'a> {
     moment: DVector<f64>,
     variances: Vec<f64>,
     candidates: Vec<Candidate>,
+    /// `A'V^-1 x` of their columns.
+    cross: DMatrix<f64>,
     cauchy: Mixture,
 }
 
@@ -98,6 +100,11 @@ struct EffectGain {
 impl<'a> Scores<'a> {
     /// Prepares the candidates; `None` if the fit's design is not finite.
     pub(crate) fn new(problem: &'a Problem, fit: &Fit) -> Option<Self> {
+        Self::of(problem, fit, |_| true)
+    }
+
+    /// Prepares some of them.
+    pub(crate) fn of(problem: &'a Problem, fit: &Fit, is_candidate: impl Fn(Member) -> bool) -> Option<Self> {
         let space = &problem.space;
         let free = |effect: usize| (FREE_SIZE_SD * space.effects[effect].typical_size.unwrap_or(1.0)).powi(2);
         let sizes = fit.hypothesis.effects().map(|(effect, _)| (effect, free(effect))).collect();
@@ -105,8 +112,9 @@ impl<'a> Scores<'a> {
         let scale_problem =
             ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
         let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
-        let mut collected = Candidates::new(&point.marginal, &design.channels);
-        for (index, effect) in space.effects.iter().enumerate() {
+        let mut collected = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
+        let effects = space.effects.iter().enumerate();
+        for (index, effect) in effects.filter(|(index, _)| is_candidate(Member::Effect(*index))) {
             for form in 0..effect.starts.len() {
                 let element = Element { member: Member::Effect(index), form };
                 let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
@@ -116,18 +124,19 @@ impl<'a> Scores<'a> {
                 }
             }
         }
-        for (index, kernel) in space.kernels.iter().enumerate() {
+        let kernels = space.kernels.iter().enumerate();
+        for (index, kernel) in kernels.filter(|(index, _)| is_candidate(Member::Kernel(*index))) {
             for form in 0..kernel.variants.len() {
                 let element = Element { member: Member::Kernel(index), form };
                 collected.add_kernel(element, &problem.rows.bases[index][form], kernel.channel);
             }
         }
-        let candidates = collected.finish();
+        let (candidates, cross) = collected.finish();
         let (gram, moment) = (point.marginal.gram.clone(), point.marginal.moment.clone());
         let variances = point.variances;
         let cauchy = Mixture::cauchy();
         let hypothesis = fit.hypothesis.clone();
-        Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, cauchy })
+        Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, cross, cauchy })
     }
 
     /// Returns the additions, best first; with `removed`, those that take the place of a member,
@@ -156,14 +165,15 @@ impl<'a> Scores<'a> {
         let mut root = DMatrix::from_diagonal(&sd);
         factor.solve_lower_triangular_mut(&mut root);
         let moment = &root * self.moment.select_rows(&kept);
+        let cross_of_all = &root * self.cross.select_rows(&kept);
         let prior = rest.log_prior_odds(&self.problem.space);
         let mut additions: Vec<Addition> = self
             .candidates
             .iter()
             .filter(|candidate| !rest.contains(candidate.element.member))
             .filter_map(|candidate| {
-                let cross = &root * candidate.cross.select_rows(&kept);
-                let information = &candidate.gram - cross.transpose() * &cross;
+                let cross = cross_of_all.columns(candidate.columns.start, candidate.columns.len());
+                let information = &candidate.gram - cross.tr_mul(&cross);
                 let score = &candidate.moment - cross.tr_mul(&moment);
                 let element = candidate.element;
                 let odds = log_prior_odds(&self.problem.space, element);

@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::design::Component;
 use crate::fit::{Fit, Start};
 use crate::hypothesis::{Element, Hypothesis, Member};
 use crate::noise::EXCLUDED;
@@ -24,7 +25,7 @@ pub struct SearchOptions {
     pub expansions: usize,
     /// Effects that are fitted in an expansion; half as many kernels are.
     pub width: usize,
-    /// Most members of a hypothesis.
+    /// Most members of a hypothesis besides gross errors, and most gross errors that are added together.
     pub members: usize,
     /// Number of readings above which a search starts on about so many of them.
     pub thinned_above: usize,
@@ -47,8 +48,6 @@ impl SearchOptions {
 const LARGE_TABLE: usize = 1000;
 /// Loss in nats up to which a usual effect is removed at the start.
 const THINNING_LOSS: f64 = 1.0;
-/// Gross errors that are fitted in an expansion.
-const GROSS_ERRORS: usize = 2;
 /// Forms of a member that are fitted in an expansion.
 const MOST_FORMS: usize = 8;
 /// Exchanges that are fitted for each member.
@@ -246,12 +245,14 @@ impl<'a> Search<'a> {
         let Some(scores) = Scores::new(self.problem, fit) else { return };
         let gross_errors = fit.hypothesis.members().filter(|member| self.is_gross_error(*member)).count();
         if fit.hypothesis.len() - gross_errors < self.options.members {
-            self.add(fit, &scores.additions(None));
-            // Scatter that stands for missing structure hides it: the additions count again by the
-            // noise of repeated readings.
-            let quiet = fit.quiet(self.problem).filter(|_| self.selectivity.is_thorough);
-            if let Some(scores) = quiet.and_then(|quiet| Scores::new(self.problem, &quiet)) {
-                self.add(fit, &scores.additions(None));
+            self.add(fit, scores.additions(None));
+            if self.selectivity.is_thorough {
+                // Scatter that stands for missing structure hides it: the additions count again by the
+                // noise of repeated readings.
+                let quiet = fit.quiet(self.problem);
+                let scores = quiet.as_ref().and_then(|quiet| Scores::new(self.problem, quiet));
+                scores.into_iter().for_each(|scores| self.add(fit, scores.additions(None)));
+                self.add_gross_errors(quiet.as_ref().unwrap_or(fit).clone());
             }
         }
         if !self.selectivity.is_thorough {
@@ -266,42 +267,43 @@ impl<'a> Search<'a> {
         matches!(member, Member::Kernel(kernel) if self.problem.space.kernels[kernel].is_gross_error)
     }
 
-    /// Fits a gross error that is added, from the noise of repeated readings, where its rows count: scatter between series and
-    /// small weights of Student's t explain it, too, and a fit would stay with them.
-    fn fit_gross_error(&mut self, fit: &Fit, addition: &Addition) {
-        let Element { member: Member::Kernel(kernel), form } = addition.element else { return };
-        let mut start = fit.clone();
-        start.mode.scales = fit.mode.scales.quiet(&self.problem.reference).unwrap_or(fit.mode.scales);
-        let basis = &self.problem.rows.bases[kernel][form];
-        for row in basis.support().filter(|row| fit.mode.weights[*row] != EXCLUDED) {
-            start.mode.weights[row] = 1.0;
+    /// Adds gross errors one after the other by the noise of a fit, and fits every number of them: several wrong series hide
+    /// each other in the scatter that they make, and in small weights of Student's t (forward search: Atkinson and Riani 2000).
+    fn add_gross_errors(&mut self, mut fit: Fit) {
+        fit.mode.weights.iter_mut().filter(|weight| **weight != EXCLUDED).for_each(|weight| *weight = 1.0);
+        for _ in 0..self.options.members {
+            let base = fit.hypothesis.log_prior_odds(&self.problem.space);
+            let scores = Scores::of(self.problem, &fit, |member| self.is_gross_error(member));
+            let additions = scores.map_or_else(Vec::new, |scores| scores.additions(None));
+            let Some(addition) = additions.into_iter().next().filter(|a| a.score > base) else { break };
+            let Member::Kernel(kernel) = addition.element.member else { break };
+            fit.hypothesis = addition.hypothesis;
+            fit.mode
+                .log_sd
+                .insert(Component::Kernel(kernel), libm::log(self.problem.space.kernels[kernel].scale));
+            self.fit(&fit.hypothesis, Start::at(&fit, None));
         }
-        self.fit(&addition.hypothesis, start_of(&start, addition));
     }
 
-    /// Fits the best additions.
-    fn add(&mut self, fit: &Fit, additions: &[Addition]) {
+    /// Fits the best additions of effects and structure.
+    fn add(&mut self, fit: &Fit, additions: Vec<Addition>) {
+        let additions: Vec<Addition> =
+            additions.into_iter().filter(|addition| !self.is_gross_error(addition.element.member)).collect();
         let Some(top) = additions.first().map(|a| a.score) else { return };
         let base = fit.hypothesis.log_prior_odds(&self.problem.space);
         let usual = (top - self.selectivity.addition).min(base + self.selectivity.certain);
         let least = usual.max(base - self.selectivity.added_loss);
         let mut effects: Vec<Member> = Vec::new();
         let mut kernels: Vec<Member> = Vec::new();
-        let mut gross_errors: Vec<Member> = Vec::new();
         for addition in additions.iter().filter(|a| a.score > least) {
             let member = addition.element.member;
             let (members, most) = match member {
                 Member::Effect(_) => (&mut effects, self.options.width),
-                member if self.is_gross_error(member) => (&mut gross_errors, GROSS_ERRORS),
                 Member::Kernel(_) => (&mut kernels, (self.options.width / 2).max(2)),
             };
             if members.len() < most && !members.contains(&member) {
                 members.push(member);
-                if self.is_gross_error(member) {
-                    self.fit_gross_error(fit, addition);
-                } else {
-                    self.fit(&addition.hypothesis, start_of(fit, addition));
-                }
+                self.fit(&addition.hypothesis, start_of(fit, addition));
             }
         }
         let least = (top - self.selectivity.form).max(base - 2.0);

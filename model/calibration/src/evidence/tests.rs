@@ -183,3 +183,27 @@ fn a_wrong_series_among_few_is_a_gross_error() {
         assert!(!wrong.is_empty() && wrong.iter().all(|wrong| wrong == series), "{wrong:?}");
     }
 }
+
+/// A cell that shows one value in a series is off by another amount in each direction.
+#[test]
+fn a_series_with_one_value_is_a_gross_error() {
+    for (seed, series, value) in [(15, "6", -5.0), (16, "2", 12.0)] {
+        let mut rows = session(seed);
+        rows.retain(|row| row.series.parse::<usize>().unwrap() < 18);
+        rows.iter_mut().filter(|row| row.series == series).for_each(|row| row.force_n = value);
+        let evidence = evidence(&rows);
+        assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
+        let wrong = &evidence.posterior().outliers.series;
+        assert!(
+            wrong.len() == 2 && wrong.iter().all(|wrong| wrong.series.to_string() == series),
+            "{wrong:?}"
+        );
+        let expected = evidence.predict(&rows, Session::New).unwrap();
+        for of in wrong {
+            let is_of =
+                |i: &usize| rows[*i].series == series && (rows[*i].direction.sign() > 0.0) == of.direction;
+            let row = (0..rows.len()).find(is_of).unwrap();
+            assert!((of.offset - (value - expected[row].mean)).abs() < 0.3, "{of:?}");
+        }
+    }
+}

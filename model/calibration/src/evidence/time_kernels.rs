@@ -1,11 +1,13 @@
 //! Kernels over the time of a session, and over its series in the order of time.
 
+use nalgebra::DMatrix;
 use pinswitch_inference::kernel;
 
-use super::covariates::Covariates;
+use super::covariates::{Covariates, distinct};
 use super::forward::Channel;
 use super::structure::{BasisOfRows, GROSS_ERROR, NOISE, Record, Variant};
 use super::table_kernels::{Collector, Interval};
+use crate::table::Point;
 
 /// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
 const TIME_RANK: usize = 24;
@@ -23,9 +25,9 @@ const MOST_CYCLES: f64 = 40.0;
 const SERIES_OF_CYCLE: f64 = 2.0;
 /// Series up to which every interval is a variant; in a longer table, only those up to its end.
 const MOST_INTERVAL_SERIES: usize = 24;
-/// Series up to which a gross error of each is a hypothesis. It raises the scatter between `n` series, of which it is at most
-/// `sqrt(n)` standard deviations: among more, it is listed in any case.
-const MOST_HIDING_SERIES: usize = 30;
+/// Series up to which a gross error of each is a hypothesis. Errors of `k` among `n` series are at most `sqrt(n / k)` standard
+/// deviations of the scatter that they make: a few among more are listed in any case.
+const MOST_HIDING_SERIES: usize = 300;
 /// Correlations of consecutive series, and the rank of their process: what is finer has little variance
 /// next to independent offsets.
 const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
@@ -80,17 +82,28 @@ impl Collector<'_> {
         self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
     }
 
-    /// Adds a gross error of each series.
+    /// Adds a gross error of each series, alike in both directions or of its own size in each: an offset of the cell, or a
+    /// cable that is caught, a cell that shows one value.
     pub(super) fn gross_errors(&mut self) {
         let count = self.rows.series_count();
         if count > MOST_HIDING_SERIES {
             return;
         }
+        let is_second = |point: &Point| point.sign > 0.0;
+        let has_both = distinct(&self.rows.column(|p| f64::from(u8::from(is_second(p))))) == 2;
         for series in 0..count {
-            let is_in = move |of: &usize| f64::from(u8::from(*of == series));
-            let basis: BasisOfRows =
-                Box::new(move |rows| kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>()));
-            let variants = vec![Variant { basis, factor: 1.0, probability: 1.0 }];
+            let error = |directions: usize| -> Variant {
+                let is_in = move |rows: &Covariates, row: usize, direction: usize| {
+                    let of = usize::from(is_second(&rows.points[row]));
+                    rows.sequence[row] == series && (directions == 1 || of == direction)
+                };
+                let basis: BasisOfRows = Box::new(move |rows| {
+                    let value = |row, direction| f64::from(u8::from(is_in(rows, row, direction)));
+                    DMatrix::from_fn(rows.len(), directions, value)
+                });
+                Variant { basis, factor: 1.0, probability: if has_both { 0.5 } else { 1.0 } }
+            };
+            let variants = (1..=if has_both { 2 } else { 1 }).map(error).collect();
             self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
         }
     }

@@ -6,6 +6,7 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod book;
 mod bucket;
 mod configurator;
 mod data_package;

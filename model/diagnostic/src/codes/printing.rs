@@ -68,8 +68,8 @@ pages! {
     }
 
     CURE_AGAINST_SHRINKAGE: "cure-against-shrinkage", "Cure, shrinkage and mould do not agree", in "cad/doc/process.md" {
-        "Silicone sets at the temperature of its cure and contracts more than the mould when \
-         both cool: `shrinkage = (a_silicone - a_mould) (T - 25 C)`. The mould is enlarged by \
+        "Silicone shrinks by `(a_silicone - a_mould) (T - 25 C)`: it sets at the temperature of \
+         its cure, and contracts more than the mould when both cool. The mould is enlarged by \
          `mould.shrinkage_pct`, so the two must agree within 0.3 % (chosen), and oven and mould \
          must reach and survive the temperature.",
         "A stated `process.cure_c` that contradicts is an error. If the temperature follows from \

@@ -1,8 +1,8 @@
 """A finger lifts a bottle, yields a little and holds it: tension of the motor with and without a switch.
 
-``python finger.py [FIGURE.svg [FILM.gif]]``; the program `pinswitch` has to be on the path. cad/doc/robots.md shows figure
-and film. The film draws the simulated flexions: the moment arm of the tendon and the wrap angle are those of the model,
-the pulley is drawn where a tendon with this wrap touches it, and the bottle is not to scale.
+``python finger.py [FIGURE.svg [FILM.gif]]``; the program `pinswitch` has to be on the path. cad/doc/robots.md shows
+figure and film. The film draws the simulated flexions: the moment arm of the tendon and the wrap angle are those of the
+model, the pulley is drawn where a tendon with this wrap touches it, and the bottle is not to scale.
 """
 
 from __future__ import annotations
@@ -77,8 +77,10 @@ def draw_finger(ax: Any, arm_mm: float, flexion_rad: float, tension_n: float, co
     top = tip[1] - 13
     ax.plot([tip[0], tip[0]], [tip[1], top], color=DARK, lw=1.5, zorder=3)
     ax.plot(*tip, "o", color=DARK, ms=4, zorder=4)
-    ax.add_patch(FancyBboxPatch((tip[0] - 4, top - 12), 8, 12, boxstyle="round,pad=0,rounding_size=2", fc=BLUE, ec="none"))
-    ax.add_patch(FancyBboxPatch((tip[0] - 13, top - 62), 26, 52, boxstyle="round,pad=0,rounding_size=7", fc="#9cc3e6", ec=BLUE, lw=1.5))
+    neck, body = ("round,pad=0,rounding_size=2", "none", BLUE), ("round,pad=0,rounding_size=7", BLUE, "#9cc3e6")
+    for (style, edge, face), low, width, height in ((neck, top - 12, 8, 12), (body, top - 62, 26, 52)):
+        corner = (tip[0] - width / 2, low)
+        ax.add_patch(FancyBboxPatch(corner, width, height, boxstyle=style, fc=face, ec=edge, lw=1.5))
     ax.text(tip[0], top - 38, "2 kg", ha="center", va="center", fontsize=9, color=DARK)
     # The pulley touches the tendon on both sides of the joint, on the bisector of the links.
     bisector = np.array([-np.sin(flexion_rad / 2), np.cos(flexion_rad / 2)])
@@ -89,7 +91,8 @@ def draw_finger(ax: Any, arm_mm: float, flexion_rad: float, tension_n: float, co
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     if is_switch:
         pins = -np.pi / 2 + np.linspace(0, 2 * np.pi, 18, endpoint=False) + flexion_rad / 2
-        ax.plot(*(centre[:, None] + 0.78 * PULLEY_MM * np.array([np.cos(pins), np.sin(pins)])), "o", color=colour, ms=2.5, zorder=4)
+        places = centre[:, np.newaxis] + 0.78 * PULLEY_MM * np.array([np.cos(pins), np.sin(pins)])
+        ax.plot(*places, "o", color=colour, ms=2.5, zorder=4)
     end = joint + 0.8 * DISTAL_MM * along
     tendon = [np.array([-26.0, arm_mm]), *(centre + PULLEY_MM * circle), end + arm_mm * normal]
     ax.plot(*zip(*tendon), color=colour, lw=1 + tension_n / 10, zorder=5, solid_capstyle="butt")
@@ -122,7 +125,8 @@ def frame(runs: dict[str, Run], arm_mm: float, until_s: float) -> Image.Image:
     if until_s >= TIMES_S[-1] - 1:
         low, high = (run.held_n for run in runs.values())
         ax.fill_between([3.75, TIMES_S[-1]], low, high, color=ORANGE, alpha=0.25, lw=0)
-        ax.text(4.75, low - 0.8, f"the motor holds with {100 * (1 - low / high):.1f} % less", ha="center", va="top", fontsize=10, color=ORANGE, weight="bold")
+        text = f"the motor holds with {100 * (1 - low / high):.1f} % less"
+        ax.text(4.75, low - 0.8, text, ha="center", va="top", fontsize=10, color=ORANGE, weight="bold")
     fig.canvas.draw()
     image = Image.fromarray(np.asarray(fig.canvas.buffer_rgba()).copy()).convert("RGB")  # type: ignore[attr-defined]
     plt.close(fig)

@@ -95,6 +95,14 @@ def test_one_small_load_cannot_decide(rig: ModuleType, tmp_path: Path, load: flo
     assert friction.constants["load"].high > 5 * bam.CONSEQUENCE
 
 
+def test_resting_arm_decides_nothing(rig: ModuleType, tmp_path: Path) -> None:
+    """The torque is never enabled, and the arm hangs."""
+    off: Callable[[str, float], tuple[float, bool]] = lambda name, t: (0.0, False)
+    friction = bam.identify(logs(rig, tmp_path, rig.SERVO, 0, RUNS[:2], path=off, seconds=2.0), step_s=STEP_S)
+    assert friction.verdict == "inconclusive" and friction.probability < 0.5
+    assert friction.constants["base_nm"].high > 0.5 and friction.constants["load"].high > 0.5
+
+
 def test_lack_of_fit_is_detected(rig: ModuleType, tmp_path: Path) -> None:
     """A slow error of the encoder is not noise, and no constant explains it."""
     run = (1.5, 8, "sin_sin")

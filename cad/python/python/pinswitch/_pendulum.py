@@ -246,7 +246,8 @@ def solve(bench: Bench, free: tuple[int, ...], starts: list[Floats]) -> Solution
     """Return the least squares over the free constants by Levenberg-Marquardt, the best of several starts."""
     mean, width = bench.prior()
     index = list(free)
-    count = float(np.isfinite(bench.position_rad).sum())
+    # Logs in which the torque is never enabled have no driven part.
+    count = max(float(np.isfinite(bench.position_rad).sum()), 1.0)
 
     def costs(points: Floats, variance: float) -> Floats:
         squares = np.sum(residuals(bench, points) ** 2, axis=(1, 2)) / variance

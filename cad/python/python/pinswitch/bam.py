@@ -109,7 +109,8 @@ class Friction:
     rms_rad, rms_without_load_rad : float
         RMS error of the fitted logs.
     held_out_rad, held_out_without_load_rad : float
-        RMS error of logs that are left out of the fit in turn; not a number for a single log.
+        RMS error of logs that are left out of the fit in turn, by one Gauss-Newton step without each of them instead of
+        a new fit; not a number for a single log.
     noise_rad : float
         Standard deviation of the noise of the positions, from second differences of the residuals.
     blocks : int

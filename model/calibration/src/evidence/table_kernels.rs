@@ -13,6 +13,8 @@ const FORCE_SCALE_N: f64 = 0.3;
 const RELATIVE_SCALE: f64 = 0.08;
 /// The same for the scale of the load cell, which is more exact than friction.
 const GAIN_SCALE: f64 = 0.02;
+/// Largest rank of Brownian motion: what is finer has less than a hundredth of its variance.
+pub(super) const BROWNIAN_RANK: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 const MOST_LEVELS: usize = 20;
@@ -125,15 +127,22 @@ impl Collector<'_> {
             let scale = Interval::of(&at);
             let waves: BasisOfRows =
                 Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
+            let rank = distinct(&at).min(BROWNIAN_RANK);
             let steps: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), 8));
-            self.add(
-                "position",
-                "position",
-                Record::Table(Abscissa::Position, false),
-                COMMON,
-                vec![waves, steps],
-            );
+                Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
+            let mut bases = vec![waves, steps];
+            // A pattern that repetitions show just as well, where each has a position of its own.
+            let hundredths = |position: f64| (100.0 * position).round() as i64;
+            let stops: std::collections::BTreeSet<i64> = at.iter().copied().map(hundredths).collect();
+            let stops: Vec<i64> = stops.into_iter().collect();
+            if stops.len() <= MOST_LEVELS {
+                bases.push(Box::new(move |rows| {
+                    let stop = |at: &f64| stops.binary_search(&hundredths(*at)).ok();
+                    kernel::levels(&position(rows).iter().map(stop).collect::<Vec<_>>(), stops.len())
+                }));
+            }
+            let record = Record::Table(Abscissa::Position, false);
+            self.add("position", "position", record, COMMON, bases);
         }
         let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
         let at = repetition(self.rows);

@@ -207,3 +207,19 @@ fn a_series_with_one_value_is_a_gross_error() {
         }
     }
 }
+
+/// A square wave along the stroke is no pattern of the repetitions, of which each has a position of its own.
+#[test]
+fn steps_along_the_stroke_are_of_the_position() {
+    for (seed, cycles) in [(17, 1.2), (18, 2.0)] {
+        let mut rows = session(seed);
+        let end = rows.iter().map(|row| row.position_mm).fold(1.0, f64::max);
+        for row in &mut rows {
+            let share = (0.1 + cycles * row.position_mm / end).fract();
+            row.force_n += if share < 0.5 { 0.12 } else { -0.12 };
+        }
+        let evidence = evidence(&rows);
+        let first = evidence.posterior().reported.first().map(|r| evidence.covariate(r.member));
+        assert_eq!(first, Some("position"), "{:?}", reported(&evidence));
+    }
+}

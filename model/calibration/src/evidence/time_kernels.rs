@@ -6,11 +6,9 @@ use pinswitch_inference::kernel;
 use super::covariates::{Covariates, distinct};
 use super::forward::Channel;
 use super::structure::{BasisOfRows, GROSS_ERROR, NOISE, Record, Variant};
-use super::table_kernels::{Collector, Interval};
+use super::table_kernels::{BROWNIAN_RANK, Collector, Interval};
 use crate::table::Point;
 
-/// Rank of Brownian motion over the session: what is finer has less than a hundredth of its variance.
-const TIME_RANK: usize = 24;
 /// Series up to which time also varies within them.
 const FEW_SERIES: usize = 4;
 /// Probability that structure over time acts in one interval, rather than as Brownian motion.
@@ -48,7 +46,7 @@ impl Collector<'_> {
                 return Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12));
             }
             // Between series time moves by steps, equal ones: pauses are not known.
-            let (edges, rank) = (edges.clone(), edges.len().min(TIME_RANK));
+            let (edges, rank) = (edges.clone(), edges.len().min(BROWNIAN_RANK));
             let share =
                 move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
             Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))

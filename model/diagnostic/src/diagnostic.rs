@@ -42,6 +42,7 @@ pub struct Diagnostic {
     problem: String,
     help: Option<String>,
     changes: Vec<Change>,
+    alternatives: Vec<Vec<Change>>,
     source: Option<Arc<dyn Error + Send + Sync>>,
 }
 
@@ -49,7 +50,15 @@ impl Diagnostic {
     /// A problem, in lower case and without a full stop, with the bound that was broken.
     pub fn new(code: Code, problem: impl Into<String>) -> Self {
         let problem = problem.into();
-        Self { code, location: None, problem, help: None, changes: Vec::new(), source: None }
+        Self {
+            code,
+            location: None,
+            problem,
+            help: None,
+            changes: Vec::new(),
+            alternatives: Vec::new(),
+            source: None,
+        }
     }
 
     /// The message of an error of another library, which stays its source. A diagnostic is returned unchanged, with its
@@ -103,6 +112,14 @@ impl Diagnostic {
         self
     }
 
+    /// The same diagnostic with other changes that solve the problem as well: its help describes them, and its
+    /// serialisation does not contain them.
+    #[must_use]
+    pub fn with_alternatives(mut self, alternatives: Vec<Vec<Change>>) -> Self {
+        self.alternatives = alternatives;
+        self
+    }
+
     /// The same diagnostic with the error that caused it.
     #[must_use]
     pub fn with_source(mut self, source: impl Error + Send + Sync + 'static) -> Self {
@@ -133,6 +150,11 @@ impl Diagnostic {
     /// Values that solve the problem when all of them are set; empty where only words can describe the way out.
     pub fn changes(&self) -> &[Change] {
         &self.changes
+    }
+
+    /// Other changes that solve the problem as well, the nearest first.
+    pub fn alternatives(&self) -> &[Vec<Change>] {
+        &self.alternatives
     }
 
     /// `LABEL: location: problem [code]`, the line of the file with a caret, and `  help: ...`, without control characters

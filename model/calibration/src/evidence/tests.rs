@@ -208,18 +208,20 @@ fn a_series_with_one_value_is_a_gross_error() {
     }
 }
 
-/// A square wave along the stroke is no pattern of the repetitions, of which each has a position of its own.
+/// Structure over the position can have a value of its own at each position: a worn spot has edges.
 #[test]
-fn steps_along_the_stroke_are_of_the_position() {
-    for (seed, cycles) in [(17, 1.2), (18, 2.0)] {
-        let mut rows = session(seed);
-        let end = rows.iter().map(|row| row.position_mm).fold(1.0, f64::max);
-        for row in &mut rows {
-            let share = (0.1 + cycles * row.position_mm / end).fract();
-            row.force_n += if share < 0.5 { 0.12 } else { -0.12 };
-        }
-        let evidence = evidence(&rows);
-        let first = evidence.posterior().reported.first().map(|r| evidence.covariate(r.member));
-        assert_eq!(first, Some("position"), "{:?}", reported(&evidence));
-    }
+fn structure_over_the_position_is_as_fine_as_its_sampling() {
+    let rows = session(17);
+    let evidence = evidence(&rows);
+    let problem = evidence.problem();
+    let kernel = problem.space().kernels.iter().position(|k| k.name == "reading over position").unwrap();
+    let positions: std::collections::BTreeMap<i64, usize> =
+        rows.iter().enumerate().map(|(row, of)| ((100.0 * of.position_mm).round() as i64, row)).collect();
+    let own = |basis: &pinswitch_inference::Basis| {
+        let values = positions.values().flat_map(|row| basis.at(*row).to_vec()).collect::<Vec<f64>>();
+        nalgebra::DMatrix::from_row_slice(positions.len(), basis.coefficients(), &values).rank(1e-6)
+    };
+    let ranks: Vec<usize> = problem.rows().bases[kernel].iter().map(own).collect();
+    // Brownian motion starts at zero.
+    assert_eq!((positions.len(), &ranks[1..]), (10, &[9, 10][..]));
 }

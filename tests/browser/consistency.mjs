@@ -150,7 +150,7 @@ export async function printerUnderTheDesign(visit, site, { facts }) {
   await visit.open(`${site.address}${START}&print.bed_mm=151`);
   const choose = async (name) => {
     await visit.page.$eval('#more', (menu) => { menu.open = true; });
-    await (await visit.page.evaluateHandle((n) => [...document.querySelectorAll('#template-list button')].find((b) => b.firstChild.textContent === n), name)).click();
+    await (await visit.page.evaluateHandle((n) => [...document.querySelectorAll('#template-list button')].find((b) => b.querySelector('b')?.textContent === n), name)).click();
     await visit.settled();
   };
   await choose(printers[0].name);

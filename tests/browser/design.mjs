@@ -72,6 +72,12 @@ export async function templates(visit, site) {
   await visit.settled();
   await visit.check('the template is shown', () => document.querySelector('#name').textContent === 'six-single' && document.querySelector('#chips [aria-pressed=true]').textContent === 'six-single');
   await visit.click('#more > summary');
+  await visit.page.waitForSelector('#template-list .thumb');
+  const pictures = await visit.page.$$eval('#template-list .template:has(.strip)', (all) => all.map((item) => ({
+    name: item.querySelector('b').textContent, pins: item.querySelectorAll('.pin').length, curve: item.querySelector('.thumb')?.getAttribute('aria-label') ?? '' })));
+  const picture = (name) => pictures.find((p) => p.name === name) ?? {};
+  visit.findings.check('every switch has a picture with its pins and its curve', pictures.length >= 5 && pictures.every((p) => /N of friction at .* N, (switches at .* N|does not switch)$/.test(p.curve)), JSON.stringify(pictures));
+  visit.findings.check('the pins are those of the layout', picture('six-single').pins === 6 && picture('silicone-only').pins === 0, JSON.stringify(pictures));
   const printer = await visit.page.evaluateHandle(() => [...document.querySelectorAll('#template-list button')].find((b) => b.textContent.startsWith('printer-')));
   await printer.click();
   await visit.settled();
@@ -115,12 +121,15 @@ export async function outOfBounds(visit, site) {
   await visit.check('the error is shown at the control', () => !document.querySelector('#f-segment-grooves-error').hidden && document.querySelector('#f-segment-grooves').getAttribute('aria-invalid') === 'true');
   await visit.settled();
   await visit.check('it is shown above the view, too, with help', () => /lower it to|raise/.test(document.querySelector('#trouble').textContent));
+  const fixes = await visit.page.$$eval('#trouble .fix', (all) => all.map((b) => b.textContent));
+  visit.findings.check('fixes that keep the number of grooves come before the one that takes it back', fixes.length > 1 && !/grooves to/.test(fixes[0]) && /grooves to/.test(fixes.at(-1)), fixes.join('; '));
   visit.findings.check('the last valid design is shown in grey', await visit.text('#friction-text') === before && await visit.page.$eval('body', (b) => b.classList.contains('stale')));
   await visit.click('#download');
   await visit.check('a refused design has no files, with a message', () => /cannot be built/.test(document.querySelector('#files-status').textContent) && document.querySelector('#zip').disabled);
   await visit.click('#files-close');
   await visit.click('#f-segment-grooves-error .fix');
   await visit.settled();
+  await visit.addressHas('segment.grooves=40');
   await visit.check('its button fixes it', () => document.querySelector('#trouble').hidden && !document.body.classList.contains('stale') && document.querySelector('#f-segment-grooves-error').hidden);
   await visit.type('#f-shell-wall_mm', '1e9');
   await visit.check('a value out of its range is reported', () => /to|range|most/.test(document.querySelector('#f-shell-wall_mm-error').textContent));
@@ -130,7 +139,7 @@ export async function outOfBounds(visit, site) {
   await visit.settled();
   await visit.click('#f-shell-wall_mm-error .fix');
   await visit.settled();
-  await visit.check('a value out of its range becomes the nearest valid one', () => document.querySelector('#trouble').hidden && Number(document.querySelector('#f-shell-wall_mm').value) < 60);
+  await visit.check('the largest value is kept, and others follow', () => document.querySelector('#trouble').hidden && Number(document.querySelector('#f-shell-wall_mm').value) === 60);
   await visit.type('#f-segment-grooves', '7.5');
   await visit.check('a fraction is reported at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'Enter a whole number.');
 }

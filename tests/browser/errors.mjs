@@ -68,7 +68,7 @@ export async function firstVisitWithAnInvalidDesign(visit, site) {
   await visit.check('the design shown instead is named', () => /three-double is shown in grey instead/.test(document.querySelector('#trouble').textContent));
   await visit.click('#trouble .fix');
   await visit.settled();
-  await visit.type('#f-segment-grooves', '40');
+  await visit.type('#f-segment-grooves', '59');
   await visit.check('later the last valid design is shown', () => /The last valid design is shown in grey/.test(document.querySelector('#trouble').textContent));
   await visit.settled();
 }

@@ -30,10 +30,10 @@ async function refused(visit) {
 export async function focusAfterFixes(visit, site) {
   await visit.open(site.address + START);
   await refused(visit);
-  await focusMoves(visit, 'a fix at the control', '#f-segment-grooves-error .fix', /^f-segment-grooves$/);
+  await focusMoves(visit, 'a fix at the control', '#f-segment-grooves-error .fix:last-of-type', /^f-segment-grooves$/);
   await visit.settled();
   await refused(visit);
-  await focusMoves(visit, 'a fix above the view', '#trouble .fix', /^f-segment-grooves$/);
+  await focusMoves(visit, 'a fix above the view', '#trouble .fix:nth-last-child(2)', /^f-segment-grooves$/);
   await visit.settled();
   await refused(visit);
   await focusMoves(visit, 'undo above the view', '#trouble .btn:last-child', /^undo$/);
@@ -56,7 +56,7 @@ export async function focusAfterFixes(visit, site) {
   await visit.open(site.address + START);
   await focusMoves(visit, 'removing all pins', '#clear-pins', /^Groove \d+, empty$/);
   await visit.click('#more > summary');
-  await focusMoves(visit, 'closing a menu', '#template-list button:not(.narrow)', /^More$/);
+  await focusMoves(visit, 'closing a menu', '#template-list button:not(.narrow)', /^Templates$/);
   await visit.settled();
 }
 

@@ -148,3 +148,23 @@ export async function sharing(visit, site, { findings }) {
   }, copied);
   await visit.addressHas('layout.pins=4,8,12');
 }
+
+// No position of a slider is refused by a rule; a typed value beyond its reach is, with fixes that keep it.
+export async function slidersWithinReach(visit, site) {
+  await visit.open(site.address + START);
+  const ids = await visit.page.$$eval('#fields .field:not([hidden]) input[type=range]', (all) => all.map((slider) => slider.closest('.field').id));
+  const refused = [];
+  for (const id of ids) {
+    for (const position of [0, 900, 1000]) {
+      await visit.slide(`#${id} input[type=range]`, position);
+      // The engine answers what the reach is before the value changes.
+      await pause(150);
+      await visit.settled();
+      if (await visit.shown('#trouble')) refused.push(`${id} at ${position}: ${await visit.text('#trouble')}`);
+      await visit.page.evaluate((start) => { location.hash = start; }, START);
+      await visit.settled();
+    }
+  }
+  visit.findings.check('there is a slider for most numbers', ids.length > 5, ids.length);
+  visit.findings.check('no position of a slider is refused', refused.length === 0, refused.join(' | '));
+}

@@ -37,9 +37,11 @@ function sliderScale(field) {
 }
 
 class Control {
-  constructor(field, state) {
+  // `reachOf` returns the least and the largest value of a field for the other values of the design, or null.
+  constructor(field, state, reachOf) {
     this.field = field;
     this.state = state;
+    this.reachOf = reachOf;
     this.name = fieldName(field);
     this.id = `f-${field.path.replace('.', '-')}`;
     this.element = make('div', undefined, { class: `field ${field.kind}`, id: `${this.id}-field`, role: 'group', 'aria-label': this.name });
@@ -57,7 +59,7 @@ class Control {
     if (unitName(field) || field.ends) row.append(make('span', unitName(field), { class: 'unit' }));
     row.append(this.help);
     this.element.append(row);
-    if (this.slider) this.element.append(this.slider);
+    if (this.slider) this.element.append(this.slider, this.note);
     this.element.append(this.error, this.about);
     this.show();
   }
@@ -97,7 +99,32 @@ class Control {
     this.slider = make('input', undefined, { type: 'range', min: 0, max: SLIDER_STEPS, step: 'any', 'aria-label': TEXT.slider(this.name), tabindex: -1 });
     // Without a tab stop: the number input has the arrow keys, and ninety parameters would have
     // twice as many stops.
-    listenToSlider(this.slider, () => this.apply(scale.value(Number(this.slider.value))));
+    listenToSlider(this.slider, () => this.slide(scale.value(Number(this.slider.value))));
+    this.note = make('p', undefined, { class: 'about', role: 'status' });
+    this.note.hidden = true;
+    this.slider.addEventListener('blur', () => { this.note.hidden = true; });
+  }
+
+  // Applies a value of the slider within its reach, where no rule breaks while the other values stay. A typed value may go
+  // beyond it, and is then offered changes of others.
+  async slide(value) {
+    this.sliding = value;
+    const { [this.field.path]: _, ...others } = this.state.now.values;
+    if (!sameValue(this.others, others)) {
+      this.others = others;
+      this.reach = this.reachOf(this.field.path);
+    }
+    const ends = await this.reach;
+    // A later position of the slider counts.
+    if (this.sliding !== value) return;
+    const [step, own] = [stepOf(this.field), this.state.value(this.field.path)];
+    const inward = (end, round) => Number((round(end / step) * step).toFixed(6));
+    const [low, high] = ends ? [Math.min(own, inward(ends[0] - 1e-9, Math.ceil)), Math.max(own, inward(ends[1] + 1e-9, Math.floor))] : this.field.ends;
+    this.note.textContent = TEXT.reach(`${formatNumber(low)}`, `${formatNumber(high)} ${unitName(this.field)}`.trim());
+    this.note.hidden = value >= low && value <= high;
+    this.apply(clamp(value, low, high));
+    // The slider goes back to the value.
+    this.show();
   }
 
   isNumber() { return this.field.kind === 'number' || this.field.kind === 'whole'; }
@@ -167,10 +194,10 @@ class Control {
 
   hasError() { return !this.error.hidden; }
 
-  // Shows an error at the control, with a button that fixes it.
-  showError(text, fix) {
+  // Shows an error at the control, with buttons that fix it.
+  showError(text, fixes = []) {
     this.error.replaceChildren(text);
-    if (fix) this.error.append(' ', fix);
+    for (const fix of fixes) this.error.append(' ', fix);
     this.error.hidden = !text;
     this.element.classList.toggle('wrong', Boolean(text));
     if (text) this.input.setAttribute('aria-invalid', 'true'); else this.input.removeAttribute('aria-invalid');
@@ -178,8 +205,10 @@ class Control {
 }
 
 class Controls {
-  constructor(host, facts, state) {
+  constructor(host, facts, state, engine) {
     this.state = state;
+    // Without an answer the slider has the range of its field.
+    this.reachOf = (field) => engine.request({ command: 'reach', values: state.now.values, field }).then((answer) => answer.ends, () => null);
     this.controls = new Map();
     this.sections = [];
     const names = [...new Set(facts.fields.map((f) => f.section))];
@@ -204,7 +233,7 @@ class Controls {
     head.append(make('h3', TEXT.groups[name] ?? name.replaceAll('_', ' ')), count);
     element.append(head);
     for (const field of fields) {
-      const control = new Control(field, this.state);
+      const control = new Control(field, this.state, this.reachOf);
       this.controls.set(field.path, control);
       element.append(control.element);
     }
@@ -249,12 +278,12 @@ class Controls {
   idOf(path) { return this.controls.get(path)?.id; }
 
   // Shows why a design is refused at the control of its field, and removes the message elsewhere.
-  showTrouble(trouble, fix) {
+  showTrouble(trouble, fixes) {
     const before = [...this.controls.values()].filter((c) => c.isRefused);
     for (const control of before) { control.showError(''); control.isRefused = false; }
     const control = trouble && this.controls.get(trouble.field);
     if (control && !control.hasInvalidText) {
-      control.showError(`${troubleText(trouble, control.name)}.`, fix);
+      control.showError(`${troubleText(trouble, control.name)}.`, fixes);
       control.isRefused = true;
     }
     if (control || before.length) this.filter();

@@ -77,7 +77,7 @@ class Page {
     this.curve.moved = (load_n) => this.view.load(load_n);
     this.handles = new Handles(this.curve, state);
     this.strip = new Strip(this.curve, state);
-    this.controls = new Controls(byId('fields'), facts, state);
+    this.controls = new Controls(byId('fields'), facts, state, this.engine);
     this.pins = new Pins(byId('pins'), state);
     this.targets = new Targets(state, this.engine, this.curve, this.handles);
     this.measurements = new Measurements(state, this.engine, this.curve);
@@ -242,19 +242,13 @@ class Page {
       this.chips.push([chip, t]);
       byId('chips').append(chip);
     });
-    const list = byId('template-list');
-    const group = (title, templates) => {
-      if (!templates.length) return;
-      list.append(make('h2', title));
-      for (const t of templates) {
-        const item = button(t.name, () => { this.applyTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
-        item.append(make('span', t.about, { class: 'dim' }));
-        list.append(item);
-      }
-    };
+    const [list, menu] = [byId('template-list'), byId('more')];
+    const apply = (template) => { this.applyTemplate(template); menu.open = false; menu.querySelector('summary').focus(); };
+    const templates = new TemplateList(this.engine, this.pins, apply);
     list.append(button(TEXT.open, () => byId('open-file').click(), { class: 'link narrow' }));
-    group(TEXT.published, published);
-    group(TEXT.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
+    templates.add(list, TEXT.published, published);
+    templates.add(list, TEXT.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
+    menu.addEventListener('toggle', () => menu.open && templates.drawCurves());
   }
 
   applyTemplate(template) {

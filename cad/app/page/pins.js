@@ -34,12 +34,12 @@ class Pins {
     return true;
   }
 
-  // Dimensions of the drawing in millimetres, from the values of the part.
-  sizes() {
-    const v = (path, low, high) => clamp(Number(this.state.value(path)) || 0, low, high);
+  // Dimensions of the drawing in millimetres, from the values of the part, or from those of a template.
+  sizes(value = (path) => this.state.value(path)) {
+    const v = (path, low, high) => clamp(Number(value(path)) || 0, low, high);
     const shell = v('shell.outer_radius_mm', 5, 150);
     const contact = shell + v('silicone.thickness_mm', 0.3, 10);
-    const n = this.grooves();
+    const n = Math.round(v('segment.grooves', 1, 60));
     const span = v('segment.span_deg', 5, 340) * Math.PI / 180;
     const pitch = 2 * contact * Math.sin(span / n / 2);
     const pin = v('pins.diameter_mm', 0.1, 5) / 2;
@@ -72,7 +72,7 @@ class Pins {
   }
 
   // Draws shell, layer and tendon.
-  segment(s) {
+  segment(s, substrate = this.state.value('layout.substrate')) {
     const sector = (low, high) => {
       const [a, b, c, d] = [point(high, -s.span / 2), point(high, s.span / 2), point(low, s.span / 2), point(low, -s.span / 2)];
       const large = s.span > Math.PI ? 1 : 0;
@@ -88,11 +88,24 @@ class Pins {
     const lowest = Math.max(...[s.inner, s.contact].map((radius) => -radius * Math.cos(s.span / 2)), ends[0][1]) + 1;
     const top = -(axis + s.rope) - 0.6;
     const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': TEXT.pinsName, class: s.span > Math.PI ? 'strip tall' : 'strip' });
-    const bed = this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer';
+    const bed = substrate === 'abs' ? 'shell' : 'layer';
     const rope = `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`;
     drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: bed }),
       svg('path', { d: rope, class: 'tendon', 'stroke-width': 2 * s.rope }));
     return drawing;
+  }
+
+  // A picture of the segment of a template.
+  picture(values) {
+    const value = (path) => values[path] ?? this.state.fields.get(path)?.default;
+    const s = this.sizes(value);
+    const picture = this.segment(s, value('layout.substrate'));
+    for (const i of value('layout.pins')) {
+      const [cx, cy] = point(s.contact, this.angle(i, s));
+      picture.append(svg('circle', { cx, cy, r: 1.4 * s.pin, class: 'pin' }));
+    }
+    picture.setAttribute('aria-hidden', 'true');
+    return picture;
   }
 
   groove(i, s, hasPin) {

@@ -7,7 +7,7 @@ const TEXT = {
   brand: 'pinswitch',
   skip: 'Skip the parameters',
   // Texts of elements by `data-text`, accessible names by `data-name`.
-  layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
+  layouts: 'Layouts', moreTemplates: 'Templates', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
   parameters: 'Parameters', close: 'Close',
   find: 'Find a parameter', changedOnly: 'Changed', allParameters: 'All',
   stripName: 'Summary of the design: show the curve', clipboard: 'the clipboard', noField: 'No matching parameter.',
@@ -51,6 +51,7 @@ const TEXT = {
     mixed: (text) => `${text} mixes numbers with and without a unit. Enter a unit after each number.`,
   },
   notNumber: 'Enter a number.', notWhole: 'Enter a whole number.', notList: 'Enter groove numbers, separated by commas: 5, 8, 11.',
+  reach: (low, high) => `With the other values it can be ${low} to ${high}. Enter another value to see which others it needs.`,
   setTo: (name, value) => `Set ${name} to ${value}`,
 
   fix: (changes) => `Fix: ${changes.join(', ')}`,
@@ -73,6 +74,7 @@ const TEXT = {
   loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,
   columns: { load: 'load (N)', eccentric: 'eccentric', concentric: 'concentric', friction: 'friction', low: 'low', high: 'high' },
 
+  thumbName: ({ load_n, friction_n, threshold_n }) => `${formatNumber(friction_n.at(-1), 1)} N of friction at ${formatNumber(load_n.at(-1), 1)} N, ${TEXT.switchesAt(threshold_n)}`,
   groove: (i, pin) => `Groove ${i}, ${pin ? 'with a pin' : 'empty'}`,
   pinsName: 'Grooves of the segment, from left to right',
   pinsIn: (pins) => (pins.length ? `Pins in ${pins.join(', ')}` : 'No pins'),

@@ -61,11 +61,13 @@ mod measurement_file;
 mod module;
 pub mod page;
 mod prediction_cache;
+mod reach;
 mod refusal;
 mod request;
 #[cfg(feature = "server")]
 pub mod server;
 pub mod shared_texts;
+mod template_curves;
 mod values;
 
 use cache::Cache;
@@ -117,9 +119,11 @@ impl Engine {
         };
         match request {
             Request::Facts => Answer::json(&facts::facts()),
+            Request::Templates => Answer::json(&template_curves::answer()),
             Request::Design { design, quality } => {
                 Answer::json(&design::answer(&mut self.cache, &design, quality))
             }
+            Request::Reach { values, field } => Answer::json(&reach::answer(&values, &field)),
             Request::Open { toml, file } => Answer::json(&values::open(&toml, &file)),
             Request::Files { design } => self.with_files(&design, FileSet::list),
             Request::File { design, name } => self.with_files(&design, |files| files.content(&name)),

@@ -9,7 +9,7 @@ const UNPACK: &str = include_str!("../page/xz-decompress.min.js");
 const WORKER: &str = include_str!("../page/worker.js");
 
 /// Scripts of the page, in the order in which they are joined.
-const SCRIPTS: [&str; 23] = [
+const SCRIPTS: [&str; 24] = [
     include_str!("../page/text.js"),
     include_str!("../page/dom.js"),
     include_str!("../page/focus.js"),
@@ -18,6 +18,7 @@ const SCRIPTS: [&str; 23] = [
     include_str!("../page/quantity.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/pins.js"),
+    include_str!("../page/templates.js"),
     include_str!("../page/joint.js"),
     include_str!("../page/view.js"),
     include_str!("../page/scales.js"),

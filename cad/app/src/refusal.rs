@@ -1,7 +1,7 @@
 //! Why a design is refused, in the form in which the page shows it: at the control of the field,
 //! with a button that applies a remedy.
 
-use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_diagnostic::{Change, Diagnostic, Location};
 use serde::Serialize;
 
 /// The JSON of `trouble` in an answer.
@@ -18,6 +18,8 @@ pub(crate) struct Refusal {
     /// Values that solve the problem when the page sets all of them; empty if only a person can
     /// solve it.
     changes: Vec<Assignment>,
+    /// Other values that solve it as well, the nearest first.
+    alternatives: Vec<Vec<Assignment>>,
 }
 
 /// One value to set.
@@ -33,25 +35,27 @@ impl From<Diagnostic> for Refusal {
         let location = diagnostic.location().cloned().unwrap_or_default();
         let place = Location { field: None, value: None, ..location.clone() }.to_string();
         let problem = diagnostic.problem();
-        let changes = diagnostic.changes().iter().filter_map(|change| {
-            // Numbers, lists, quoted words and booleans are the same in TOML and in JSON.
-            let value = serde_json::from_str(&change.value).ok()?;
-            Some(Assignment { path: change.field.clone(), value })
-        });
+        let assignments = |changes: &[Change]| {
+            let assignment = |change: &Change| {
+                // Numbers, lists, quoted words and booleans are the same in TOML and in JSON.
+                let value = serde_json::from_str(&change.value).ok()?;
+                Some(Assignment { path: change.field.clone(), value })
+            };
+            changes.iter().filter_map(assignment).collect()
+        };
         Self {
             problem: if place.is_empty() { problem.to_owned() } else { format!("{place}: {problem}") },
             field: location.field.unwrap_or_default(),
             value: location.value,
             help: diagnostic.help().unwrap_or_default().to_owned(),
-            changes: changes.collect(),
+            changes: assignments(diagnostic.changes()),
+            alternatives: diagnostic.alternatives().iter().map(|changes| assignments(changes)).collect(),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use pinswitch_diagnostic::Change;
-
     use super::*;
     use pinswitch_diagnostic::codes;
     use serde_json::json;
@@ -62,12 +66,14 @@ mod tests {
         let diagnostic = Diagnostic::new(codes::GROOVES_OVERLAP, "grooves overlap")
             .with_location(Location::field("segment.grooves", "40"))
             .with_help("lower it to 20")
-            .with_changes(vec![change("segment.grooves", "20"), change("layout.pins", "[5, 8]")]);
+            .with_changes(vec![change("segment.grooves", "20"), change("layout.pins", "[5, 8]")])
+            .with_alternatives(vec![vec![change("shell.outer_radius_mm", "31.5")]]);
         assert_eq!(
             serde_json::to_value(Refusal::from(diagnostic)).unwrap(),
             json!({
                 "field": "segment.grooves", "value": "40", "problem": "grooves overlap", "help": "lower it to 20",
                 "changes": [{"path": "segment.grooves", "value": 20}, {"path": "layout.pins", "value": [5, 8]}],
+                "alternatives": [[{"path": "shell.outer_radius_mm", "value": 31.5}]],
             })
         );
     }

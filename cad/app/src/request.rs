@@ -14,6 +14,8 @@ pub type Values = BTreeMap<String, Value>;
 pub(crate) enum Request {
     /// Fields, templates and formats.
     Facts,
+    /// The curves of the templates that are switches.
+    Templates,
     /// What the page shows of a design.
     Design {
         #[serde(flatten)]
@@ -21,6 +23,8 @@ pub(crate) enum Request {
         #[serde(default)]
         quality: Quality,
     },
+    /// The values of a number with which the design satisfies every rule.
+    Reach { values: Values, field: String },
     /// The values in the text of a configuration.
     Open { toml: String, file: String },
     /// Names and sizes of the files of a design.

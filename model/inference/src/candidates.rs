@@ -151,27 +151,27 @@ impl CellProducts {
             DVector::from_fn(sensitivity.len(), of_row)
         };
         let parts = [part(false), part(true)];
-        let white = [false, true].map(|i| marginal.whitening.whiten_vector(&parts[usize::from(i)]));
-        let cut = |whole: &DVector<f64>, series: usize| {
-            whole.rows(ranges[series].start, ranges[series].len()).into_owned()
-        };
-        let of_cell = |value: &dyn Fn(&DVector<f64>, &DVector<f64>, usize) -> f64| {
-            let at = |cell: usize, _| value(&white[cell / count], &parts[cell / count], cell % count);
-            DVector::from_fn(2 * count, at)
-        };
+        let white = parts.each_ref().map(|part| marginal.whitening.whiten_vector(part));
         let mut cross = DMatrix::zeros(marginal.gram.nrows(), 2 * count);
         for (i, white) in white.iter().enumerate() {
-            cross
-                .columns_mut(i * count, count)
-                .copy_from(&marginal.white_design.transposed_times_series(white));
+            let of_direction = marginal.white_design.transposed_times_series(white);
+            cross.columns_mut(i * count, count).copy_from(&of_direction);
         }
-        Self {
-            gram: of_cell(&|white, _, series| cut(white, series).norm_squared()),
-            between: DVector::from_fn(count, |series, _| cut(&white[0], series).dot(&cut(&white[1], series))),
-            cross,
-            moment: of_cell(&|white, _, series| cut(white, series).dot(&cut(&marginal.white_target, series))),
-            largest: of_cell(&|_, part, series| cut(part, series).amax()),
+        let of_cells = DVector::zeros(2 * count);
+        let (mut gram, mut moment, mut largest) = (of_cells.clone(), of_cells.clone(), of_cells);
+        let mut between = DVector::zeros(count);
+        for (series, range) in ranges.iter().enumerate() {
+            let own = white.each_ref().map(|white| white.rows(range.start, range.len()));
+            let target = marginal.white_target.rows(range.start, range.len());
+            between[series] = own[0].dot(&own[1]);
+            for (i, own) in own.iter().enumerate() {
+                let cell = i * count + series;
+                gram[cell] = own.norm_squared();
+                moment[cell] = own.dot(&target);
+                largest[cell] = parts[i].rows(range.start, range.len()).amax();
+            }
         }
+        Self { gram, between, cross, moment, largest }
     }
 
     /// Returns the candidate of a basis with one row per cell, and its `A'V^-1 x`; `None` if it changes no reading.

@@ -150,7 +150,10 @@ pub fn explained(error: BuildError, configuration: &Configuration) -> BuildError
     let diagnostic = diagnostic
         .with_location(location)
         .with_help(proposal::alternatives(help))
-        .with_changes(proposal::changes(configuration, first, &subject));
+        .with_changes(proposal::changes(configuration, first, &subject))
+        .with_alternatives(
+            found[1..].iter().map(|c| proposal::changes(configuration, c, &subject)).collect(),
+        );
     BuildError::Configuration(diagnostic)
 }
 

@@ -18,12 +18,14 @@ use crate::codes::AREAS;
 /// assert_eq!(code, codes::GROOVES_OVERLAP);
 /// assert_eq!(code.title(), "Grooves overlap");
 /// ```
+///
+/// A code has no reference to its page, so that a program that never shows one does not contain it.
 #[derive(Clone, Copy)]
-pub struct Code(&'static Page);
+pub struct Code(&'static str);
 
 /// What a code means.
+#[derive(Debug)]
 pub(crate) struct Page {
-    pub(crate) name: &'static str,
     pub(crate) title: &'static str,
     /// Paragraphs, separated by an empty line.
     pub(crate) text: &'static str,
@@ -38,8 +40,14 @@ impl Area {
 }
 
 impl Code {
-    pub(crate) const fn new(page: &'static Page) -> Self {
-        Self(page)
+    pub(crate) const fn new(name: &'static str) -> Self {
+        Self(name)
+    }
+
+    fn page(self) -> Option<&'static Page> {
+        let of_area =
+            |area: &Area| area.codes.iter().position(|code| *code == self).map(|at| &area.pages[at]);
+        AREAS.iter().find_map(of_area)
     }
 
     /// Returns the code with this name.
@@ -54,22 +62,22 @@ impl Code {
 
     /// Returns the name, such as `grooves-overlap`.
     pub const fn name(self) -> &'static str {
-        self.0.name
+        self.0
     }
 
     /// Returns the fault in one line.
-    pub const fn title(self) -> &'static str {
-        self.0.title
+    pub fn title(self) -> &'static str {
+        self.page().map_or("", |page| page.title)
     }
 
     /// Returns the explanation: paragraphs that an empty line separates.
-    pub const fn text(self) -> &'static str {
-        self.0.text
+    pub fn text(self) -> &'static str {
+        self.page().map_or("", |page| page.text)
     }
 
     /// Returns the path of the document of the repository with more about it.
-    pub const fn document(self) -> Option<&'static str> {
-        self.0.document
+    pub fn document(self) -> Option<&'static str> {
+        self.page()?.document
     }
 }
 
@@ -107,6 +115,8 @@ pub struct Area {
     pub title: &'static str,
     /// Its codes.
     pub codes: &'static [Code],
+    /// Their pages, in the same order.
+    pub(crate) pages: &'static [Page],
 }
 
 #[cfg(test)]

@@ -13,16 +13,19 @@ macro_rules! pages {
     })*) => {
         $(
             #[doc = concat!($title, ".")]
-            pub const $code: super::Code = super::Code::new(&super::Page {
-                name: $name,
-                title: $title,
-                text: concat!($first $(, "\n\n", $next)*),
-                document: super::document(&[$($document)?]),
-            });
+            pub const $code: super::Code = super::Code::new($name);
         )*
 
         /// The codes of this file.
-        pub(super) const AREA: super::Area = super::Area { title: $area, codes: &[$($code),*] };
+        pub(super) const AREA: super::Area = super::Area {
+            title: $area,
+            codes: &[$($code),*],
+            pages: &[$(super::Page {
+                title: $title,
+                text: concat!($first $(, "\n\n", $next)*),
+                document: super::document(&[$($document)?]),
+            }),*],
+        };
     };
 }
 

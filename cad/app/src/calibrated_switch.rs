@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 
 use pinswitch_calibration::ModelFile;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Contact, FrictionCurve, Substrate, Transfer};
 use pinswitch_switch::design_search::{Belief, Curve, LoadState, Part};
 
@@ -23,8 +24,12 @@ pub struct CalibratedSwitch {
 
 impl CalibratedSwitch {
     /// Creates the belief of a model; `name` is the model's name in errors.
-    pub fn new(file: ModelFile, name: String) -> Self {
-        Self { file, name, recent: Mutex::default() }
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] if the model was fitted to a table without pins, or without silicone.
+    pub fn new(file: ModelFile, name: String) -> Result<Self, Diagnostic> {
+        file.check_materials(Substrate::Silicone, true, &name)?;
+        Ok(Self { file, name, recent: Mutex::default() })
     }
 
     /// Returns the transfer from the same grooves of the rig to `part`, from the cache if it is

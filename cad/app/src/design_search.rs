@@ -106,7 +106,8 @@ fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
         return Err(diagnostic.into());
     }
     let published = PublishedPhysics::default();
-    let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL_NAME.to_owned()));
+    let switch = |model| CalibratedSwitch::new(model, MODEL_NAME.to_owned());
+    let calibrated = model.clone().map(switch).transpose()?;
     let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
     let found = search(&base, &request, belief, options, &Silent);
     let summary = format!("{} layouts, {} curves computed", found.patterns, found.tried);

@@ -1,8 +1,9 @@
 //! The reach of a slider: the values of a number, around that of a design, with which it satisfies every rule.
 //!
-//! Rules are checked, parts are not built, so that a value within reach may still be refused by its parts. An interval that
-//! is far from the value of the design, behind values that break a rule, is out of reach.
+//! Rules are checked at many values, and parts are built at the ends only. An interval that is far from the value of the
+//! design, behind values that break a rule, is out of reach.
 
+use pinswitch_switch::built::Built;
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
 use serde::Serialize;
@@ -33,27 +34,33 @@ fn ends(values: &Values, field: &str) -> Option<[f64; 2]> {
     let (range, value) = ((parameter.ends)()?, (parameter.get)(&own));
     let is_whole = value.is_integer();
     let value = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))?;
-    let satisfies_rules = |number: f64| {
+    let design = |number: f64| {
         // Ranges of whole numbers are small.
         #[allow(clippy::cast_possible_truncation)]
         let number = if is_whole { (number.round() as i64).into() } else { number.into() };
         let mut changed = own.clone();
-        (parameter.set)(&mut changed, &number).is_ok() && Design::new(changed).is_ok()
+        (parameter.set)(&mut changed, &number).ok()?;
+        Design::new(changed).ok()
     };
+    let satisfies_rules = |number: f64| design(number).is_some();
+    let builds = |number: f64| design(number).is_some_and(|design| Built::new(design).is_ok());
     if !satisfies_rules(value) {
         return None;
     }
-    Some(range.map(|end| last_of(value, end, is_whole, &satisfies_rules)))
+    Some(range.map(|end| {
+        let end = last_of(value, end, is_whole, TRIED, &satisfies_rules);
+        if builds(end) { end } else { last_of(value, end, is_whole, 1, &builds) }
+    }))
 }
 
-/// Returns the last value from one towards an end of the range before the first that is not allowed.
-fn last_of(value: f64, end: f64, is_whole: bool, is_allowed: &dyn Fn(f64) -> bool) -> f64 {
+/// Returns the last value from one towards an end of the range before the first that is not allowed, of as many as are tried.
+fn last_of(value: f64, end: f64, is_whole: bool, tried: u32, is_allowed: &dyn Fn(f64) -> bool) -> f64 {
     let at = |share: f64| {
         let exact = value + (end - value) * share;
         if is_whole { exact.round() } else { exact }
     };
-    let share = |i: u32| f64::from(i) / f64::from(TRIED);
-    let Some(refused) = (1..=TRIED).map(share).find(|share| !is_allowed(at(*share))) else { return end };
+    let share = |i: u32| f64::from(i) / f64::from(tried);
+    let Some(refused) = (1..=tried).map(share).find(|share| !is_allowed(at(*share))) else { return end };
     let (mut allowed, mut refused) = (refused - share(1), refused);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (allowed + refused);
@@ -70,14 +77,15 @@ mod tests {
         values.iter().map(|(path, value)| ((*path).to_owned(), value.clone())).collect()
     }
 
-    /// Within reach every design satisfies the rules, and beyond an end that is not that of the range none does.
+    /// Within reach every design is built, and beyond an end that is not that of the range none is.
     #[test]
     fn rules_break_beyond_the_reach() {
         let base = with(&[("layout.pins", [5, 8, 11].into())]);
         let is_allowed = |field: &str, number: serde_json::Value| {
             let mut values = base.clone();
             values.insert(field.to_owned(), number);
-            configuration(&values).is_ok_and(|changed| Design::new(changed).is_ok())
+            configuration(&values)
+                .is_ok_and(|changed| Design::new(changed).is_ok_and(|design| Built::new(design).is_ok()))
         };
         let (mut bounded, mut whole) = (0, 0);
         for parameter in Configuration::PARAMETERS {

@@ -49,7 +49,8 @@ pub(crate) fn design(
         let request = Request::read(&request, &name)?;
         let base = configuration.design()?;
         request.check_loads(load_range_n(base.configuration(), &request))?;
-        let model = parsed_model(model)?.map(|(model, name)| CalibratedSwitch::new(model, name));
+        let model =
+            parsed_model(model)?.map(|(model, name)| CalibratedSwitch::new(model, name)).transpose()?;
         let published = PublishedPhysics::default();
         let belief: &dyn Belief = match &model {
             Some(model) => model,

@@ -217,3 +217,17 @@ def test_unsuitable_logs_are_not_identified(tmp_path: Path, table: dict[str, Any
         with pytest.raises(PinswitchError) as refused:
             bam.identify(given)
         assert refused.value.code == code
+
+
+def test_a_copy_of_a_log_is_no_evidence(rig: ModuleType, tmp_path: Path) -> None:
+    runs = logs(rig, tmp_path, servo(rig, 0, load=0.0), 0, runs=RUNS[:2])
+    with pytest.raises(PinswitchError, match="duplicate-entry"):
+        bam.identify([*runs, runs[0]])
+    with pytest.raises(PinswitchError, match="step_s"):
+        bam.identify(runs, step_s=0.0)
+
+
+def test_one_log_attributes_nothing(rig: ModuleType, tmp_path: Path) -> None:
+    """No other log can confirm that the dependence predicts better."""
+    run = logs(rig, tmp_path, servo(rig, 0, load=0.1), 0, runs=RUNS[:1])
+    assert bam.identify(run, step_s=STEP_S).verdict != "attributed"

@@ -174,3 +174,24 @@ def test_arviz_takes_the_draws(calibration: pinswitch.Calibration) -> None:
     arviz = pytest.importorskip("arviz")
     data = calibration.to_arviz(50)
     assert data["posterior"]["mu_s"].shape == (1, 50) and arviz.__version__
+
+
+def test_what_is_no_effect_is_refused() -> None:
+    table = pinswitch.read(EXAMPLES / "capstan.csv")
+    for effects, code in (([1], "wrong-type"), (["no-such.toml"], "cannot-read"), ("no-such.toml", "cannot-read")):
+        with pytest.raises(pinswitch.PinswitchError) as raised:
+            pinswitch.calibrate(table, effects=effects)
+        assert raised.value.code == code
+
+
+def test_a_model_of_a_capstan_has_no_switch() -> None:
+    """The table has neither pins nor silicone, whose friction would be that of the prior."""
+    calibration = pinswitch.calibrate(pinswitch.read(EXAMPLES / "capstan.csv"))
+    for attempt in (
+        lambda: calibration.curve(pinswitch.Config("three-double")),
+        lambda: pinswitch.predict(pinswitch.Config("silicone-only"), model=calibration),
+        lambda: pinswitch.design({"targets": {"threshold_n": 26}}, model=calibration, best=1),
+    ):
+        with pytest.raises(pinswitch.PinswitchError, match="silicone") as raised:
+            attempt()
+        assert raised.value.code == "model-beyond-rig"

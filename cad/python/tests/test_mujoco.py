@@ -216,8 +216,12 @@ def test_unknown_tendons_are_refused(surface: Surface) -> None:
     host, _ = rig(surface, 10.0)
     with pytest.raises(PinswitchError, match="no tendon"):
         Host(host.model, [Switch("absent", surface)])
-    with pytest.raises(PinswitchError, match="not positive"):
-        Host(host.model, [Switch("tendon", surface, stiffness_n_m=0.0)])
+    for stiffness_n_m in (0.0, float("inf"), float("nan")):
+        with pytest.raises(PinswitchError, match="stiffness_n_m"):
+            Host(host.model, [Switch("tendon", surface, stiffness_n_m=stiffness_n_m)])
+    for damping_ratio in (-1.0, float("inf"), float("nan")):
+        with pytest.raises(PinswitchError, match="damping_ratio"):
+            Host(host.model, [Switch("tendon", surface, damping_ratio=damping_ratio)])
 
 
 def exported(command: list[str], folder: Path) -> Optional[Path]:

@@ -255,6 +255,10 @@ mod tests {
         let expected = 20.0 * libm::sinh(0.24 * wrap);
         assert!((curve.friction_n[0] / expected - 1.0).abs() < 0.01, "{} {expected}", curve.friction_n[0]);
         assert_eq!(file.sides(), (Vec::new(), Vec::new()));
+        // Nothing of the table was on pins, and nothing was on the rigid proxy.
+        let refused = file.part_curve(silicone, &[5, 8, 11], &[20.0], "model.toml").unwrap_err();
+        assert_eq!(refused.code(), pinswitch_diagnostic::codes::MODEL_BEYOND_RIG);
+        assert!(refused.problem().contains("on pins"), "{refused}");
     }
 
     #[test]

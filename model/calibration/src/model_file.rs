@@ -98,7 +98,7 @@ pub struct ModelFile {
     /// earlier versions; the discrepancies of this version grow with the load.
     #[serde(default)]
     beyond_range: f64,
-    frame: Frame,
+    pub(crate) frame: Frame,
     /// Covariance of the constants' coordinates, row by row.
     covariance: Vec<Vec<f64>>,
     /// The effects of the terms; user-defined ones are written in the file as in a file of effects.

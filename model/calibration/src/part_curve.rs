@@ -1,7 +1,7 @@
 //! Friction curve of a printed part from a calibrated model: includes effects of the switch,
 //! excludes those of the rig.
 
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substrate, published};
 
 use crate::model::{Model, Noise, prediction_sd_n};
@@ -25,6 +25,33 @@ fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
 }
 
 impl ModelFile {
+    /// Checks that the fitted table has what a part touches: the friction of anything else is that of the prior. `file` is
+    /// the name of the model in errors.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] that names the material without a reading.
+    pub fn check_materials(
+        &self,
+        substrate: Substrate,
+        has_pins: bool,
+        file: &str,
+    ) -> Result<(), Diagnostic> {
+        let conditions = &self.frame.conditions;
+        let is_measured = |of: Substrate| conditions.iter().any(|c| c.substrate == Some(of));
+        let missing = if substrate == Substrate::Silicone && !is_measured(Substrate::Silicone) {
+            "silicone"
+        } else if has_pins && conditions.iter().all(|c| c.pins.is_empty()) {
+            "pins"
+        } else {
+            return Ok(());
+        };
+        let problem =
+            format!("no reading of the fitted table is on {missing}, whose friction it does not give");
+        Err(Diagnostic::new(codes::MODEL_BEYOND_RIG, problem)
+            .with_location(Location::file(file))
+            .with_help("measure a switch and calibrate, or use the published constants, without a model"))
+    }
+
     /// Returns the curve of pins in these grooves, numbered from 1, on `substrate` at ascending
     /// `loads_n` in newtons.
     ///
@@ -33,7 +60,7 @@ impl ModelFile {
     /// an unmeasured layout. `file` is the name of the model in errors.
     ///
     /// # Errors
-    /// As [`ModelFile::model`], and if the predicted friction is impossible.
+    /// As [`ModelFile::model`] and [`ModelFile::check_materials`], and if the predicted friction is impossible.
     pub fn part_curve(
         &self,
         substrate: Substrate,
@@ -41,6 +68,7 @@ impl ModelFile {
         loads_n: &[f64],
         file: &str,
     ) -> Result<FrictionCurve, Diagnostic> {
+        self.check_materials(substrate, !pins.is_empty(), file)?;
         let rows: Vec<PlateauRow> = [Direction::Eccentric, Direction::Concentric]
             .iter()
             .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))

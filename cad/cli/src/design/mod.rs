@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let calibrated = match &arguments.model {
         Some(path) => {
             let (model, name) = read_model(path)?;
-            Some(CalibratedSwitch::new(model, name))
+            Some(CalibratedSwitch::new(model, name).map_err(Failure::bad_input)?)
         }
         None => None,
     };

@@ -182,6 +182,12 @@ def shortened(bench: Bench, swing_s: float) -> Bench:
     return replace(bench, position_rad=np.where(steps <= swing_s / bench.step_s, bench.position_rad, np.nan))
 
 
+def without(bench: Bench, log: int) -> Bench:
+    """Return the other logs."""
+    arrays = {name: value for name, value in vars(bench).items() if isinstance(value, np.ndarray)}
+    return replace(bench, **{name: np.delete(value, log, axis=-1) for name, value in arrays.items()})
+
+
 @dataclass(frozen=True)
 class Solution:
     """Constants with the least squares, and what the inference needs.
@@ -232,14 +238,6 @@ class Solution:
         point[index[moves]] -= np.linalg.solve(normal + damping * np.diag(np.diag(normal)), gradient[moves])
         point[list(BOUNDED)] = np.maximum(point[list(BOUNDED)], 0.0)
         return point
-
-    def without(self, log: int) -> Floats:
-        """Return the constants that one Gauss-Newton step gives without a log.
-
-        Rad & Maleki, *A scalable estimate of the out-of-sample prediction error via approximate leave-one-out
-        cross-validation*, J. R. Stat. Soc. B 82(4), 2020.
-        """
-        return self.step(np.delete(self.slopes, log, axis=1), np.delete(self.errors, log, axis=0))
 
 
 def solve(bench: Bench, free: tuple[int, ...], starts: list[Floats]) -> Solution:

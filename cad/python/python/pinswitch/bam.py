@@ -109,8 +109,7 @@ class Friction:
     rms_rad, rms_without_load_rad : float
         RMS error of the fitted logs.
     held_out_rad, held_out_without_load_rad : float
-        RMS error of logs that are left out of the fit in turn, by one Gauss-Newton step without each of them instead of
-        a new fit; not a number for a single log.
+        RMS error of logs that are left out of the fit in turn; not a number for a single log.
     noise_rad : float
         Standard deviation of the noise of the positions, from second differences of the residuals.
     blocks : int
@@ -228,8 +227,14 @@ def identify(
     Raises
     ------
     PinswitchError
-        If there is no log, if logs are of several servos or without a supply voltage, or if the servo is unknown.
+        If there is no log, if a log is given twice, if logs are of several servos or without a supply voltage, if the
+        servo is unknown, or if a step or speed is not positive.
     """
+    for name, value in (("step_s", step_s), ("block_s", block_s), ("stribeck_rad_s", stribeck_rad_s)):
+        if not 0 < value < math.inf:
+            problem = f"{name} = {value} is not a positive number"
+            help = f"give a positive {name}"
+            raise PinswitchError(problem, code="out-of-range", help=help, field=name, value=str(value))
     servo = _servo(logs, servo)
     bench = _bench(logs, servo, step_s, stribeck_rad_s)
     block = max(round(block_s / step_s), 1)
@@ -254,7 +259,7 @@ def identify(
     probability = 1 / (1 + math.exp(-min(odds, 700.0)))
     held_out, held_out_without = _held_out(bench, with_load), _held_out(bench, without)
     # A single log has no held-out error, and the comparison is false.
-    is_reported = probability >= REPORTED and not held_out >= held_out_without
+    is_reported = probability >= REPORTED and held_out < held_out_without
     is_excluded = constants["load"].high < consequence
     return Friction(
         constants=constants,
@@ -282,6 +287,16 @@ def _servo(logs: Sequence[Log], servo: Optional[Servo]) -> Servo:
     if len(motors) > 1:
         problem = f"logs of several servos: {', '.join(motors)}"
         raise PinswitchError(problem, code="conflicting-settings", help="identify each servo alone", field="motor")
+    for i, log in enumerate(logs):
+        same = [
+            other
+            for other in logs[:i]
+            if np.array_equal(other.time_s, log.time_s) and np.array_equal(other.position_rad, log.position_rad)
+        ]
+        if same:
+            problem = f"the log has the readings of {same[0].path}"
+            help = "give each log once: a copy is no evidence"
+            raise PinswitchError(problem, code="duplicate-entry", help=help, file=log.path)
     for log in logs:
         if log.supply_v is None:
             help = "add the supply voltage in V; a servo that controls its current cannot be identified"
@@ -386,6 +401,7 @@ def _held_out(bench: Bench, solution: Solution) -> float:
     count = len(bench.supply_v)
     if count < 2:
         return math.nan
-    errors = _pendulum.residuals(bench, np.array([solution.without(i) for i in range(count)]))
+    fits = [_pendulum.solve(_pendulum.without(bench, i), solution.free, [solution.point]) for i in range(count)]
+    errors = _pendulum.residuals(bench, np.array([fit.point for fit in fits]))
     squares = sum(float(np.sum(errors[i, i] ** 2)) for i in range(count))
     return math.sqrt(squares / float(np.isfinite(bench.position_rad).sum()))

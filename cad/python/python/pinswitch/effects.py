@@ -8,8 +8,10 @@ a saved model contains the effect.
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -320,12 +322,20 @@ def effect_file(effects: Sequence[Effect]) -> str:
 
 def effect_texts(effects: Sequence[Any]) -> list[tuple[str, str]]:
     """Return (name, text) of files of effects: effects together in one text, and files as they are."""
+    if isinstance(effects, (str, os.PathLike)):
+        effects = [effects]
     own = [one for one in effects if isinstance(one, Effect)]
     texts = [("effects", effect_file(own))] if own else []
     for path in effects:
-        if not isinstance(path, Effect):
-            with open(path, encoding="utf-8") as file:
-                texts.append((str(path), file.read()))
+        if isinstance(path, Effect):
+            continue
+        if not isinstance(path, (str, os.PathLike)):
+            help = "give functions with @pinswitch.effect, or paths of files"
+            raise PinswitchError(f"{path!r} is not an effect", code="wrong-type", help=help, field="effects")
+        try:
+            texts.append((os.fspath(path), Path(path).read_text(encoding="utf-8")))
+        except (OSError, UnicodeDecodeError) as error:
+            raise PinswitchError(str(error), code="cannot-read", file=os.fspath(path)) from error
     return texts
 
 

@@ -23,6 +23,7 @@ returns more than is stored. The method is stable for any stiffness and step.
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -252,11 +253,15 @@ class Host:
                 raise PinswitchError(
                     "the model has no tendon of this name", code="unknown-name", field="tendon", value=switch.tendon
                 )
-            if not switch.stiffness_n_m > 0:
-                problem = f"stiffness_n_m = {switch.stiffness_n_m} is not positive"
+            if not 0 < switch.stiffness_n_m < math.inf:
+                problem = f"stiffness_n_m = {switch.stiffness_n_m} is not a positive number"
                 raise PinswitchError(
                     problem, code="out-of-range", help="give a stiffness in N/m", field="stiffness_n_m"
                 )
+            if not 0 <= switch.damping_ratio < math.inf:
+                problem = f"damping_ratio = {switch.damping_ratio} is not a number from 0"
+                help = "give a share of the critical damping: less than 0 would create energy"
+                raise PinswitchError(problem, code="out-of-range", help=help, field="damping_ratio")
             self._ids.append(number)
         is_tendon = model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON
         self._actuators = [np.flatnonzero(is_tendon & (model.actuator_trnid[:, 0] == id)) for id in self._ids]

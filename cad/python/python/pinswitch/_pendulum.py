@@ -12,6 +12,7 @@ A pendulum that dry friction can stop is at rest at the end of the step, as with
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,7 +185,7 @@ def shortened(bench: Bench, swing_s: float) -> Bench:
 
 def without(bench: Bench, log: int) -> Bench:
     """Return the other logs."""
-    arrays = {name: value for name, value in vars(bench).items() if isinstance(value, np.ndarray)}
+    arrays: dict[str, Any] = {name: value for name, value in vars(bench).items() if isinstance(value, np.ndarray)}
     return replace(bench, **{name: np.delete(value, log, axis=-1) for name, value in arrays.items()})
 
 

@@ -152,6 +152,8 @@ export async function sharing(visit, site, { findings }) {
 // No position of a slider is refused by a rule; a typed value beyond its reach is, with fixes that keep it.
 export async function slidersWithinReach(visit, site) {
   await visit.open(site.address + START);
+  // Those of the first screen; a unit test of the engine has all.
+  await visit.page.$eval('#all-parameters', (box) => { if (box.checked) box.click(); });
   const ids = await visit.page.$$eval('#fields .field:not([hidden]) input[type=range]', (all) => all.map((slider) => slider.closest('.field').id));
   const refused = [];
   for (const id of ids) {
@@ -165,6 +167,6 @@ export async function slidersWithinReach(visit, site) {
       await visit.settled();
     }
   }
-  visit.findings.check('there is a slider for most numbers', ids.length > 5, ids.length);
+  visit.findings.check('the first screen has few sliders', ids.length > 5 && ids.length <= 10, ids.length);
   visit.findings.check('no position of a slider is refused', refused.length === 0, refused.join(' | '));
 }

@@ -12,6 +12,8 @@ import pytest
 import pinswitch
 from pinswitch import PinswitchError
 
+EXAMPLES = Path(__file__).parents[3] / "model" / "doc" / "examples"
+
 
 def test_files_of_a_laboratory_are_read(tmp_path: Path) -> None:
     file = tmp_path / "rig.csv"

@@ -49,7 +49,8 @@ fn ends(values: &Values, field: &str) -> Option<[f64; 2]> {
     }
     Some(range.map(|end| {
         let end = last_of(value, end, is_whole, TRIED, &satisfies_rules);
-        if builds(end) { end } else { last_of(value, end, is_whole, 1, &builds) }
+        // Where the design itself is not built, another value may be.
+        if builds(end) || !builds(value) { end } else { last_of(value, end, is_whole, 1, &builds) }
     }))
 }
 

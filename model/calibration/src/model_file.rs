@@ -15,7 +15,7 @@ use crate::model_check::{
     HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
     invalid, walk_to_offset,
 };
-use crate::table::{Frame, Optional, PlateauRow, Point};
+use crate::table::{Condition, Frame, Optional, PlateauRow, Point};
 use pinswitch_measurements::{locate_field, toml_error};
 
 /// Name and version of the format.
@@ -98,7 +98,7 @@ pub struct ModelFile {
     /// earlier versions; the discrepancies of this version grow with the load.
     #[serde(default)]
     beyond_range: f64,
-    pub(crate) frame: Frame,
+    frame: Frame,
     /// Covariance of the constants' coordinates, row by row.
     covariance: Vec<Vec<f64>>,
     /// The effects of the terms; user-defined ones are written in the file as in a file of effects.
@@ -119,6 +119,11 @@ fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
 }
 
 impl ModelFile {
+    /// Returns what the tendon touched in the fitted table.
+    pub(crate) fn conditions(&self) -> &[Condition] {
+        &self.frame.conditions
+    }
+
     /// Returns the file of a fitted hypothesis.
     pub fn new(fitted: &Fitted) -> Self {
         let Fitted { model, noise, covariance, .. } = fitted;

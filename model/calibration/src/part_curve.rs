@@ -36,7 +36,7 @@ impl ModelFile {
         has_pins: bool,
         file: &str,
     ) -> Result<(), Diagnostic> {
-        let conditions = &self.frame.conditions;
+        let conditions = self.conditions();
         let is_measured = |of: Substrate| conditions.iter().any(|c| c.substrate == Some(of));
         let missing = if substrate == Substrate::Silicone && !is_measured(Substrate::Silicone) {
             "silicone"

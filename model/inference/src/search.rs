@@ -270,6 +270,9 @@ impl<'a> Search<'a> {
     /// Adds gross errors one after the other by the noise of a fit, and fits every number of them: several wrong series hide
     /// each other in the scatter that they make, and in small weights of Student's t (forward search: Atkinson and Riani 2000).
     fn add_gross_errors(&mut self, mut fit: Fit) {
+        if self.problem.space.kernels.iter().all(|kernel| !kernel.is_gross_error) {
+            return;
+        }
         fit.mode.weights.iter_mut().filter(|weight| **weight != EXCLUDED).for_each(|weight| *weight = 1.0);
         for _ in 0..self.options.members {
             let base = fit.hypothesis.log_prior_odds(&self.problem.space);

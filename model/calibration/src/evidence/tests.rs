@@ -184,6 +184,22 @@ fn a_wrong_series_among_few_is_a_gross_error() {
     }
 }
 
+/// Several wrong series among few hide each other: none of them gains alone.
+#[test]
+fn several_wrong_series_are_gross_errors() {
+    for (seed, change, wrong) in [(20, 5.0, ["1", "6", "13"]), (21, -2.0, ["0", "4", "15"])] {
+        let mut rows = session(seed);
+        rows.retain(|row| row.series.parse::<usize>().unwrap() < 18);
+        let of_wrong = rows.iter_mut().filter(|row| wrong.contains(&row.series.as_str()));
+        of_wrong.for_each(|row| row.force_n += change);
+        let evidence = evidence(&rows);
+        assert!(reported(&evidence).is_empty(), "{:?}", reported(&evidence));
+        let mut found: Vec<usize> = evidence.posterior().outliers.series.iter().map(|s| s.series).collect();
+        found.dedup();
+        assert_eq!(found, wrong.map(|series| series.parse::<usize>().unwrap()));
+    }
+}
+
 /// A cell that shows one value in a series is off by another amount in each direction.
 #[test]
 fn a_series_with_one_value_is_a_gross_error() {

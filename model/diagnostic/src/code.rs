@@ -19,7 +19,7 @@ use crate::codes::AREAS;
 /// assert_eq!(code.title(), "Grooves overlap");
 /// ```
 ///
-/// A code has no reference to its page, so that a program that never shows one does not contain it.
+/// A code does not refer to its page: the linker leaves the pages out of a program that shows none.
 #[derive(Clone, Copy)]
 pub struct Code(&'static str);
 

@@ -25,7 +25,7 @@ pub struct SearchOptions {
     pub expansions: usize,
     /// Effects that are fitted in an expansion; half as many kernels are.
     pub width: usize,
-    /// Most members of a hypothesis besides gross errors, and most gross errors that are added together.
+    /// Most members of a hypothesis, not counting gross errors, and most gross errors that one expansion adds.
     pub members: usize,
     /// Number of readings above which a search starts on about so many of them.
     pub thinned_above: usize,

@@ -46,6 +46,14 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.settled();
 }
 
+// A model says nothing about what its tendon never touched, so it is not offered for such a switch.
+export async function modelOfAnotherMaterial(visit, site, { table }) {
+  await visit.open(site.address + START);
+  await visit.drop('abs.csv', table.split('\n').filter((line) => !line.includes(',silicone,')).join('\n'));
+  await visit.check('it is said why', () => /no reading of the fitted table is on silicone/.test(document.querySelector('#model-error').textContent));
+  visit.findings.check('the model is not offered', await visit.page.$eval('#use-model', (e) => e.hidden));
+}
+
 // The file of a laboratory is shown before it is used, and its questions are answered on the page.
 export async function laboratoryFile(visit, site) {
   await visit.open(site.address + START);

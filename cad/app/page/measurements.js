@@ -21,7 +21,7 @@ class Measurements {
     const { model } = this.state.now;
     byId('model-used').hidden = !model;
     byId('model-text').textContent = model ? `${TEXT.modelName(model.name)}. ${TEXT.modelApplied}` : '';
-    byId('use-model').hidden = !this.fitted || model?.toml === this.fitted.toml;
+    byId('use-model').hidden = !this.fitted || !this.predicts || model?.toml === this.fitted.toml;
     // Not the curve of an earlier design.
     if (this.curve.calibrated && (!this.fitted || model || this.curve.calibrated.values !== this.state.now.values)) this.curve.setExtra('calibrated', null);
     if (this.fitted && !model) this.updatePreview();
@@ -31,6 +31,8 @@ class Measurements {
   begin() {
     this.engine.stop('calibrate');
     this.fitted = null;
+    // Whether the fitted model has a curve of the design, which the preview finds out.
+    this.predicts = false;
     this.curve.setMeasured([]);
     byId('fit').hidden = true;
     byId('model-error').hidden = true;
@@ -119,6 +121,7 @@ class Measurements {
   showFit({ file, model, head, lines, probabilities, sizes, points, residuals }) {
     this.report(lines, head);
     this.fitted = model ? { name: file, toml: model } : null;
+    this.predicts = Boolean(model) && this.state.now.model?.toml === model;
     this.curve.setMeasured(points);
     const box = byId('fit');
     box.hidden = false;
@@ -174,6 +177,8 @@ class Measurements {
     if (fitted !== this.fitted || values !== this.state.now.values || this.state.now.model) return;
     const { data, trouble } = answer;
     if (data) this.curve.setExtra('calibrated', { curve: data.curve, values });
+    this.predicts = !trouble;
+    byId('use-model').hidden = !this.predicts;
     byId('model-error').hidden = !trouble;
     byId('model-error').textContent = trouble ? troubleText(trouble) : '';
   }
@@ -199,6 +204,7 @@ class Measurements {
     byId('stop-fit').hidden = true;
     this.report([TEXT.opened(file)]);
     this.fitted = { name: file, toml };
+    this.predicts = true;
     await this.useModel();
   }
 

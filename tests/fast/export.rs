@@ -52,6 +52,25 @@ fn fingers_have_a_table_over_the_wrap() {
     assert!(xml.contains("range=\"0 60\"") && xml.contains("data=\"switch.json\""));
 }
 
+/// The paper's law holds at the wrap of its layouts; a joint changes its wrap, also in a unit.
+#[test]
+fn tables_have_the_wraps_that_apply() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for format in ["csv", "mujoco"] {
+        done(path, &["export", "three-double", "--law", "paper", "--to", format, "--out", format]);
+        let (table, curve) =
+            (table(&path.join(format)), json(path, &["predict", "three-double", "--law", "paper", "--json"]));
+        assert_eq!(table["concentric_n"], serde_json::json!([curve["concentric_n"]]));
+    }
+    let joint = ["export", "three-double", "--set", "mount.kind=joint", "--set", "friction.points=5"];
+    done(path, &[&joint[..], &["--to", "fmu", "--out", "unit"]].concat());
+    done(path, &[&joint[..], &["--to", "mujoco", "--out", "finger"]].concat());
+    let (unit, finger) = (table(&path.join("unit")), table(&path.join("finger")));
+    assert!(unit["wrap_rad"].as_array().unwrap().len() > 2);
+    assert_eq!(unit, finger);
+}
+
 /// Models of an earlier export do not stay among those of the next one; other files do.
 #[test]
 fn an_export_replaces_the_one_before() {

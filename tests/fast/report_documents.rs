@@ -61,10 +61,22 @@ pub(crate) const PRINTED: &[(&str, i32, &str)] = &[
     ("batch-tally", 0, "batch verify.toml --verify --out verified --json"),
     ("explain-report", 0, "explain grooves-overlap --json"),
     ("explain-report", 0, "explain --json"),
+    ("effects-report", 0, "effects --effects trial.toml --json"),
+    ("calibration-report", 0, "calibrate few-series.csv --out attributed --json"),
+    ("published-report", 0, "calibrate --published --out published --json"),
+    ("provenance", 0, "simulate small.toml --out simulated --json"),
+    ("study-report", 0, "simulate --study 1 --only operators --json"),
+    ("segmentation-report", 0, "segment rig/run.toml --no-plots --out table/plateaus.csv --json"),
+    ("tension-table", 0, "export three-double --to csv --out tables --json"),
     ("failure", 2, "generate three-double --set segment.grooves=40 --json"),
     ("failure", 2, "check set/shell.stl --bogus --json"),
     ("failure", 2, "power no-such.toml --json"),
     ("failure", 2, "power measured.toml --json"),
+    ("failure", 2, "calibrate no-such.csv --out missing --json"),
+    ("failure", 2, "segment no-such.toml --out missing.csv --json"),
+    ("failure", 2, "effects --effects no-such.toml --json"),
+    ("failure", 2, "simulate no-such.toml --out missing --json"),
+    ("failure", 2, "export three-double --set segment.grooves=40 --to csv --out missing --json"),
 ];
 
 /// Commands that run before these, write files, and print no JSON.
@@ -79,13 +91,10 @@ const WRITING: &[&str] = &[
     "calibrate table/plateaus.csv second/plateaus.csv --plan planned --out joined",
     "simulate other.toml --out other",
     "calibrate table/plateaus.csv other/plateaus.csv --out changed",
-    "calibrate --published --out published",
-    "calibrate few-series.csv --out attributed",
     "calibrate four-stops.csv --out four",
     "calibrate one-wrong-weight.csv --fit-below 70 --out wrong",
     "calibrate wrong-fourth-repetitions.csv --out bad",
     "calibrate trial.csv --effects trial.toml --out trial",
-    "export three-double --to csv --out tables",
     "import units-row.csv --yes --out imported/table.csv",
 ];
 

@@ -1,6 +1,6 @@
 //! The schemas of `pinswitch schema` accept what the program reads, and refuse what it refuses.
 
-use crate::harness::{done, repository};
+use crate::harness::{done, expect_code, repository};
 use crate::readers::{Reading, judge};
 use pinswitch_switch::config::{self, Configuration};
 use pinswitch_switch::measured::Measured;
@@ -32,6 +32,39 @@ fn every_template_is_valid() {
     for wrong in ["[shel]\nwidth_mm = 12", "[shell]\nwidth = 12", "width_mm = 12"] {
         assert!(!configuration.is_valid(&json(wrong)), "{wrong}");
     }
+}
+
+/// What `init --schema` writes is complete for an editor: the file names its schema, which accepts it.
+#[test]
+fn a_started_file_names_its_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let kinds = KINDS.iter().map(|kind| kind.0).filter(|kind| EXAMPLES.iter().any(|(name, _)| name == kind));
+    let mut count = 0;
+    for name in kinds.chain(["three-double", "printer-fff-0.4", "reference"]) {
+        let file = format!("{name}.toml");
+        let arguments = ["init", name, "--schema", "--out", &file];
+        done(path, &arguments);
+        let text = std::fs::read_to_string(path.join(&file)).unwrap();
+        let named = text.lines().next().and_then(|line| line.strip_prefix("#:schema ./")).unwrap();
+        assert_eq!(named, format!("{name}.schema.json"));
+        let schema: Value = serde_json::from_slice(&std::fs::read(path.join(named)).unwrap()).unwrap();
+        let validator = jsonschema::validator_for(&schema).unwrap();
+        assert!(validator.is_valid(&json(&text)), "{name}");
+        let mut wrong = json(&text);
+        let first = wrong.as_object_mut().unwrap().values_mut().next().unwrap();
+        *first = if first.is_object() { 7.into() } else { serde_json::json!({ "not_a_key": 1 }) };
+        assert!(!validator.is_valid(&wrong), "{name}");
+        // Neither file is overwritten.
+        std::fs::remove_file(path.join(&file)).unwrap();
+        expect_code(2, path, &arguments);
+        assert!(!path.join(&file).exists());
+        count += 1;
+    }
+    assert_eq!(count, EXAMPLES.len() - 1 + 3, "every kind but the table");
+    let refused = expect_code(2, path, &["init", "configurations", "--schema", "--out", "table.csv"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("a CSV has no schema"));
+    assert!(!path.join("table.csv").exists());
 }
 
 /// Values of every type, in and out of ranges, near the ends `low` and `high`.

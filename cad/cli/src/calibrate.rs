@@ -21,7 +21,7 @@ use pinswitch_switch::output::OutputFile;
 use super::data_package::{DATA_PACKAGE, data_package, has_own_descriptor};
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
-use super::{Failure, SEED, print_text};
+use super::{Failure, SEED, print_json, print_text};
 use crate::input::{InputFile, files_read, was_read};
 use crate::write::SetFolder;
 use plans::{plans, with_forms};
@@ -37,7 +37,8 @@ use summary::summary;
 #[command(after_help = "Examples:
   pinswitch calibrate plateaus.csv --out calibration
   pinswitch calibrate plateaus.csv --effects mine.toml --out calibration
-  pinswitch calibrate first.csv second.csv --plan next --out joined")]
+  pinswitch calibrate first.csv second.csv --plan next --out joined
+  pinswitch calibrate plateaus.csv --out calibration --json")]
 pub(super) struct Arguments {
     /// Plateau table (CSV, one row per repetition). Several tables are sessions of one rig, each with its own offsets,
     /// drift and mounts.
@@ -59,6 +60,9 @@ pub(super) struct Arguments {
     plan: Vec<PathBuf>,
     #[command(flatten)]
     effects: UserEffects,
+    /// Print report.json (with --published: published.json) instead of a summary.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Name of this command in a manifest.
@@ -94,7 +98,7 @@ pub(super) fn stale_form(folder: &SetFolder) -> Result<&'static [&'static str], 
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.published {
-        return published(&arguments.out);
+        return published(arguments);
     }
     // Locked before the work, which may take minutes.
     let out = SetFolder::lock(&arguments.out)?;
@@ -140,7 +144,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     files.insert(0, data_package(&title_of(&name), &files_read(), &files)?);
     out.replace_listed(&files, COMMAND, stale)?;
-    print_text(&summary(&calibration.report))
+    if arguments.json { print_json(&calibration.report) } else { print_text(&summary(&calibration.report)) }
 }
 
 /// Returns the external ones of the files that this command has read.
@@ -207,7 +211,7 @@ fn session_report(
 }
 
 /// Calibrates on the maxima of the paper.
-fn published(out: &Path) -> Result<(), Failure> {
+fn published(arguments: &Arguments) -> Result<(), Failure> {
     let all = explain_published();
     let mut text = format!(
         "{:<20} {:>14}   {:>25}   constants\n",
@@ -233,10 +237,10 @@ fn published(out: &Path) -> Result<(), Failure> {
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
-    let out = SetFolder::lock(out)?;
+    let out = SetFolder::lock(&arguments.out)?;
     let stale: &[&str] = if has_own_descriptor(&out, COMMAND)? { &[DATA_PACKAGE] } else { &[] };
     out.replace_listed(&files, COMMAND, stale)?;
-    print_text(&text)
+    if arguments.json { print_json(&all) } else { print_text(&text) }
 }
 
 /// Returns the name of a table without its folder.

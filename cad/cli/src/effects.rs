@@ -1,10 +1,14 @@
 //! `pinswitch effects`.
 
 use clap::Args;
-use pinswitch_calibration::effects::{EffectDefinition, Vocabulary, formula_variables, own_effects_text};
+use pinswitch_calibration::effects::{
+    Description, EffectDefinition, Parameter, Vocabulary, formula_variables, own_effects_text,
+};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::user_effects::UserEffects;
-use super::{Failure, print_data, print_text};
+use super::{Failure, print_data, print_json, print_text};
 
 /// List the effects that a calibration tests.
 ///
@@ -13,7 +17,7 @@ use super::{Failure, print_data, print_text};
 #[command(after_help = "Examples:
   pinswitch effects
   pinswitch effects --toml
-  pinswitch effects --effects mine.toml")]
+  pinswitch effects --effects mine.toml --json")]
 pub(super) struct Arguments {
     #[command(flatten)]
     effects: UserEffects,
@@ -24,10 +28,67 @@ pub(super) struct Arguments {
     /// List the variables and functions of formulas instead.
     #[arg(long)]
     variables: bool,
+    /// Print JSON instead of a table.
+    #[arg(long, conflicts_with_all = ["toml", "variables"])]
+    json: bool,
+}
+
+/// An effect, as `--json` prints it.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct ListedEffect {
+    /// Id, a heading of the effect catalogue.
+    id: String,
+    /// Whether it belongs to the part, `switch`, or to the measurement, `rig`.
+    side: String,
+    /// Covariate along which it shows.
+    covariate: String,
+    /// Formula in the symbols of the effect catalogue.
+    formula: String,
+    /// Constants, sizes before shapes.
+    constants: Vec<ListedConstant>,
+    /// Ids of effects that may look the same.
+    confused_with: Vec<String>,
+    /// Experiment that separates it from those.
+    experiment: String,
+}
+
+/// A constant of an effect.
+#[derive(Serialize, JsonSchema)]
+struct ListedConstant {
+    /// Symbol.
+    name: String,
+    /// Unit; `1` if dimensionless.
+    unit: String,
+    /// Bounds of a shape; null for a size, which is free.
+    bounds: Option<[f64; 2]>,
+}
+
+impl ListedEffect {
+    fn new(description: &Description<'_>) -> Self {
+        let constant = |of: &Parameter| ListedConstant {
+            name: of.name.to_string(),
+            unit: of.unit.to_string(),
+            bounds: of.bounds.map(|(least, most)| [least, most]),
+        };
+        Self {
+            id: description.id.to_owned(),
+            side: description.side.as_str().to_owned(),
+            covariate: description.covariate.as_str().to_owned(),
+            formula: description.formula.to_owned(),
+            constants: description.parameters.iter().map(constant).collect(),
+            confused_with: description.confused_with.iter().map(ToString::to_string).collect(),
+            experiment: description.experiment.to_owned(),
+        }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let vocabulary = arguments.effects.vocabulary()?;
+    if arguments.json {
+        let all: Vec<_> =
+            vocabulary.effects().map(|effect| ListedEffect::new(&effect.description())).collect();
+        return print_json(&all);
+    }
     match (arguments.toml, arguments.variables) {
         (true, _) => print_data(toml(&vocabulary).as_bytes()),
         (false, true) => print_text(&variables()),

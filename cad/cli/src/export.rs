@@ -12,12 +12,12 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::prediction::loads_n;
 
-use super::Failure;
 use super::calibrated_curve::calibrated_curve;
 use super::finger::refuse_assumptions;
 use super::law::LawChoice;
 use super::source::Source;
 use super::terminal::warn;
+use super::{Failure, print_data};
 use crate::write::SetFolder;
 
 const COMMAND: &str = "export";
@@ -32,13 +32,13 @@ const MOST_DRAWS: i64 = 10_000;
 ///
 /// Writes the tensions of the switch over load and wrap angle (switch.json, switch.csv), and a model that uses them. The
 /// simulators themselves have no friction that depends on tension and direction; a host adds it (cad/doc/robots.md). With
-/// --model, the table has the wrap angle of the configuration only.
+/// --model or --law paper, the table has the wrap angle of the configuration only.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch export three-double --to mujoco --out out/finger
   pinswitch export three-double --to mujoco --draws 20 --seed 1 --out out/fingers
   pinswitch export my-switch.toml --to fmu --model calibration/model.toml --out out/fmu
-  pinswitch export three-double --to csv --out out/table")]
+  pinswitch export three-double --to csv --out out/table --json")]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -62,6 +62,9 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     finger: FingerOptions,
+    /// Print switch.json.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Dimensions of the two-link finger. The paper prints none: every default is assumed.
@@ -126,7 +129,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         count => format!(", and {count} drawn models"),
     };
     log::info!("{}: {}{draws}", arguments.out.display(), names.join(", "));
-    Ok(())
+    if arguments.json { print_data(surface.to_json().map_err(Failure::failed)?.as_bytes()) } else { Ok(()) }
 }
 
 /// Returns the finger of a joint, or an assumed one.
@@ -172,8 +175,8 @@ fn finger(arguments: &Arguments, design: &Design) -> Result<Finger, Failure> {
     })
 }
 
-/// Predicts the tensions over the wrap angles of the finger; for a unit or a calibrated model, at that of the
-/// configuration.
+/// Predicts the tensions over the wrap angles of the finger; at that of the configuration for a unit without a joint, a
+/// calibrated model, or the law of the paper, which has no other.
 ///
 /// The rows of a joint are the contacts at equal steps of its flexion, each at the wrap angle that the model of the finger
 /// has there.
@@ -182,7 +185,9 @@ fn surface(arguments: &Arguments, design: &Design, finger: &Finger) -> Result<Su
     let contact = design.contact();
     let curves: Vec<(f64, FrictionCurve)> = match &arguments.model {
         Some(model) => vec![(contact.wrap_rad(), calibrated_curve(design, model)?)],
-        None if arguments.to == Format::Fmu => vec![(contact.wrap_rad(), curve(arguments, contact, design)?)],
+        None if arguments.law.is_of_one_wrap() || arguments.to == Format::Fmu && design.joint().is_none() => {
+            vec![(contact.wrap_rad(), curve(arguments, contact, design)?)]
+        }
         None => {
             let at = |wrap_deg: f64, wrap: Wrap| {
                 let contact = contact

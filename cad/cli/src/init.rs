@@ -6,6 +6,7 @@ use clap::Args;
 use pinswitch_diagnostic::{Code, Diagnostic, Location, codes};
 use pinswitch_switch::templates::{EXAMPLES, RIGS, names};
 
+use super::schema::schema_of_example;
 use super::source::read_text;
 use super::{Failure, print_data};
 use crate::write::write_file;
@@ -14,6 +15,7 @@ use crate::write::write_file;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch init three-double --out my-switch.toml
+  pinswitch init three-double --schema --out my-switch.toml
   pinswitch init effects --out mine.toml
   pinswitch init rig --kind capstan --out rig.toml
   pinswitch init reference")]
@@ -28,13 +30,17 @@ pub(super) struct Arguments {
     /// File to write [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Overwrite the file if it exists.
+    /// Also write the JSON Schema of the file next to it (my-switch.schema.json), and name it in the first line, so that
+    /// an editor completes and checks the values.
+    #[arg(long, requires = "out")]
+    schema: bool,
+    /// Overwrite the files if they exist.
     #[arg(long)]
     force: bool,
 }
 
 /// Name of the example that is a CSV; the others are TOML files.
-const CONFIGURATIONS: &str = "configurations";
+pub(super) const CONFIGURATIONS: &str = "configurations";
 
 /// Commands whose names may be given by mistake, and the kind of file that each needs.
 const NEEDS: [(&str, &str); 5] =
@@ -80,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
     };
     let Some(path) = &arguments.out else { return print_data(text.as_bytes()) };
-    let refused = |code: Code, problem: &str, help: String| {
+    let refused = |path: &Path, code: Code, problem: &str, help: String| {
         let location = Location::file(path.display().to_string());
         Err(Failure::bad_input(Diagnostic::new(code, problem).with_location(location).with_help(help)))
     };
@@ -88,15 +94,26 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let ending = if name == CONFIGURATIONS { "csv" } else { "toml" };
         let file = path.join(format!("{name}.{ending}"));
         return refused(
+            path,
             codes::NOT_A_FILE,
             "is a folder",
             format!("give the name of a file, such as {}", file.display()),
         );
     }
-    if path.exists() && !arguments.force {
-        return refused(codes::FILE_IN_THE_WAY, "exists already", "give --force to overwrite it".to_owned());
+    let schema = if arguments.schema { Some(path.with_extension("schema.json")) } else { None };
+    for file in schema.as_deref().into_iter().chain([path.as_path()]) {
+        if file.exists() && !arguments.force {
+            let help = "give --force to overwrite it".to_owned();
+            return refused(file, codes::FILE_IN_THE_WAY, "exists already", help);
+        }
     }
-    write_file(path, text.as_bytes()).map_err(Failure::from)
+    let Some(file) = schema else { return write_file(path, text.as_bytes()).map_err(Failure::from) };
+    let Some(content) = schema_of_example(name)? else {
+        return refused(path, codes::USAGE, "a CSV has no schema", "omit --schema".to_owned());
+    };
+    write_file(&file, &content)?;
+    let named = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    write_file(path, format!("#:schema ./{named}\n{text}").as_bytes()).map_err(Failure::from)
 }
 
 #[cfg(test)]

@@ -50,6 +50,11 @@ impl LawChoice {
         self.law.as_deref()
     }
 
+    /// Whether the law holds at the wrap angle of its layouts only.
+    pub(super) fn is_of_one_wrap(&self) -> bool {
+        self.law.as_deref().and_then(Law::named) == Some(Law::Paper)
+    }
+
     /// Predicts the friction of `design` with the chosen law.
     ///
     /// # Errors

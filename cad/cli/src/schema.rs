@@ -10,22 +10,23 @@ use pinswitch_calibration::segmentation::{RunPlan, SegmentationReport};
 use pinswitch_calibration::{Explanation, Report};
 use pinswitch_import::Understanding;
 use pinswitch_robot::Surface;
-use pinswitch_simulation::{Faults, Plan, Power};
+use pinswitch_simulation::{Faults, Plan, Power, StudiedRig};
 use pinswitch_slicer::Slicing;
 use pinswitch_solid::file_check::Verdict;
 use pinswitch_switch::documents::Manifest;
 use pinswitch_switch::{config, measured, request};
 use schemars::schema_for;
 
+use super::init::CONFIGURATIONS;
 use super::provenance::Provenance;
 use super::report_schema::{perhaps_with_checksum, written, written_with_checksum};
-use super::terminal::FailureReport;
-use super::{Failure, design, explain, finger, layouts, physics, predict, print_json, tolerances};
+use super::terminal::{FailureReport, to_json};
+use super::{Failure, design, effects, explain, finger, layouts, physics, predict, print_data, tolerances};
 
 /// Print the JSON Schema of a file that you write, or of a report that the program writes.
 ///
 /// With that of a file, an editor completes and checks TOML: keep it next to your files, and name it in their first line,
-/// `#:schema ./switch.schema.json`. With that of a report, a program checks what it reads, or makes its own types from it.
+/// `#:schema ./switch.schema.json`; `pinswitch init NAME --schema` does both. With that of a report, a program checks what it reads, or makes its own types from it.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch schema configuration > switch.schema.json
@@ -62,12 +63,14 @@ enum Kind {
     BatchRecord,
     /// The totals of a batch, from `batch --json` and `merge --json`.
     BatchTally,
-    /// A calibration, report.json of `calibrate`.
+    /// A calibration, from `calibrate --json` and report.json.
     CalibrationReport,
     /// Verdicts on mesh files, from `check --json`.
     CheckReport,
     /// Designs for a request, from `design --json` and design.json.
     DesignReport,
+    /// The effects that a calibration tests, from `effects --json`.
+    EffectsReport,
     /// The next runs, from `experiment --json` and experiment.json.
     ExperimentReport,
     /// The pages of codes, from `explain --json`.
@@ -88,11 +91,11 @@ enum Kind {
     PowerReport,
     /// A predicted curve, from `predict --json`.
     PredictionReport,
-    /// Origin of the files of a folder, provenance.json of `calibrate` and others.
+    /// Origin of the files of a folder, from `simulate --json` and provenance.json of `calibrate` and others.
     Provenance,
-    /// A calibration on the published maxima, published.json of `calibrate --published`.
+    /// A calibration on the published maxima, from `calibrate --published --json` and published.json.
     PublishedReport,
-    /// The segmented logs of a run, the JSON file of `segment`.
+    /// The segmented logs of a run, from `segment --json` and its JSON file.
     SegmentationReport,
     /// A finished block of a batch, shard.json of `batch --shard`.
     ShardRecord,
@@ -100,17 +103,34 @@ enum Kind {
     SimulatedFaults,
     /// Print time and filament, slicing.json of `generate --slice`.
     SlicingReport,
-    /// Tensions over load and wrap angle, switch.json of `export`.
+    /// Outcomes of simulated rigs, from `simulate --study --json`.
+    StudyReport,
+    /// Tensions over load and wrap angle, from `export --json` and switch.json.
     TensionTable,
     /// The scatter of the threshold, from `tolerances --json` and tolerances.json.
     TolerancesReport,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let schema = match arguments.kind {
-        Kind::Configuration => return print_json(&config::json_schema()),
-        Kind::Measured => return print_json(&measured::json_schema()),
-        Kind::Sweep => return print_json(&pinswitch_batch::json_schema()),
+    print_data(&schema_of(arguments.kind)?)
+}
+
+/// Returns the schema of the files that start with `init`; `None` for a name that `init` writes as a table.
+pub(super) fn schema_of_example(name: &str) -> Result<Option<Vec<u8>>, Failure> {
+    let kind = match Kind::from_str(name, false) {
+        Ok(kind) => kind,
+        Err(_) if name == CONFIGURATIONS => return Ok(None),
+        Err(_) => Kind::Configuration,
+    };
+    schema_of(kind).map(Some)
+}
+
+/// Returns a schema as JSON.
+fn schema_of(kind: Kind) -> Result<Vec<u8>, Failure> {
+    let schema = match kind {
+        Kind::Configuration => return to_json(&config::json_schema()),
+        Kind::Measured => return to_json(&measured::json_schema()),
+        Kind::Sweep => return to_json(&pinswitch_batch::json_schema()),
         Kind::Effects => effects_schema(),
         Kind::Import => pinswitch_import::map_schema(),
         Kind::Plan => schema_for!(Plan),
@@ -123,6 +143,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::CalibrationReport => written::<Report>("Report of a calibration"),
         Kind::CheckReport => written::<Vec<Verdict>>("Verdicts on mesh files"),
         Kind::DesignReport => written::<design::Report<'_>>("Designs for a request"),
+        Kind::EffectsReport => written::<Vec<effects::ListedEffect>>("Effects that a calibration tests"),
         Kind::ExperimentReport => written::<Proposal>("Plan of the next runs"),
         Kind::ExplainReport => written::<explain::Pages>("Pages of codes"),
         Kind::Failure => written::<FailureReport<'_>>("Failure of a command"),
@@ -139,8 +160,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::ShardRecord => written_with_checksum::<ShardStamp>("Finished block of a batch"),
         Kind::SimulatedFaults => written::<BTreeMap<String, Faults>>("Faults of simulated logs"),
         Kind::SlicingReport => written::<Slicing>("Print time and filament of a set"),
+        Kind::StudyReport => written::<Vec<StudiedRig>>("Outcomes of simulated rigs"),
         Kind::TensionTable => written::<Surface>("Tensions over load and wrap angle"),
         Kind::TolerancesReport => written::<tolerances::Report>("Scatter of the threshold"),
     };
-    print_json(&schema)
+    to_json(&schema)
 }

@@ -14,7 +14,7 @@ use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
 
 use super::terminal::to_json;
-use super::{Failure, print_text};
+use super::{Failure, print_data, print_text};
 use crate::write::SetFolder;
 
 /// Convert raw logs to a plateau table.
@@ -22,7 +22,9 @@ use crate::write::SetFolder;
 /// Prints the faults of each log. Also writes, next to the table, a JSON file with the faults, one SVG per log with its
 /// plateaus marked, and provenance.json.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: pinswitch segment run.toml --out plateaus.csv")]
+#[command(after_help = "Examples:
+  pinswitch segment run.toml --out plateaus.csv
+  pinswitch segment run.toml --no-plots --out plateaus.csv --json")]
 pub(super) struct Arguments {
     /// Description of the run, in the folder of its logs.
     run: PathBuf,
@@ -35,6 +37,9 @@ pub(super) struct Arguments {
     /// Write no SVG files.
     #[arg(long)]
     no_plots: bool,
+    /// Print the JSON file instead of a summary.
+    #[arg(long)]
+    json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -85,12 +90,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // As a value, whose keys are sorted: readers of the file rely on its bytes.
     let value = serde_json::to_value(&report)
         .map_err(|e| Failure::failed(Diagnostic::from_error(codes::INTERNAL_ERROR, e)))?;
-    files.push(OutputFile { name: format!("{stem}.json"), bytes: to_json(&value)? });
+    let json = to_json(&value)?;
+    files.push(OutputFile { name: format!("{stem}.json"), bytes: json.clone() });
     let table =
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     SetFolder::shared(out)?.replace_listed(&files, "segment", &[])?;
+    if arguments.json {
+        return print_data(&json);
+    }
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print_text(&summary)
 }

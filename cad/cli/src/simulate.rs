@@ -18,9 +18,10 @@ use rayon::prelude::*;
 
 use super::calibrated_curve::read_model;
 use super::power::noise_of;
+use super::provenance::PROVENANCE;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
-use super::{Failure, print_text};
+use super::{Failure, print_data, print_json, print_text};
 use crate::input::read_text_file;
 use crate::write::SetFolder;
 
@@ -35,7 +36,8 @@ use crate::write::SetFolder;
   pinswitch simulate plan.toml --out rig --raw
   pinswitch simulate --runs next/next-runs.csv --model calibration/model.toml --out rehearsal
   pinswitch simulate --study 20
-  pinswitch simulate --study 20 --only nulls --only 'worn spot'")]
+  pinswitch simulate --study 20 --only nulls --only 'worn spot'
+  pinswitch simulate --study 20 --json")]
 // clap does not require an argument if a given argument conflicts with it. Arguments that require --study therefore
 // conflict with --out themselves, and those that require --runs with everything that conflicts with --runs.
 pub(super) struct Arguments {
@@ -99,6 +101,9 @@ pub(super) struct Arguments {
     /// by a part of the name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study", conflicts_with = "out")]
     only: Vec<String>,
+    /// Print the folder's provenance.json; with --study, the outcome of every rig instead of tables.
+    #[arg(long, conflicts_with_all = ["forms", "experiments"])]
+    json: bool,
 }
 
 /// Name of this command in a manifest.
@@ -151,7 +156,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.next {
         files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
     }
-    place.replace_listed(&files, COMMAND, &[]).map_err(Failure::from)
+    finish(arguments, &place, &files)
+}
+
+/// Writes the files; with `--json`, prints the manifest that lists them.
+fn finish(arguments: &Arguments, place: &SetFolder, files: &[OutputFile]) -> Result<(), Failure> {
+    place.replace_listed(files, COMMAND, &[])?;
+    match place.existing(PROVENANCE)? {
+        Some(manifest) if arguments.json => print_data(&manifest),
+        _ => Ok(()),
+    }
 }
 
 /// Simulates planned runs on the rig of a model or of a plan, and writes their table.
@@ -182,7 +196,7 @@ fn rehearsal(arguments: &Arguments, runs: &Path, place: &SetFolder) -> Result<()
     };
     let table = PlateauTable::write(&rows).into_bytes();
     let files = [OutputFile { name: "plateaus.csv".to_owned(), bytes: table }];
-    place.replace_listed(&files, COMMAND, &[]).map_err(Failure::from)
+    finish(arguments, &place, &files)
 }
 
 /// Returns the plan with the effects of the command line, and its name for errors.
@@ -270,6 +284,9 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     }
     let mut study = Study::default();
     each_case(arguments, seeds, numbered.collect(), run_case, |case, outcomes| study.add(case, outcomes))?;
+    if arguments.json {
+        return print_json(&study.rigs());
+    }
     let parts = [study.table(), study.groups(), study.summary(), study.reliability()];
     print_text(&parts.join("\n"))
 }

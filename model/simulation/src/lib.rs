@@ -109,6 +109,6 @@ pub use series_traits::{SeriesTraits, SessionTraits};
 pub use simulate::{SimulatedSession, simulate, simulate_rows};
 pub use study::{
     Attribution, Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, Forecast, FormOutcome, FormStudy,
-    Group, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case,
+    Group, StudiedRig, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case,
     study_cases,
 };

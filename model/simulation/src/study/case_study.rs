@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::case::Case;
 use super::figures::{answer_text, median_of};
 use super::outcome::CaseOutcome;
@@ -25,7 +28,34 @@ pub struct Study {
     pub(super) outcomes: Vec<(Case, Vec<CaseOutcome>)>,
 }
 
+/// A rig of the study, with what its calibration found.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct StudiedRig {
+    /// Protocol of the session.
+    pub protocol: String,
+    /// Group of its kind.
+    pub group: String,
+    /// Its effects or its disturbance, as text.
+    pub rig: String,
+    /// What the calibration found.
+    pub outcome: CaseOutcome,
+}
+
 impl Study {
+    /// Returns every rig in the order of the study.
+    pub fn rigs(&self) -> Vec<StudiedRig> {
+        let of = |(case, outcomes): &(Case, Vec<CaseOutcome>)| {
+            let studied = |outcome: &CaseOutcome| StudiedRig {
+                protocol: format!("{:?}", case.protocol).to_lowercase(),
+                group: case.group.as_str().to_owned(),
+                rig: case.name.clone(),
+                outcome: outcome.clone(),
+            };
+            outcomes.iter().map(studied).collect::<Vec<_>>()
+        };
+        self.outcomes.iter().flat_map(of).collect()
+    }
+
     /// Adds the outcomes of a kind.
     pub fn add(&mut self, case: Case, outcomes: Vec<CaseOutcome>) {
         self.outcomes.push((case, outcomes));

@@ -1,7 +1,10 @@
 //! Reliability of forecast probabilities: of the forecasts of 80 %, four in five should come true.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 /// Probability that something is so, with whether it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Forecast {
     /// Forecast probability.
     pub probability: f64,

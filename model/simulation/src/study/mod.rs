@@ -19,7 +19,7 @@ mod true_form;
 mod visibility;
 
 pub use case::{Case, Group, Truth};
-pub use case_study::Study;
+pub use case_study::{StudiedRig, Study};
 pub use cases::{plan_of, study_cases};
 pub use experiment_study::{
     Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,

@@ -4,6 +4,8 @@ use pinswitch_calibration::effects::{Vocabulary, effect_named};
 use pinswitch_calibration::evidence::{Fitted, Session};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_calibration::{Calibration, ModelFile, Report, Verdict, calibrate};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::answer::{Answer, CalibratorAnswer};
 use super::case::Case;
@@ -15,8 +17,10 @@ use crate::plan::Plan;
 use crate::simulate::simulate;
 
 /// Outcome of the calibration of a rig.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CaseOutcome {
+    /// Seed of the rig's noise.
+    pub seed: u64,
     /// Verdict.
     pub verdict: Verdict,
     /// Reported effects, sorted: `a|b` for rivals, `unattributed:covariate` for unattributed
@@ -83,6 +87,7 @@ pub fn run_case(case: &Case, seed: u64) -> Option<CaseOutcome> {
         None => forecast(&effect.id, effect.probability),
     });
     Some(CaseOutcome {
+        seed,
         verdict: report.verdict,
         fresh_n: [
             in_session_error_n(baseline, &simulated.fresh)?,

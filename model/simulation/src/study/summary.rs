@@ -172,6 +172,7 @@ mod tests {
 
     fn outcome(exact: bool, extras: &[&str]) -> CaseOutcome {
         CaseOutcome {
+            seed: 1,
             verdict: Verdict::None,
             named: Vec::new(),
             fresh_n: [0.2, 0.1],

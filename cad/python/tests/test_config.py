@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import copy
+import json
 import pickle
+import re
+import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import pinswitch
-from pinswitch import PinswitchError
+from pinswitch import PinswitchError, bam
+from pinswitch.mujoco import Surface
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -99,6 +106,62 @@ def test_unknown_names_are_refused() -> None:
 def test_invalid_configurations_are_repaired() -> None:
     repaired, changes = pinswitch.Config("three-double", segment__grooves=40).repaired()
     assert repaired.check() is not None and "segment.grooves" in changes
+
+
+def test_lists_are_assigned_not_changed() -> None:
+    config = pinswitch.Config("three-double")
+    for change in (lambda pins: pins.append(14), lambda pins: pins.sort(), lambda pins: pins.__setitem__(0, 1)):
+        with pytest.raises(TypeError, match="assign a new list"):
+            change(config.layout.pins)
+        with pytest.raises(TypeError, match="assign a new list"):
+            change(config["layout.pins"])
+    config.layout.pins += [14]
+    assert config.layout.pins == [5, 8, 11, 14]
+    plain = pickle.loads(pickle.dumps(config.layout.pins))
+    plain.append(15)
+    assert type(copy.copy(config.layout.pins)) is list and plain == [5, 8, 11, 14, 15]
+
+
+MISSING = "no-such-folder/file"
+BINARY = b"\xff\xfe\x00\x81"
+READERS: dict[str, Callable[[Any], object]] = {
+    "Config": pinswitch.Config,
+    "segment": pinswitch.segment,
+    "power": pinswitch.power,
+    "simulate": pinswitch.simulate,
+    "design": pinswitch.design,
+    "calibrate": pinswitch.calibrate,
+    "check": pinswitch.check,
+    "Model.load": pinswitch.Model.load,
+    "Surface.load": Surface.load,
+    "bam.read": bam.read,
+    "map": lambda path: pinswitch.read(PACKAGE / "README.md", map=path),
+    "noise": lambda path: pinswitch.simulate(noise=path),
+    "model": lambda path: pinswitch.predict("three-double", model=path),
+    "effects": lambda path: pinswitch.calibrate({}, effects=[path]),
+    "table": lambda path: pinswitch.predict_table(path, "three-double"),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_files_that_cannot_be_read_are_one_kind_of_error(name: str, tmp_path: Path) -> None:
+    binary = tmp_path / "binary"
+    binary.write_bytes(BINARY)
+    for path in (MISSING, tmp_path, binary, Path(MISSING)):
+        with pytest.raises(PinswitchError) as caught:
+            READERS[name](path)
+        assert caught.value.file == str(path)
+
+
+def test_every_code_has_a_page() -> None:
+    program = shutil.which("pinswitch")
+    if program is None:
+        pytest.skip("the command line lists the codes")
+    listed = subprocess.run([program, "explain", "--json"], capture_output=True, text=True, check=True).stdout
+    known = {page["code"] for page in json.loads(listed)}
+    sources = "".join(file.read_text(encoding="utf-8") for file in (PACKAGE / "python" / "pinswitch").glob("*.py"))
+    used = set(re.findall(r'code="([a-z-]+)"', sources))
+    assert len(used) > 15 and used <= known
 
 
 def test_every_template_and_parameter_is_listed() -> None:

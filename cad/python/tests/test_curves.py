@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -89,6 +90,56 @@ def test_tables_equal_the_command_line(config: pinswitch.Config, tmp_path: Path)
     assert curves.columns[:4] == ["row", "layout.pins", "shell.width_mm", "status"]
     assert len(curves.predicted) == 21 and len(curves.refused) == 1
     assert "outside" in curves.refused["reason"][0] and np.isnan(curves.refused["load_N"][0])
+
+
+def test_a_source_is_as_good_as_a_configuration(tmp_path: Path) -> None:
+    config = pinswitch.Config("three-double")
+    config.save(tmp_path / "mine.toml")
+    loads = [10.0, 40.0]
+    expected = pinswitch.predict(config, loads).friction_n
+    for source in ("three-double", tmp_path / "mine.toml", config.to_dict(), {"layout.pins": [5, 8, 11]}):
+        assert np.array_equal(pinswitch.predict(source, loads).friction_n, expected)
+    assert pinswitch.build("three-double").names == pinswitch.build(config).names
+    for wrong in (3, None, b"three-double"):
+        with pytest.raises(PinswitchError, match="not a configuration"):
+            pinswitch.predict(wrong)  # type: ignore[call-overload]
+    with pytest.raises(PinswitchError, match="no such file or template"):
+        pinswitch.predict("three-duoble")
+    with pytest.raises(PinswitchError, match="not numbers"):
+        pinswitch.predict(config, ["heavy"])  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("frame", INPUTS[2:], ids=["pandas", "polars", "pyarrow"])
+def test_a_frame_is_predicted_row_by_row(frame: Any) -> None:
+    curves = pinswitch.predict(frame)
+    assert isinstance(curves, pinswitch.CurveTable)
+    expected = pinswitch.predict_table(frame, pinswitch.Config())
+    assert all(np.array_equal(curves[name], expected[name]) for name in curves.columns)
+    with pytest.raises(PinswitchError, match="for one configuration"):
+        pinswitch.predict(frame, [10.0])  # type: ignore[call-overload]
+
+
+def test_frames_of_other_kinds(config: pinswitch.Config) -> None:
+    frame = polars.DataFrame({"shell.width_mm": [13.0, 14.5]})
+    lazy, eager = (pinswitch.predict_table(table, config) for table in (frame.lazy(), frame))
+    assert np.array_equal(lazy["friction_N"], eager["friction_N"])
+    twice = pandas.DataFrame([[13.0, 14.0]], columns=["shell.width_mm", "shell.width_mm"])
+    with pytest.raises(PinswitchError, match="two columns have the same name"):
+        pinswitch.predict_table(twice, config)
+    for wrong in (3, None, [1, 2], ["shell.width_mm"]):
+        with pytest.raises(PinswitchError, match="is not a table"):
+            pinswitch.predict_table(wrong, config)
+
+
+def test_curves_are_read_only_and_pickled(config: pinswitch.Config) -> None:
+    changed = config.replace(shell__width_mm=14.0)
+    curve = pinswitch.predict(changed, [5.0, 20.0], law="layout")
+    changed.layout.pins = [5]
+    with pytest.raises(ValueError, match="read-only"):
+        curve.friction_n[0] = 99
+    restored = pickle.loads(pickle.dumps(curve))
+    assert all(np.array_equal(restored[name], curve[name]) for name in curve.columns)
+    assert (restored.law, restored.status, restored.reasons) == (curve.law, curve.status, curve.reasons)
 
 
 def test_invalid_tables_are_refused(config: pinswitch.Config) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 from pathlib import Path
@@ -24,6 +25,25 @@ def unit(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("fmu")
     subprocess.run([program, "export", "three-double", "--to", "fmu", "--out", str(folder)], check=True)
     return folder / "switch.fmu"
+
+
+def test_the_friction_of_a_joint_follows_its_wrap(tmp_path: Path) -> None:
+    program = shutil.which("pinswitch")
+    if program is None or shutil.which("cc") is None:
+        pytest.skip("the command line and a C compiler make the unit")
+    joint = ["three-double", "--set", "mount.kind=joint", "--set", "friction.points=21"]
+    subprocess.run([program, "export", *joint, "--to", "fmu", "--out", str(tmp_path)], check=True)
+    table = json.loads((tmp_path / "switch.json").read_text())
+    assert len(table["wrap_rad"]) > 2
+    for i in (1, len(table["wrap_rad"]) - 1):
+        signal = np.zeros(2, dtype=[(name, float) for name in ("time", "tension_N", "displacement_m", "wrap_rad")])
+        signal["time"], signal["displacement_m"] = [0.0, 0.4], [0.0, 0.004]
+        signal["tension_N"], signal["wrap_rad"] = 20.0, table["wrap_rad"][i]
+        result = fmpy.simulate_fmu(
+            str(tmp_path / "switch.fmu"), stop_time=0.4, step_size=1e-3, input=signal, output=["load_N"]
+        )
+        lifted = np.interp(20.0, table["concentric_n"][i], table["load_n"])
+        assert result["load_N"][-1] == pytest.approx(lifted, rel=BOUND)
 
 
 def test_the_unit_conforms(unit: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -170,6 +171,13 @@ def test_invalid_tables_have_a_line() -> None:
     with pytest.raises(PinswitchError) as caught:
         pinswitch.calibrate(pinswitch.read_csv("\n".join(rows) + "\n"))
     assert caught.value.line == 3
+
+
+def test_models_are_pickled_and_calibrations_say_why_not(calibration: pinswitch.Calibration) -> None:
+    restored = pickle.loads(pickle.dumps(calibration.model))
+    assert restored.text == calibration.model.text and restored.constants == calibration.model.constants
+    with pytest.raises(TypeError, match="pickle its model"):
+        pickle.dumps(calibration)
 
 
 def test_arviz_takes_the_draws(calibration: pinswitch.Calibration) -> None:

@@ -212,10 +212,23 @@ def test_impossible_tables_are_refused(change: dict[str, Any]) -> None:
         Surface(**{**table, **change})
 
 
+@pytest.mark.parametrize(
+    ("wrap_rad", "load_n"),
+    [([], [1, 2]), ([1], []), ([2, 1], [1, 2]), ([1, 1], [1, 2]), ([np.inf], [1, 2]), ([0], [1, 2]), ([1], [2, 1])],
+)
+def test_impossible_axes_are_refused(wrap_rad: list[float], load_n: list[float]) -> None:
+    lower = np.tile(np.asarray(load_n, dtype=float), (len(wrap_rad), 1))
+    with pytest.raises(PinswitchError, match="positive, finite, ascending"):
+        Surface(wrap_rad, load_n, lower * 0.9, lower * 1.1)
+
+
 def test_unknown_tendons_are_refused(surface: Surface) -> None:
     host, _ = rig(surface, 10.0)
     with pytest.raises(PinswitchError, match="no tendon"):
         Host(host.model, [Switch("absent", surface)])
+    with pytest.raises(PinswitchError, match="no switch on this tendon") as caught:
+        host["absent"]
+    assert caught.value.help == "its tendons are tendon"
     for stiffness_n_m in (0.0, float("inf"), float("nan")):
         with pytest.raises(PinswitchError, match="stiffness_n_m"):
             Host(host.model, [Switch("tendon", surface, stiffness_n_m=stiffness_n_m)])

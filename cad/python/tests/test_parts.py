@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -75,12 +76,19 @@ def test_meshes_are_checked(parts: pinswitch.Parts, tmp_path: Path) -> None:
     assert pinswitch.Config(tmp_path / "assembly.3mf").layout.pins == [5, 8, 11]
 
 
+def test_parts_are_pickled_as_their_configuration() -> None:
+    parts = pinswitch.build(pinswitch.Config("three-double", shell__width_mm=14.0))
+    restored = pickle.loads(pickle.dumps(parts))
+    assert restored.config == parts.config and restored["shell"].to_stl() == parts["shell"].to_stl()
+
+
 def test_designs_meet_a_request() -> None:
     designs = pinswitch.design({"targets": {"threshold_n": 24, "max_friction_n": "at most 9"}}, best=2, draws=200)
     assert designs.is_possible and len(designs) == 2
     best = designs[0]
     assert best.friction_n <= 9 and best.threshold_n == pytest.approx(24, rel=0.1)
     curve = pinswitch.predict(best.config)
+    assert best.status == curve.status and f"<td>{best.status}</td>" in designs._repr_html_()
     assert curve.threshold_n == pytest.approx(best.threshold_n, rel=0.02)
 
 

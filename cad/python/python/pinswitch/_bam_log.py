@@ -6,13 +6,13 @@ import json
 import math
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import PinswitchError
+from ._files import read_text
 from ._pendulum import GRAVITY_M_S2, Floats
 
 #: Largest angle of a log, rad: a larger one is in degrees.
@@ -150,11 +150,7 @@ def read(path: str | os.PathLike[str]) -> Log:
     name = os.fspath(path)
     reader = _Reader(name)
     try:
-        table = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=name) from error
-    except UnicodeDecodeError as error:
-        raise PinswitchError("not UTF-8", code="not-utf-8", help="give a log of BAM", file=name) from error
+        table = json.loads(read_text(path))
     except json.JSONDecodeError as error:
         raise PinswitchError(
             f"not JSON, or incomplete: line {error.lineno}, column {error.colno}",

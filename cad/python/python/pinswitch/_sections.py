@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import _pinswitch
+from ._read_only_list import read_only
 
 
 class Section:
@@ -22,7 +23,7 @@ class Section:
             raise AttributeError(key)
         if key not in self._keys:
             raise AttributeError(f"[{self._table}] has no {key!r}; its parameters are {', '.join(self._keys)}")
-        return self._native.get(f"{self._table}.{key}")
+        return read_only(self._native.get(f"{self._table}.{key}"))
 
     def __setattr__(self, key: str, value: object) -> None:
         self._native.set(f"{self._table}.{key}", value)

@@ -12,7 +12,8 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _pinswitch
-from .config import Config
+from ._files import read_text
+from .config import ConfigLike
 from .curve import Curve, predict
 from .effects import effect_texts
 from .model import Floats, Model, plateau_bytes
@@ -115,7 +116,7 @@ class Calibration:
         """Predict readings of the rig: :meth:`Model.predict` of the best model."""
         return self.model.predict(table, fitted_session=fitted_session)
 
-    def curve(self, config: Config, loads_n: Any = None) -> Curve:
+    def curve(self, config: ConfigLike, loads_n: Any = None) -> Curve:
         """Return the curve of a printed part, without the effects of the rig."""
         return predict(config, loads_n, model=self)
 
@@ -147,7 +148,7 @@ class Calibration:
         rig : path, optional
             Limits of the rig (``pinswitch init rig``).
         """
-        limits = None if rig is None else (Path(rig).read_text(encoding="utf-8"), os.fspath(rig))
+        limits = None if rig is None else (read_text(rig), os.fspath(rig))
         report, runs, sheet = self._native.experiment(float(minutes), limits)
         return Experiment(json.loads(report), runs, sheet)
 
@@ -171,6 +172,9 @@ class Calibration:
         ax.set(xlabel="reading, N", ylabel="residual, N")
         ax.legend()
         return ax
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("a calibration cannot be pickled; pickle its model, or save it to a folder")
 
     def __repr__(self) -> str:
         found = ", ".join(f"{id} {effect['probability']:.3f}" for id, effect in self.effects.items())

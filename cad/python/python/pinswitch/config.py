@@ -7,10 +7,12 @@ import os
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, Union
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import read_bytes
+from ._read_only_list import read_only
 from ._sections import SECTIONS, Sections
 
 
@@ -87,7 +89,7 @@ class Config(Sections):
         return cls._of(_pinswitch.Configuration.read(text, name))
 
     def __getitem__(self, path: str) -> Any:
-        return self._native.get(path)
+        return read_only(self._native.get(path))
 
     def __setitem__(self, path: str, value: object) -> None:
         self._native.set(path, value)
@@ -173,7 +175,7 @@ def _read(source: str | os.PathLike[str], base: _pinswitch.Configuration | None)
     """Read a template or a file."""
     path, name = Path(source), os.fspath(source)
     if path.is_file():
-        content = path.read_bytes()
+        content = read_bytes(path)
         if content.startswith(b"PK"):
             return _pinswitch.Configuration.from_3mf(content, name)
         try:
@@ -188,6 +190,21 @@ def _read(source: str | os.PathLike[str], base: _pinswitch.Configuration | None)
     near = difflib.get_close_matches(name, _pinswitch.templates(), 1, 0.0)[0]
     help = f"the nearest template is {near!r}; pinswitch.templates() lists all templates"
     raise PinswitchError("no such file or template", code="file-not-found", help=help, file=name)
+
+
+#: A configuration, or what :class:`Config` makes one from.
+ConfigLike = Union[Config, str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+def config_of(source: ConfigLike) -> Config:
+    """Return the configuration of a template's name, a file or a mapping."""
+    if isinstance(source, Config):
+        return source
+    if isinstance(source, (str, os.PathLike, Mapping)):
+        return Config(source)
+    problem = f"a {type(source).__name__} is not a configuration"
+    help = "give a Config, the name of a template, a file, or a mapping of values"
+    raise PinswitchError(problem, code="wrong-type", help=help)
 
 
 def templates() -> list[str]:

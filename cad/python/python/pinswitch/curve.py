@@ -5,20 +5,29 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Optional, Protocol, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import read_bytes
 from ._notebook import progress_bar
-from .config import Config
+from .config import Config, ConfigLike, config_of
 from .model import Model
 from .table import Table, columns_of, csv_text
 
 Floats = NDArray[np.float64]
+#: Configuration, loads in N, law, and text and name of a model.
+_Inputs = tuple[Config, Optional[list[float]], Optional[str], Optional[tuple[str, str]]]
+
+
+class ArrowTable(Protocol):
+    """A frame of pandas, polars or pyarrow, or a :class:`Table`."""
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Return the frame as an Arrow stream."""
 
 
 class Curve(Table):
@@ -49,6 +58,9 @@ class Curve(Table):
         Load at which the silicone carries half of the friction, N; None if it is not within the loads.
     threshold_band_n : tuple of float or None
         Loads between which the band allows the threshold, N.
+
+    The arrays are read-only. A pickle has the configuration, the loads, the law and the model, and predicts the same
+    curve again.
     """
 
     load_n: Floats
@@ -59,10 +71,11 @@ class Curve(Table):
     band_high_n: Floats
     silicone_share: Floats
 
-    def __init__(self, native: _pinswitch.Curve) -> None:
-        self._native = native
+    def __init__(self, native: _pinswitch.Curve, inputs: _Inputs) -> None:
+        self._native, self._inputs = native, inputs
         columns = native.columns()
         for name, column in columns.items():
+            column.flags.writeable = False
             setattr(self, name, column)
         super().__init__({name.replace("_n", "_N") if name.endswith("_n") else name: c for name, c in columns.items()})
         facts = json.loads(native.facts())
@@ -103,6 +116,9 @@ class Curve(Table):
         ax.set(xlabel="load, N", ylabel="friction, N")
         ax.legend()
         return ax
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (_predicted, self._inputs)
 
     def __repr__(self) -> str:
         last = f"{self.friction_n[-1]:.2f} N [{self.band_low_n[-1]:.2f}, {self.band_high_n[-1]:.2f}]"
@@ -147,19 +163,32 @@ def _model_text(model: Any) -> Optional[tuple[str, str]]:
     return model.text, model.name
 
 
+@overload
 def predict(
-    config: Config,
+    config: ConfigLike,
     loads_n: Optional[ArrayLike] = None,
     *,
     law: Optional[str] = None,
     model: Optional[ModelLike] = None,
-) -> Curve:
-    """Predict the friction curve of a configuration.
+) -> Curve: ...
+@overload
+def predict(
+    config: ArrowTable, loads_n: None = None, *, law: Optional[str] = None, model: Optional[ModelLike] = None
+) -> CurveTable: ...
+def predict(
+    config: ConfigLike | ArrowTable,
+    loads_n: Optional[ArrayLike] = None,
+    *,
+    law: Optional[str] = None,
+    model: Optional[ModelLike] = None,
+) -> Curve | CurveTable:
+    """Predict the friction curve of a configuration, or of every row of a frame.
 
     Parameters
     ----------
-    config : Config
-        The switch.
+    config : Config or source of one, or frame
+        The switch; also the name of a template, a file, or a mapping of values. The rows of a frame change the defaults:
+        :func:`predict_table` takes another base.
     loads_n : array_like of float, shape (n,), optional
         Loads in N, positive and ascending. Without them, those of ``config.friction``.
     law : str, optional
@@ -178,13 +207,30 @@ def predict(
     >>> curve.friction_n.shape, curve.status
     ((2,), 'published')
     """
-    loads = None if loads_n is None else np.atleast_1d(np.asarray(loads_n, dtype=float)).tolist()
-    return Curve(_pinswitch.predict(config._native, loads, law, _model_text(model)))
+    if hasattr(config, "__arrow_c_stream__") or hasattr(config, "iloc"):
+        if loads_n is not None:
+            help = "set the loads with columns such as friction.load_max_n"
+            raise PinswitchError("loads_n is for one configuration", code="usage", help=help, field="loads_n")
+        return predict_table(config, law=law, model=model)
+    try:
+        loads = None if loads_n is None else np.atleast_1d(np.asarray(loads_n, dtype=float)).tolist()
+    except (TypeError, ValueError) as error:
+        help = "give positive loads in newtons, in ascending order"
+        raise PinswitchError("not numbers", code="wrong-type", help=help, field="loads_n") from error
+    return _predicted(config_of(config), loads, law, _model_text(model))
+
+
+def _predicted(
+    config: Config, loads_n: Optional[list[float]], law: Optional[str], model: Optional[tuple[str, str]]
+) -> Curve:
+    curve = _pinswitch.predict(config._native, loads_n, law, model)
+    # A copy: the caller may change the configuration.
+    return Curve(curve, (Config._of(config._native.copy()), loads_n, law, model))
 
 
 def predict_table(
     table: Any,
-    config: Config,
+    config: Optional[ConfigLike] = None,
     *,
     law: Optional[str] = None,
     model: Optional[ModelLike] = None,
@@ -198,6 +244,8 @@ def predict_table(
     table : frame, mapping, sequence of mappings, or path
         Columns are parameters, such as ``shell.width_mm`` and ``layout.pins``. A frame of pandas, polars or pyarrow, a
         mapping of columns, rows as dictionaries, or a CSV or Parquet file.
+    config : Config or source of one, optional
+        The base of every row; the defaults without it.
     threads : int
         Threads; 0 means one per processor.
     progress : bool
@@ -219,7 +267,7 @@ def predict_table(
     content, name = _table_bytes(table)
     with progress_bar("rows", progress) as report:
         rows, counts, lines = _pinswitch.predict_rows(
-            config._native, content, name, law, _model_text(model), threads, report
+            config_of({} if config is None else config)._native, content, name, law, _model_text(model), threads, report
         )
     columns: dict[str, Any] = {"row": np.repeat(np.arange(1, len(counts) + 1), counts)}
     for column, values in rows.items():
@@ -241,12 +289,7 @@ def _array(values: Any) -> NDArray[Any]:
 
 def _table_bytes(table: Any) -> tuple[bytes, str]:
     if isinstance(table, (str, os.PathLike)):
-        try:
-            return Path(table).read_bytes(), os.fspath(table)
-        except OSError as error:
-            raise PinswitchError(
-                f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(table)
-            ) from error
+        return read_bytes(table), os.fspath(table)
     return csv_text(columns_of(table)).encode(), "table"
 
 

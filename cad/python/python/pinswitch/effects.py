@@ -11,13 +11,13 @@ import inspect
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import read_text
 
 #: Variables of a row, as attributes of the first argument of an effect.
 VARIABLES = (
@@ -333,7 +333,7 @@ def effect_texts(effects: Sequence[Any]) -> list[tuple[str, str]]:
             help = "give functions with @pinswitch.effect, or paths of files"
             raise PinswitchError(f"{path!r} is not an effect", code="wrong-type", help=help, field="effects")
         try:
-            texts.append((os.fspath(path), Path(path).read_text(encoding="utf-8")))
+            texts.append((os.fspath(path), read_text(path)))
         except (OSError, UnicodeDecodeError) as error:
             raise PinswitchError(str(error), code="cannot-read", file=os.fspath(path)) from error
     return texts

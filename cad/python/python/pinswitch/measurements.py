@@ -8,15 +8,14 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import PathLike, read_bytes, read_text
 from .curve import ModelLike, _model_text
 from .effects import effect_texts
 from .table import Table, read_csv
-
-PathLike = Union[str, "os.PathLike[str]"]
 
 #: Ends of the names of files that are read from a folder.
 ENDINGS = frozenset({"csv", "txt", "tsv", "dat", "lvm", "xlsx", "xls", "ods", "parquet", "gz"})
@@ -80,7 +79,7 @@ def read(
         If a file cannot be read, or a value has two readings; ``error.help`` lists the decisions.
     """
     files = [(os.fspath(path), _unpacked(path)) for path in _files(sources, pattern)]
-    decisions = None if map is None else (Path(map).read_text(encoding="utf-8"), os.fspath(map))
+    decisions = None if map is None else (read_text(map), os.fspath(map))
     assignments = [f"{key}={value}" for key, value in (set or {}).items()]
     csv, kind, text, understanding, complete = _pinswitch.import_files(files, decisions, assignments, pattern)
     understood = json.loads(understanding)
@@ -113,10 +112,7 @@ def _natural(path: Path) -> list[tuple[int, str]]:
 
 
 def _unpacked(path: PathLike) -> bytes:
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
+    content = read_bytes(path)
     if not content.startswith(b"\x1f\x8b"):
         return content
     try:
@@ -167,7 +163,7 @@ def segment(run: PathLike, *, figures: bool = True) -> Segmentation:
         If a log is missing, outside the folder, or contains no plateau.
     """
     path = Path(run)
-    text, name, folder = path.read_text(encoding="utf-8"), os.fspath(run), path.parent
+    text, name, folder = read_text(path), os.fspath(run), path.parent
     logs, map_name = _pinswitch.run_files(text, name)
     for log in logs:
         if not (folder / log).resolve().is_relative_to(folder.resolve()):
@@ -178,7 +174,7 @@ def segment(run: PathLike, *, figures: bool = True) -> Segmentation:
                 file=log,
             )
     contents = {log: _unpacked(folder / log) for log in logs}
-    named_map = map_name and ((folder / map_name).read_text(encoding="utf-8"), map_name)
+    named_map = map_name and (read_text(folder / map_name), map_name)
     csv, report, summary, drawn = _pinswitch.segment(text, name, contents, named_map or None, figures)
     return Segmentation(read_csv(csv), json.loads(report), summary, dict(drawn))
 
@@ -263,4 +259,4 @@ def _values(value: Any) -> list[float]:
 
 
 def _plan_text(plan: Optional[PathLike]) -> Optional[tuple[str, str]]:
-    return None if plan is None else (Path(plan).read_text(encoding="utf-8"), os.fspath(plan))
+    return None if plan is None else (read_text(plan), os.fspath(plan))

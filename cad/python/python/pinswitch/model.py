@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _pinswitch
-from ._errors import PinswitchError
+from ._files import read_bytes, read_text
 from .table import columns_of, csv_text
 
 Floats = NDArray[np.float64]
@@ -49,11 +49,15 @@ class Model:
         PinswitchError
             If the file cannot be read, is not a model, or was changed since pinswitch wrote it.
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
-        return cls(_pinswitch.Model.parse(text, os.fspath(path)))
+        return cls.parse(read_text(path), os.fspath(path))
+
+    @classmethod
+    def parse(cls, text: str, name: str = "model.toml") -> Model:
+        """Return the model of a text; ``name`` is that of the file in errors."""
+        return cls(_pinswitch.Model.parse(text, name))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (Model.parse, (self.text, self.name))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file."""
@@ -111,12 +115,7 @@ class Model:
 def plateau_bytes(table: Any) -> tuple[bytes, str]:
     """Return a plateau table as CSV, with its name in errors."""
     if isinstance(table, (str, os.PathLike)):
-        try:
-            return Path(table).read_bytes(), os.fspath(table)
-        except OSError as error:
-            raise PinswitchError(
-                f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(table)
-            ) from error
+        return read_bytes(table), os.fspath(table)
     columns = columns_of(table)
     if "repetition" in columns:
         columns["repetition"] = [_whole(value) for value in columns["repetition"]]

@@ -34,6 +34,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import PinswitchError
+from ._files import read_text
 from .curve import Curve
 
 Floats = NDArray[np.float64]
@@ -65,13 +66,18 @@ class Surface:
         self, wrap_rad: ArrayLike, load_n: ArrayLike, eccentric_n: ArrayLike, concentric_n: ArrayLike
     ) -> None:
         self.wrap_rad: Floats = np.atleast_1d(np.asarray(wrap_rad, dtype=np.float64))
-        self.load_n: Floats = np.asarray(load_n, dtype=np.float64)
+        self.load_n: Floats = np.atleast_1d(np.asarray(load_n, dtype=np.float64))
+        for name, axis in (("wrap_rad", self.wrap_rad), ("load_n", self.load_n)):
+            is_ascending = axis.ndim == 1 and axis.size and np.all(axis > 0) and np.all(np.diff(axis) > 0)
+            if not (is_ascending and np.isfinite(axis[-1])):
+                problem = f"{name} is not a list of positive, finite, ascending numbers"
+                raise PinswitchError(problem, code="out-of-range", help="sort it, and remove the others", field=name)
         self.eccentric_n: Floats = np.atleast_2d(np.asarray(eccentric_n, dtype=np.float64))
         self.concentric_n: Floats = np.atleast_2d(np.asarray(concentric_n, dtype=np.float64))
         shape = (len(self.wrap_rad), len(self.load_n))
         for name in ("eccentric_n", "concentric_n"):
             table = getattr(self, name)
-            if table.shape != shape or not np.all(np.diff(table, axis=1) > 0):
+            if table.shape != shape or not np.all(np.isfinite(table)) or not np.all(np.diff(table, axis=1) > 0):
                 problem = f"{name} does not grow with the load, or does not have the shape {shape}"
                 raise PinswitchError(
                     problem,
@@ -94,13 +100,12 @@ class Surface:
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Surface:
         """Read a ``switch.json`` of ``pinswitch export``."""
+        text = read_text(path)
         try:
-            table = json.loads(Path(path).read_text(encoding="utf-8"))
+            table = json.loads(text)
             if table["schema"] != "pinswitch.surface/1":
                 raise KeyError("schema")
             return cls(table["wrap_rad"], table["load_n"], table["eccentric_n"], table["concentric_n"])
-        except OSError as error:
-            raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
         except (KeyError, TypeError, json.JSONDecodeError) as error:
             help = "give a switch.json of `pinswitch export`"
             raise PinswitchError(
@@ -219,6 +224,9 @@ class Host:
     Call :meth:`step` in place of ``mujoco.mj_step``. The host adds to ``data.qfrc_applied``, which may contain forces of
     the caller. It evaluates the model once more in each step, for the motion without friction.
 
+    The tension of a tendon comes from its actuators and its spring. The force of a limit of its length is not part of it:
+    a tendon that only a limit holds has no friction.
+
     Parameters
     ----------
     model : mujoco.MjModel
@@ -307,7 +315,12 @@ class Host:
         return cls(model, switches)
 
     def __getitem__(self, tendon: str) -> Switch:
-        return next(switch for switch in self.switches if switch.tendon == tendon)
+        for switch in self.switches:
+            if switch.tendon == tendon:
+                return switch
+        help = f"its tendons are {', '.join(switch.tendon for switch in self.switches)}"
+        problem = "the host has no switch on this tendon"
+        raise PinswitchError(problem, code="unknown-name", help=help, field="tendon", value=str(tendon))
 
     def reset(self) -> None:
         """Forget the state of every switch."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from . import _pinswitch
 from ._errors import PinswitchError
-from .config import Config
+from .config import Config, ConfigLike, config_of
 from .curve import Curve, predict
 
 #: Size of the turning picture in pixels, and its number of views.
@@ -60,7 +60,10 @@ class Part:
 
 
 class Parts:
-    """The built parts of a switch; a sequence of :class:`Part` that is also indexed by name."""
+    """The built parts of a switch; a sequence of :class:`Part` that is also indexed by name.
+
+    A pickle has the configuration, and builds the parts again.
+    """
 
     def __init__(self, native: _pinswitch.Parts, config: Config) -> None:
         self._native = native
@@ -131,6 +134,10 @@ class Parts:
         ax.set(xlabel="mm", aspect="equal")
         return ax
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # The parts are built again: a configuration gives the same bytes each time.
+        return (build, (self.config,))
+
     def __repr__(self) -> str:
         return f"Parts({', '.join(self.names)})"
 
@@ -150,8 +157,13 @@ class Parts:
         )
 
 
-def build(config: Config) -> Parts:
+def build(config: ConfigLike) -> Parts:
     """Build, mesh and examine every part of a switch.
+
+    Parameters
+    ----------
+    config : Config or source of one
+        The switch; also the name of a template, a file, or a mapping of values.
 
     Raises
     ------
@@ -164,7 +176,8 @@ def build(config: Config) -> Parts:
     >>> parts["shell"].vertices.shape[1]
     3
     """
-    return Parts(_pinswitch.build(config._native), Config._of(config._native.copy()))
+    native = config_of(config)._native.copy()
+    return Parts(_pinswitch.build(native), Config._of(native))
 
 
 def write_files(

@@ -10,8 +10,9 @@ from typing import Any, Optional
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import read_bytes, read_text
 from ._notebook import progress_bar
-from .config import Config
+from .config import Config, ConfigLike, config_of
 from .curve import ModelLike, _model_text
 from .effects import _quoted
 from .table import Table, read_csv
@@ -54,11 +55,16 @@ class Proposal:
         """Friction at the heaviest load, N."""
         return float(self.report["friction_n"])
 
+    @property
+    def status(self) -> str:
+        """Support by measurements: ``"published"``, ``"interpolated"`` or ``"extrapolated"``."""
+        return str(self.report["trust"])
+
     def __repr__(self) -> str:
         threshold = "none" if self.threshold_n is None else f"{self.threshold_n:.2f} N"
         return (
             f"Proposal({self.pins}, threshold {threshold}, friction {self.friction_n:.2f} N, "
-            f"probability {self.probability:.3f})"
+            f"probability {self.probability:.3f}, {self.status})"
         )
 
 
@@ -108,17 +114,19 @@ class Designs(Sequence[Proposal]):
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><td>{number}</td><td>{one.pins}</td><td>{one.probability:.3f}</td>"
-            f"<td>{'' if one.threshold_n is None else f'{one.threshold_n:.2f}'}</td><td>{one.friction_n:.2f}</td></tr>"
+            f"<td>{'' if one.threshold_n is None else f'{one.threshold_n:.2f}'}</td><td>{one.friction_n:.2f}</td>"
+            f"<td>{one.status}</td></tr>"
             for number, one in enumerate(self, 1)
         )
-        head = "<tr><th></th><th>pins</th><th>probability</th><th>threshold, N</th><th>friction, N</th></tr>"
+        names = ("", "pins", "probability", "threshold, N", "friction, N", "status")
+        head = f"<tr>{''.join(f'<th>{name}</th>' for name in names)}</tr>"
         note = "" if self.is_possible else "<p>no design meets the request; this is the nearest</p>"
         return f"{note}<table><thead>{head}</thead><tbody>{rows}</tbody></table>"
 
 
 def design(
     request: Request | str | os.PathLike[str],
-    base: Optional[Config] = None,
+    base: Optional[ConfigLike] = None,
     *,
     model: Optional[ModelLike] = None,
     best: int = 5,
@@ -134,7 +142,7 @@ def design(
     request : mapping or path
         Tables of a request file: ``{"targets": {"threshold_n": 24, "max_friction_n": "at most 9"}}``, and optionally
         ``limits``, ``vary``, ``materials`` and ``tolerances``; or the file.
-    base : Config, optional
+    base : Config or source of one, optional
         The configuration that proposals change; ``three-double`` without it.
     model : Calibration, Model or path, optional
         A calibrated model in place of the published constants.
@@ -151,8 +159,8 @@ def design(
     if isinstance(request, Mapping):
         text, name = "".join(_table(table, values) for table, values in request.items()), "request"
     else:
-        text, name = Path(request).read_text(encoding="utf-8"), os.fspath(request)
-    native = (Config("three-double") if base is None else base)._native
+        text, name = read_text(request), os.fspath(request)
+    native = config_of("three-double" if base is None else base)._native
     for option, value in (("best", best), ("draws", draws), ("starts", starts)):
         if value < 1:
             raise PinswitchError(
@@ -199,7 +207,7 @@ class Batch:
     @property
     def variants(self) -> Table:
         """``variants.csv``: a row for each variant."""
-        return read_csv((self.folder / "variants.csv").read_text(encoding="utf-8"))
+        return read_csv(read_text(self.folder / "variants.csv"))
 
     def __repr__(self) -> str:
         made, refused, failed = (self.tally[name] for name in ("made", "refused", "failed"))
@@ -291,9 +299,5 @@ def check(
     PinswitchError
         If the file cannot be read.
     """
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise PinswitchError(f"cannot read: {error.strerror}", code="cannot-read", file=os.fspath(path)) from error
-    report, text = _pinswitch.check(content, os.fspath(path), bodies, min_wall_mm, strict, purpose)
+    report, text = _pinswitch.check(read_bytes(path), os.fspath(path), bodies, min_wall_mm, strict, purpose)
     return MeshCheck(json.loads(report), text)

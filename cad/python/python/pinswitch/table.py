@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from html import escape
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _pinswitch
+from ._errors import PinswitchError
 
 Column = NDArray[Any]
 
@@ -145,19 +146,30 @@ def columns_of(frame: Any) -> dict[str, list[Any]]:
     """Return the columns of a frame of any library, a mapping of columns, or a sequence of mappings."""
     if isinstance(frame, Table):
         return {name: frame[name].tolist() for name in frame}
+    if hasattr(frame, "collect") and hasattr(frame, "lazy"):  # a lazy frame of polars
+        frame = frame.collect()
     if hasattr(frame, "to_pydict"):  # pyarrow
         return dict(frame.to_pydict())
     if hasattr(frame, "get_columns"):  # polars
         return {column.name: column.to_list() for column in frame.get_columns()}
     if hasattr(frame, "columns") and hasattr(frame, "iloc"):  # pandas
-        return {str(name): frame[name].tolist() for name in frame.columns}
+        names = [str(name) for name in frame.columns]
+        if len(set(names)) < len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            help = "rename or drop one of them"
+            raise PinswitchError("two columns have the same name", code="duplicate-entry", help=help, field=twice)
+        return {name: frame.iloc[:, i].tolist() for i, name in enumerate(names)}
     if isinstance(frame, Mapping):
         return {str(name): list(column) for name, column in frame.items()}
     if hasattr(frame, "__arrow_c_stream__"):
         import pyarrow
 
         return dict(pyarrow.table(frame).to_pydict())
-    rows = list(frame)
+    rows: list[Any] = list(frame) if isinstance(frame, Iterable) else [frame]
+    if not all(isinstance(row, Mapping) for row in rows):
+        problem = f"a {type(frame).__name__} is not a table"
+        help = "give a frame of pandas, polars or pyarrow, a mapping of columns, or rows as mappings"
+        raise PinswitchError(problem, code="wrong-type", help=help)
     names = list(dict.fromkeys(name for row in rows for name in row))
     return {name: [row.get(name) for row in rows] for name in names}
 

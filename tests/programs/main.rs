@@ -10,6 +10,7 @@ mod book;
 mod bucket;
 mod configurator;
 mod data_package;
+mod editors;
 mod gltf;
 mod hardware;
 mod judges;

@@ -149,8 +149,9 @@ def read(path: str | os.PathLike[str]) -> Log:
     """
     name = os.fspath(path)
     reader = _Reader(name)
+    text = read_text(path)
     try:
-        table = json.loads(read_text(path))
+        table = json.loads(text)
     except json.JSONDecodeError as error:
         raise PinswitchError(
             f"not JSON, or incomplete: line {error.lineno}, column {error.colno}",

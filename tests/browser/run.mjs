@@ -19,6 +19,7 @@ import * as embedding from './embedding.mjs';
 import * as errors from './errors.mjs';
 import * as focus from './focus.mjs';
 import * as hands from './hands.mjs';
+import * as report from './report.mjs';
 import * as search from './search.mjs';
 import * as server from './server.mjs';
 import * as tables from './tables.mjs';
@@ -39,7 +40,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...hands, ...server, ...downloads, ...walks };
+  const all = { fromFile, ...design, ...appearance, ...search, ...tables, ...errors, ...embedding, ...consistency, ...focus, ...hands, ...report, ...server, ...downloads, ...walks };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 

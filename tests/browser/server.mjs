@@ -32,21 +32,6 @@ export async function templateOfTheCommandLine(visit, site, { startView }) {
   });
 }
 
-export async function fromPageToPage(visit, site) {
-  await visit.open(site.address + START);
-  if (site.file) {
-    visit.findings.check('a page without a server has no link to a set', !await visit.shown('#set-page'));
-    return;
-  }
-  // The page of the set lacks an icon.
-  visit.allowed.push(/404/);
-  await visit.click('#set-page');
-  await visit.check('the configurator links to the page of the set', () => location.pathname === '/' && document.querySelector('#summary').textContent !== '');
-  await visit.click('a[href="/configure"]');
-  await visit.settled();
-  visit.findings.check('which links back', await visit.page.evaluate(() => location.pathname === '/configure'));
-}
-
 export async function symlinkedFile(visit, site, { startView, scratch }) {
   if (site.file) return;
   const text = '# Mine.\r\n[layout]\r\npins = [\r\n  5, # first\r\n  8,\r\n]\r\n# the end\r\n';

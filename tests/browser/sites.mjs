@@ -35,5 +35,5 @@ export async function viewSite(binary, folder, [configuration, ...options]) {
     child.once('exit', (code) => fail(new Error(`pinswitch view ended with ${code}`)));
   });
   const ended = new Promise((done) => child.once('exit', done));
-  return { name: 'server', address: `${origin}/configure`, origin, followed: join(folder, configuration), end: () => { child.kill(); return ended; } };
+  return { name: 'server', address: `${origin}/`, origin, followed: join(folder, configuration), end: () => { child.kill(); return ended; } };
 }

@@ -97,9 +97,9 @@ fn pictures_match_the_output() {
     let served = Preview::start(folder.path(), "three-double");
     let (picture, size) = CONFIGURATOR;
     if accept {
-        photograph(&format!("http://{}/configure", served.address), &documents.join(picture), size);
+        photograph(&format!("http://{}/", served.address), &documents.join(picture), size);
     }
-    pages.push_str(&format!("{}  {picture}\n", sha256(served.get("/configure").as_bytes())));
+    pages.push_str(&format!("{}  {picture}\n", sha256(served.get("/").as_bytes())));
     if accept {
         std::fs::write(documents.join(PAGES), pages).unwrap();
     } else {

@@ -370,7 +370,7 @@ fn the_server_answers_while_a_folder_is_busy() {
         }
         assert!(save(&preview, 13.0)["error"].is_string());
         std::thread::sleep(Duration::from_millis(2500));
-        let state = preview.state(0);
+        let state = preview.state("");
         assert!(state["trouble"].as_str().unwrap().contains("not an ordinary file"), "{state:.300}");
         assert!(preview.get("/").contains("<html"));
     }
@@ -378,7 +378,7 @@ fn the_server_answers_while_a_folder_is_busy() {
     std::fs::write(&file, "[shell]\nwidth_mm = 12\n").unwrap();
     let is_shown = (0..100).any(|_| {
         std::thread::sleep(Duration::from_millis(100));
-        preview.state(0)["trouble"].is_null()
+        preview.state("")["trouble"].is_null()
     });
     assert!(is_shown, "the restored file is not shown");
 }

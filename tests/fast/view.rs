@@ -25,9 +25,9 @@ fn other_hosts_and_origins_are_refused() {
         format!("{host}Origin: http://evil.example\r\n"),
         format!("{host}Origin: null\r\n"),
     ] {
-        let answer = preview.request("GET /state?after=0", &headers);
+        let answer = preview.request("GET /start?after=x", &headers);
         assert!(answer.starts_with("HTTP/1.1 403"), "{headers:?}: {answer:.200}");
-        assert!(!answer.contains("manifest"));
+        assert!(!answer.contains("layout.pins"));
     }
     for method in ["POST", "PUT", "DELETE", "TRACE", "OPTIONS"] {
         let answer = preview.request(&format!("{method} /"), &host);
@@ -59,9 +59,9 @@ fn the_configurator_saves_the_followed_file() {
     let text = "# mine\n[layout]\npins = [5, 8, 11] # three\n\n[shell]\nwidth_mm = 14\n";
     std::fs::write(folder.path().join("mine.toml"), text).unwrap();
     let preview = Preview::start(folder.path(), "mine.toml");
-    let page = preview.request("GET /configure", &preview.host());
+    let page = preview.request("GET /", &preview.host());
     let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap();
-    assert!(policy.contains("worker-src blob:") && page.contains(&format!("content=\"{policy}\"")));
+    assert!(page.contains(&format!("content=\"{policy}\"")));
     let start = preview.request("GET /start", &preview.host());
     let start: serde_json::Value = serde_json::from_str(start.split_once("\r\n\r\n").unwrap().1).unwrap();
     assert_eq!(start["source"]["file"], "mine.toml");
@@ -167,18 +167,19 @@ fn headers_and_connections_are_bounded() {
     let answer = preview.request("GET /", &format!("{host}{many}"));
     assert!(!answer.starts_with("HTTP/1.1 200"), "{answer:.200}");
 
+    let known = preview.state("")["version"].as_str().unwrap().to_owned();
     let before = preview.threads();
     let waiting: Vec<_> = (0..50)
         .map(|_| {
             let mut stream = preview.connect();
-            write!(stream, "GET /state?after=1 HTTP/1.1\r\n{host}\r\n").unwrap();
+            write!(stream, "GET /start?after={known} HTTP/1.1\r\n{host}\r\n").unwrap();
             stream
         })
         .collect();
     // The page is served meanwhile, and waiting requests need no threads.
     assert!(preview.request("GET /", &host).starts_with("HTTP/1.1 200"));
     assert!(preview.threads() <= before + 2, "{before} threads became {}", preview.threads());
-    assert!(preview.request("GET /state?after=1", &host).starts_with("HTTP/1.1 503"));
+    assert!(preview.request(&format!("GET /start?after={known}"), &host).starts_with("HTTP/1.1 503"));
     drop(waiting);
 }
 
@@ -189,6 +190,8 @@ fn a_partial_save_is_not_shown() {
     let file = folder.path().join("mine.toml");
     let good = std::fs::read_to_string(&file).unwrap();
     let preview = Preview::start(folder.path(), "mine.toml");
+    let first = preview.state("");
+    assert_eq!(first["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
     let changed = good.replace("[5, 8, 11]", "[6, 8, 10]");
     // An editor that truncates the file and writes it in pieces.
     let mut writer = std::fs::File::create(&file).unwrap();
@@ -197,12 +200,40 @@ fn a_partial_save_is_not_shown() {
         writer.write_all(piece).unwrap();
     }
     drop(writer);
-    let state = preview.state(1);
-    assert_eq!(state["version"], 2);
-    assert!(state["data"]["layout"].as_str().unwrap().contains("3 of 15: 6 8 10"), "{}", state["trouble"]);
+    let state = preview.state(first["version"].as_str().unwrap());
+    assert!(state["version"].as_str().unwrap().starts_with("2-"), "{}", state["version"]);
+    assert_eq!(state["values"]["layout.pins"], serde_json::json!([6, 8, 10]), "{}", state["trouble"]);
     // A save that is never completed.
     std::fs::write(&file, "").unwrap();
-    let state = preview.state(2);
+    let state = preview.state(state["version"].as_str().unwrap());
     assert!(state["trouble"].as_str().unwrap().contains("empty"), "{}", state["trouble"]);
-    assert!(preview.request("GET /", &preview.host()).contains("3 of 15: 6 8 10"));
+    assert_eq!(state["values"]["layout.pins"], serde_json::json!([6, 8, 10]));
+}
+
+#[test]
+fn an_invalid_save_keeps_the_last_version() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["init", "three-double", "--out", "mine.toml"]);
+    let preview = Preview::start(folder.path(), "mine.toml");
+    let file = folder.path().join("mine.toml");
+    let good = std::fs::read_to_string(&file).unwrap();
+    let after = |version: &serde_json::Value| preview.state(version.as_str().unwrap());
+    let first = preview.state("");
+    std::fs::write(&file, good.replace("[5, 8, 11]", "[5, 99]")).unwrap();
+    let state = after(&first["version"]);
+    assert!(state["trouble"].as_str().unwrap().contains("layout.pins"), "{}", state["trouble"]);
+    assert_eq!(state["values"], first["values"]);
+    std::fs::write(&file, &good).unwrap();
+    let state = after(&state["version"]);
+    assert!(state["trouble"].is_null(), "{}", state["trouble"]);
+    assert_eq!(state["stamp"], first["stamp"]);
+}
+
+#[test]
+fn a_port_in_use_is_refused() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    let output = binary().args(["view", "three-double", "--port", &port]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("give another port"));
 }

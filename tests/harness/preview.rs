@@ -68,9 +68,9 @@ impl Preview {
         answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap()
     }
 
-    /// Returns the state that follows a version.
-    pub(crate) fn state(&self, after: u64) -> serde_json::Value {
-        serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
+    /// Returns the state that follows a version; the present one after none.
+    pub(crate) fn state(&self, after: &str) -> serde_json::Value {
+        serde_json::from_str(&self.get(&format!("/start?after={after}"))).unwrap()
     }
 
     /// Returns the largest memory of the server so far in kilobytes; `None` on systems without `/proc`.

@@ -14,6 +14,5 @@ mod editors;
 mod gltf;
 mod hardware;
 mod judges;
-mod page;
 mod recipes;
 mod release;

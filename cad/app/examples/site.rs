@@ -9,8 +9,8 @@ use std::path::PathBuf;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use lzma_rust2::{CheckType, LzmaOptions, XzOptions, XzWriter};
-use pinswitch_app::page::{LIBRARIES, PackedModule, configurator_html};
 use pinswitch_app::shared_texts::clear_texts;
+use pinswitch_switch::formats::page::{PackedModule, PageState, SHARED_TEXTS, worker_script};
 use walrus::{ModuleConfig, passes};
 
 /// Exports that the page uses.
@@ -23,11 +23,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut bytes = reachable(&std::fs::read(module)?)
         .map_err(|error| format!("{} is not a WebAssembly module: {error}", module.display()))?;
-    let library_offsets = clear_texts(&mut bytes, &LIBRARIES);
-    let module = PackedModule { base64: STANDARD.encode(xz(&bytes)?), library_offsets };
+    let offsets = clear_texts(&mut bytes, &SHARED_TEXTS);
+    if let Some(missing) = offsets.iter().position(Option::is_none) {
+        return Err(format!("text {missing} of the page is not in the module, which would be larger").into());
+    }
+    let module = PackedModule { base64: STANDARD.encode(xz(&bytes)?), worker: worker_script(), offsets };
     std::fs::create_dir_all(folder)?;
     let page = folder.join("index.html");
-    std::fs::write(&page, configurator_html(Some(&module)))?;
+    std::fs::write(&page, PageState::File(&module).html())?;
     println!("{}", page.display());
     Ok(())
 }

@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn every_verdict_and_effect_has_words() {
-        let words = include_str!("../page/text.js");
+        let words = include_str!("../../switch/page/text.js");
         let vocabulary = Vocabulary::built_in();
         let effects = vocabulary.acting_order().iter().map(|effect| effect.id());
         for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {

@@ -54,7 +54,7 @@ fn page_data(
     let mut set = Set::new(&built, &prediction, &[]).map_err(set_refusal)?;
     // The plates of the files, so that the page shows the same arrangement.
     set.manifest.plates = plate_entries(&built);
-    let data = PageData::new(&built, &prediction, &set.manifest, Some(1));
+    let data = PageData::new(&built, &prediction, &set.manifest);
     if quality == Quality::Coarse {
         cache.built = Some(built);
     }

@@ -18,8 +18,9 @@ use crate::calibrated_curve::calibrated_curve;
 use crate::calibrated_switch::CalibratedSwitch;
 use crate::prediction_cache::MODEL_NAME;
 use crate::refusal::Refusal;
-use crate::request::{SearchRequest, Values};
-use crate::values::{changed_values, configuration};
+use crate::request::SearchRequest;
+use crate::values::configuration;
+use crate::{Values, changed_values};
 
 /// Most sources of uncertainty of a design.
 const MAX_SOURCES: usize = 3;

@@ -15,8 +15,7 @@
 //!   [`configuration`] and [`changed_values`] convert them.
 //! - [`CalibratedSwitch`] and [`calibrated_curve`] apply a calibrated model to a design whose
 //!   dimensions differ from the rig's.
-//! - [`page`] is the HTML file of the configurator, and [`shared_texts`] clears texts in the module that it
-//!   contains.
+//! - [`shared_texts`] clears texts in the module that the page (`pinswitch_switch::formats::page`) also contains.
 //!
 //! # Examples
 //!
@@ -59,7 +58,6 @@ mod files;
 mod measurement_file;
 #[cfg(target_arch = "wasm32")]
 mod module;
-pub mod page;
 mod prediction_cache;
 mod reach;
 mod refusal;
@@ -77,8 +75,8 @@ use serde::Serialize;
 
 pub use calibrated_curve::{calibrated_curve, calibrated_curve_at};
 pub use calibrated_switch::CalibratedSwitch;
-pub use request::Values;
-pub use values::{changed_values, configuration};
+pub use pinswitch_switch::formats::page::{Values, changed_values};
+pub use values::configuration;
 
 /// The answer to a request.
 #[derive(Clone, Debug, PartialEq)]

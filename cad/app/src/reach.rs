@@ -6,9 +6,9 @@
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
+use pinswitch_switch::formats::page::Values;
 use serde::Serialize;
 
-use crate::request::Values;
 use crate::values::configuration;
 
 /// Values that are tried from the one of the design to each end of the range.

@@ -1,12 +1,7 @@
 //! Requests of the page.
 
-use std::collections::BTreeMap;
-
+use pinswitch_switch::formats::page::Values;
 use serde::Deserialize;
-use serde_json::Value;
-
-/// Values that differ from the defaults, by `table.key`.
-pub type Values = BTreeMap<String, Value>;
 
 /// One request; `command` names its kind.
 #[derive(Debug, Deserialize)]

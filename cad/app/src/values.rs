@@ -1,13 +1,11 @@
 //! Conversion between the values of the page and configurations.
 
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
-use pinswitch_switch::config::parameter::Parameter;
 use pinswitch_switch::config::{Configuration, Name, assign, read};
-use pinswitch_switch::documents::toml_to_json;
+use pinswitch_switch::formats::page::{Values, changed_values};
 use serde::Serialize;
 
 use crate::refusal::Refusal;
-use crate::request::Values;
 
 /// Longest configuration file that is read, in bytes.
 const MAX_CONFIGURATION_BYTES: usize = 1 << 20;
@@ -23,17 +21,6 @@ pub fn configuration(values: &Values) -> Result<Configuration, Diagnostic> {
         assign(&mut configuration, &format!("{path}={value}"))?;
     }
     Ok(configuration)
-}
-
-/// Returns the values in which a configuration differs from the defaults.
-pub fn changed_values(configuration: &Configuration) -> Values {
-    let defaults = Configuration::default();
-    let value = |p: &Parameter<Configuration>, c: &Configuration| (p.get)(c);
-    Configuration::PARAMETERS
-        .iter()
-        .filter(|p| value(p, configuration).to_string() != value(p, &defaults).to_string())
-        .map(|p| (p.path(), toml_to_json(&value(p, configuration))))
-        .collect()
 }
 
 /// The values of a configuration file, or why it is refused.

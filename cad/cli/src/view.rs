@@ -1,5 +1,4 @@
-//! `pinswitch view`: serves the page of a set, which follows its configuration, and the
-//! configurator.
+//! `pinswitch view`: serves the page, which follows a configuration and changes it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,22 +10,17 @@ use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_store::{RewriteError, rewrite_file};
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
-use pinswitch_switch::prediction::Prediction;
 
 use super::input::{read_file, read_text_file};
-use super::law::LawChoice;
 use super::source::Source;
 use super::write::{lock_policy, write_error};
 use super::{Failure, print_text};
 
 /// Show a configuration in the browser, and change it there.
 ///
-/// Serves two pages on 127.0.0.1, and answers no other sites' pages. The page of the set, at /, is
-/// rebuilt whenever the file changes; if the file becomes invalid, the page shows the error and
-/// keeps the last valid version. The configurator, at /configure, starts with the same
-/// configuration and writes the file only on request. Without a configuration, the page shows
-/// three-double and the configurator continues with its last visit. --law selects the curve of the
-/// page at /; the configurator shows the physics law next to the others. End with Ctrl-C.
+/// Serves a page on 127.0.0.1, and answers no other sites' pages. The page follows the file: if another program changes it,
+/// it shows the new version, or the error and the last valid version. It writes the file only on request. Without a
+/// configuration, it continues with its last visit, or starts with three-double. End with Ctrl-C.
 #[derive(Args, Clone, Debug)]
 #[command(mut_arg("config", |a| a.required(false)))]
 #[command(after_help = "Examples:
@@ -35,8 +29,6 @@ use super::{Failure, print_text};
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
-    #[command(flatten)]
-    law: LawChoice,
     /// Port to serve on; 0 takes any free port.
     #[arg(long, default_value_t = 8737)]
     port: u16,
@@ -52,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ServerError::Configuration(diagnostic) => Failure::bad_input(diagnostic),
     })?;
     let address = server.address();
-    print_text(&format!("http://{address}\nhttp://{address}/configure\n"))?;
+    print_text(&format!("http://{address}\n"))?;
     if let Some(file) = source.file() {
         log::info!("following {}; end with Ctrl-C", file.display());
     }
@@ -64,7 +56,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 #[derive(Debug)]
 struct ViewSource {
     source: Source,
-    law: LawChoice,
     file: Option<PathBuf>,
     /// This program, which also answers long requests in a process of their own.
     program: Option<PathBuf>,
@@ -72,8 +63,8 @@ struct ViewSource {
 
 impl ViewSource {
     fn new(arguments: &Arguments) -> Self {
-        let (source, law) = (arguments.source.clone(), arguments.law.clone());
-        Self { file: source.file(), program: std::env::current_exe().ok(), source, law }
+        let source = arguments.source.clone();
+        Self { file: source.file(), program: std::env::current_exe().ok(), source }
     }
 
     /// Returns the followed file, if it is an ordinary one: a pipe cannot be read again, and a server must not wait for
@@ -140,10 +131,6 @@ impl ConfigurationSource for ViewSource {
             None => self.source.design(),
         };
         design.map_err(|failure| diagnostic(&failure))
-    }
-
-    fn prediction(&self, design: &Design) -> Result<Prediction, Diagnostic> {
-        self.law.prediction(design).map_err(|failure| diagnostic(&failure))
     }
 
     fn worker(&self) -> Option<Command> {

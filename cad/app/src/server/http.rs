@@ -13,15 +13,14 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{HeaderMap, Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
-use pinswitch_switch::formats::page::page_policy;
+use pinswitch_switch::formats::page::PageState;
 use tokio::net::TcpListener;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit, watch};
 use tokio_io_timeout::TimeoutStream;
 
 use super::configurator::Configurator;
-use super::state::{State, data_after, values_after};
+use super::state::{State, values_after};
 use crate::Answer;
-use crate::page::{configurator_html, configurator_policy};
 
 /// Time after which a long poll is answered with the present state; the page then repeats it.
 const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
@@ -51,7 +50,7 @@ const MAX_SHORT_BODY_BYTES: usize = 64 << 10;
 /// Longest body of a request, in bytes. The engine refuses a table of this size and recommends the
 /// command line.
 const MAX_BODY_BYTES: usize = 64 << 20;
-/// Paths to which the configurator posts requests.
+/// Paths to which the page posts requests.
 const POST_PATHS: [&str; 2] = ["/answer", "/save"];
 
 /// Everything from which requests are answered.
@@ -66,7 +65,6 @@ struct Site {
     address: SocketAddr,
     policy: String,
     configurator: Arc<Configurator>,
-    configurator_policy: String,
 }
 
 /// The permit of the posted request of a connection.
@@ -96,9 +94,8 @@ pub(super) async fn serve(
         posts: Arc::new(Semaphore::new(MAX_POSTS)),
         arriving_bytes: Semaphore::new(MAX_ARRIVING_BYTES),
         address,
-        policy: page_policy(),
+        policy: PageState::Served.policy(),
         configurator: Arc::new(configurator),
-        configurator_policy: configurator_policy(),
     });
     let connections = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     while let Ok(permit) = Arc::clone(&connections).acquire_owned().await {
@@ -140,19 +137,8 @@ impl Site {
         let query = request.uri().query().unwrap_or_default();
         let known = query.strip_prefix("after=").unwrap_or_default();
         match path.as_str() {
-            "/" => {
-                let page = Arc::clone(&self.states.borrow().page);
-                self.response(StatusCode::OK, "text/html; charset=utf-8", page.to_string())
-            }
-            "/configure" => {
-                let page = configurator_html(None);
-                let mut response = self.response(StatusCode::OK, "text/html; charset=utf-8", page);
-                if let Ok(policy) = HeaderValue::from_str(&self.configurator_policy) {
-                    response.headers_mut().insert("content-security-policy", policy);
-                }
-                response
-            }
-            "/state" | "/start" => {
+            "/" => self.response(StatusCode::OK, "text/html; charset=utf-8", PageState::Served.html()),
+            "/start" => {
                 let Ok(_permit) = self.long_polls.try_acquire() else {
                     return self.response(
                         StatusCode::SERVICE_UNAVAILABLE,
@@ -161,12 +147,8 @@ impl Site {
                     );
                 };
                 let states = self.states.clone();
-                let state = match path.as_str() {
-                    "/state" => data_after(states, known.parse().unwrap_or(0), LONG_POLL_TIMEOUT).await,
-                    _ => {
-                        values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.source_json()).await
-                    }
-                };
+                let source = self.configurator.source_json();
+                let state = values_after(states, known, LONG_POLL_TIMEOUT, &source).await;
                 self.response(StatusCode::OK, "application/json", state)
             }
             path if POST_PATHS.contains(&path) => self.answer_post(request.into_body(), path, post).await,
@@ -374,7 +356,7 @@ mod tests {
                 assert_eq!(status_at(path, Method::POST, &headers(Some(foreign))), Some(403), "{foreign}");
             }
         }
-        assert_eq!(status_at("/state", Method::POST, &own), Some(405));
+        assert_eq!(status_at("/start", Method::POST, &own), Some(405));
     }
 
     #[test]

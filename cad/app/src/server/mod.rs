@@ -1,8 +1,7 @@
-//! The local server of `pinswitch view`: the page of a set at `/`, which follows its file, and the
-//! configurator at `/configure`, which writes the file.
+//! The local server of `pinswitch view`: the page, which follows a file and writes it.
 //!
-//! The server knows HTTP, pages and engines. A front end knows the command line and the file
-//! system, and implements [`ConfigurationSource`]. [`Server::bind`] builds the page and opens the
+//! The server knows HTTP, the page and engines. A front end knows the command line and the file
+//! system, and implements [`ConfigurationSource`]. [`Server::bind`] builds the parts and opens the
 //! port, so that errors of both come before any output; [`Server::run`] answers requests until the
 //! process ends. It listens on 127.0.0.1 and answers its own pages only.
 
@@ -34,7 +33,7 @@ pub enum ServerError {
     Configuration(Diagnostic),
     /// The port is in use, or not allowed.
     Port(Diagnostic),
-    /// The page or the runtime cannot be made.
+    /// The runtime cannot be made.
     Internal(Diagnostic),
 }
 
@@ -69,14 +68,14 @@ pub struct Server {
     runtime: Runtime,
     listener: TcpListener,
     address: SocketAddr,
-    /// The content of the followed file from which the first page is built: a save during the build
+    /// The content of the followed file from which the first state is built: a save during the build
     /// is noticed.
     content: Vec<u8>,
     sender: watch::Sender<State>,
 }
 
 impl Server {
-    /// Builds the first page and listens on 127.0.0.1; port 0 takes any free port.
+    /// Builds the first state and listens on 127.0.0.1; port 0 takes any free port.
     ///
     /// # Errors
     /// [`ServerError`] if the configuration cannot be built or the port cannot be opened.

@@ -7,7 +7,6 @@ use std::process::Command;
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
-use pinswitch_switch::prediction::Prediction;
 
 /// The configuration that a server shows: a file or a template, with everything that the user's
 /// options change in it.
@@ -54,12 +53,6 @@ pub trait ConfigurationSource: Debug + Send + Sync {
     /// # Errors
     /// If the content or an option is invalid, or the design cannot be built.
     fn design(&self, content: &[u8]) -> Result<Design, Diagnostic>;
-
-    /// Predicts the curve on the page of the set.
-    ///
-    /// # Errors
-    /// If the law of the user's choice does not apply to the design.
-    fn prediction(&self, design: &Design) -> Result<Prediction, Diagnostic>;
 
     /// Returns the command of a process that answers one long request: it reads the request with
     /// [`read_request`](super::read_request) from standard input, writes the answer to standard

@@ -11,7 +11,6 @@ use crate::built::{Built, MeshedBody};
 use crate::design::Design;
 use crate::design::rules::{Check, checklist};
 use crate::documents::{Manifest, friction_csv, layout_text};
-use crate::output::SetError;
 use crate::parts::{Role, Substance};
 use crate::prediction::Prediction;
 use pinswitch_solid::mesh::{Mesh, Vector3};
@@ -21,13 +20,17 @@ use pinswitch_solid::profile::polar;
 /// Number of loads of pins and tendon.
 const STATES: usize = 25;
 
+/// Most corners of a mesh whose indices have two bytes.
+const SHORT_INDICES: usize = 1 << 16;
+/// Steps per mm of the gaps of the tendon: 0.1 µm, far below what a picture shows.
+const GAP_STEPS: f64 = 1e4;
+
 /// Lightest load as a share of the heaviest. Without load, the shape of the tendon is undefined.
 const MIN_SHARE: f64 = 1e-3;
 
 /// The data of the page.
 #[derive(Debug, Serialize)]
 pub struct PageData {
-    live: Option<u64>,
     layout: String,
     meshes: Vec<MeshData>,
     bodies: Vec<Body>,
@@ -43,7 +46,8 @@ pub struct PageData {
     manifest: Manifest,
 }
 
-/// A mesh in single precision, little-endian and base64. `file` is the STL of a printed part.
+/// A mesh, little-endian and base64: corners in single precision, and indices of two bytes if these are enough, else of
+/// four. `file` is the STL of a printed part.
 #[derive(Debug, Serialize)]
 struct MeshData {
     file: Option<String>,
@@ -88,13 +92,9 @@ struct ContactStates {
 }
 
 impl PageData {
-    /// Returns whether the page is a live preview.
-    pub(super) fn is_live(&self) -> bool {
-        self.live.is_some()
-    }
-
-    /// The data of a page. `live` is the version of the state of a live preview.
-    pub fn new(built: &Built, prediction: &Prediction, manifest: &Manifest, live: Option<u64>) -> Self {
+    /// The data of a page.
+    #[must_use]
+    pub fn new(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Self {
         let design = built.design();
         let contact = contact_states(design);
         let stl = |name: &str| Some(format!("{name}.stl"));
@@ -126,7 +126,6 @@ impl PageData {
             });
         }
         Self {
-            live,
             layout: layout_text(design.configuration()),
             meshes,
             bodies,
@@ -142,19 +141,6 @@ impl PageData {
             checks: checklist(design, manifest.widest_bridge_mm()),
             manifest: manifest.clone(),
         }
-    }
-
-    /// Returns the name of the set.
-    pub(super) fn title(&self) -> &str {
-        &self.manifest.name
-    }
-
-    /// Returns the data as JSON.
-    ///
-    /// # Errors
-    /// [`SetError::Encoding`] for a number that JSON cannot represent, which a valid design does not have.
-    pub fn json(&self) -> Result<String, SetError> {
-        serde_json::to_string(self).map_err(SetError::encoding)
     }
 }
 
@@ -178,11 +164,20 @@ fn into_assembly(body: &MeshedBody, pose: Pose) -> nalgebra::Matrix4<f64> {
     lift * nalgebra::Matrix4::new_nonuniform_scaling(&turn) * nalgebra::Matrix4::new_translation(&back)
 }
 
+fn rounded(gap_mm: f64) -> f64 {
+    (gap_mm * GAP_STEPS).round() / GAP_STEPS
+}
+
 #[allow(clippy::cast_possible_truncation)]
 fn encoded(mesh: &Mesh, file: Option<String>) -> MeshData {
     let positions: Vec<u8> =
         mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).flat_map(|v| (v as f32).to_le_bytes()).collect();
-    let triangles: Vec<u8> = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+    let indices = mesh.triangles.iter().flatten();
+    let triangles: Vec<u8> = if mesh.positions.len() <= SHORT_INDICES {
+        indices.flat_map(|i| (*i as u16).to_le_bytes()).collect()
+    } else {
+        indices.flat_map(|i| i.to_le_bytes()).collect()
+    };
     MeshData { file, positions: STANDARD.encode(positions), triangles: STANDARD.encode(triangles) }
 }
 
@@ -221,7 +216,7 @@ fn contact_states(design: &Design) -> ContactStates {
         .collect();
     ContactStates {
         angle_rad: profiles.first().map(|p| p.angle_rad.clone()).unwrap_or_default(),
-        gap_mm: profiles.into_iter().map(|p| p.gap_mm).collect(),
+        gap_mm: profiles.into_iter().map(|p| p.gap_mm.into_iter().map(rounded).collect()).collect(),
         load_n,
         axis_radius_mm: bed.axis_radius_mm(),
         tendon_radius_mm: bed.tendon_radius_mm,

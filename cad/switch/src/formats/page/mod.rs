@@ -1,21 +1,32 @@
-//! `report.html`: a self-contained offline page of a set, with the assembly in 3D, curve, bill of materials, checks and
-//! downloads.
+//! The page: what a person sees of a switch in a browser, in three states.
+//!
+//! - A *published file* contains the engine as a WebAssembly module.
+//! - *Served* by `pinswitch view`, it asks the server.
+//! - As a *report*, `report.html` of a set, it is read only, and contains the answers.
+//!
+//! The files of the page are in `cad/switch/page`, the engine is in `cad/app`.
 
 mod data;
+mod fields;
+mod html;
 mod joint;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use pinswitch_friction::Law;
+use serde::Serialize;
 
 use super::{Format, Inclusion};
 use crate::built::Built;
+use crate::config::to_toml;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use crate::scene::exploded_png;
-use pinswitch_report::html::{escape, filled, json_in_script, policy};
 
 pub use data::PageData;
+pub use fields::{Field, Values, changed_values, fields};
+pub use html::{PackedModule, PageState, RecordedSet, SHARED_TEXTS, worker_script};
 
 pub(super) const FORMAT: Format = Format {
     name: "page",
@@ -24,54 +35,70 @@ pub(super) const FORMAT: Format = Format {
     make,
 };
 
+/// Answers to the requests of a report.
+#[derive(Serialize)]
+struct RecordedAnswers<'a> {
+    facts: RecordedFacts<'a>,
+    design: RecordedDesign<'a>,
+}
+
+/// What the page needs once. A report starts no other design, so that it needs neither templates nor formats.
+#[derive(Serialize)]
+struct RecordedFacts<'a> {
+    generator: &'a str,
+    fields: Vec<Field>,
+    templates: [(); 0],
+    formats: [(); 0],
+    largest_table_mb: usize,
+    state: RecordedState,
+}
+
+/// The state that a report shows.
+#[derive(Serialize)]
+struct RecordedState {
+    values: Values,
+    /// The model of a calibration that made the curve.
+    model: Option<RecordedModel>,
+}
+
+#[derive(Serialize)]
+struct RecordedModel {
+    name: &'static str,
+}
+
+/// The design of the set, as the engine answers it.
+#[derive(Serialize)]
+struct RecordedDesign<'a> {
+    data: &'a PageData,
+    toml: String,
+    /// Why it is refused: a set that was written is not.
+    trouble: Option<()>,
+}
+
 fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
-    let data = PageData::new(built, prediction, manifest, None);
-    let still = format!("data:image/png;base64,{}", STANDARD.encode(exploded_png(built)?));
-    Ok(vec![OutputFile::new("report.html", page_html(&data, &still)?)])
-}
-
-const HTML: &str = include_str!("page.html");
-const CONFIGURATOR: &str = "\n  <p><a href=\"/configure\">Edit in the configurator</a></p>";
-const CSS: &str = include_str!("page.css");
-const JS: &str = concat!("'use strict';\n", include_str!("assembly.js"), include_str!("page.js"));
-/// The script of the 3D view, which the configurator also uses.
-pub const ASSEMBLY: &str = include_str!("assembly.js");
-// Vendored builds, see vendor.md.
-/// Vendored three.js.
-pub const THREE: &str = include_str!("three.min.js");
-/// Vendored uPlot.
-pub const UPLOT: &str = include_str!("uplot.min.js");
-/// The style of uPlot.
-pub const UPLOT_CSS: &str = include_str!("uplot.min.css");
-
-/// Returns the page of `data`. `still` is the data URL of a picture for browsers without WebGL; a live preview does without
-/// it.
-///
-/// # Errors
-/// As [`PageData::json`].
-pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
-    let json = data.json()?;
-    let (title, policy) = (escape(data.title()), page_policy());
-    Ok(filled(HTML, |place| match place {
-        "TITLE" => Some(title.as_str().into()),
-        "UPLOT_CSS" => Some(UPLOT_CSS.into()),
-        "CSS" => Some(CSS.into()),
-        "THREE" => Some(THREE.into()),
-        "UPLOT" => Some(UPLOT.into()),
-        "JS" => Some(JS.into()),
-        "STILL" => Some(still.into()),
-        // Only a server has the configurator.
-        "CONFIGURATOR" => Some(if data.is_live() { CONFIGURATOR } else { "" }.into()),
-        "DATA" => Some(json_in_script(&json).into()),
-        "POLICY" => Some(policy.as_str().into()),
-        _ => None,
-    }))
-}
-
-/// Returns the Content-Security-Policy of the page, saved or served: only its three scripts run.
-#[must_use]
-pub fn page_policy() -> String {
-    policy(&[THREE, UPLOT, JS])
+    let data = PageData::new(built, prediction, manifest);
+    let configuration = built.design().configuration();
+    let is_calibrated = prediction.curve.law == Law::Calibrated;
+    let answers = RecordedAnswers {
+        facts: RecordedFacts {
+            generator: &manifest.generator,
+            fields: fields(),
+            templates: [],
+            formats: [],
+            largest_table_mb: 0,
+            state: RecordedState {
+                values: changed_values(configuration),
+                model: is_calibrated.then_some(RecordedModel { name: "model.toml" }),
+            },
+        },
+        design: RecordedDesign { data: &data, toml: to_toml(configuration), trouble: None },
+    };
+    let recorded = RecordedSet {
+        title: manifest.name.clone(),
+        answers: serde_json::to_string(&answers).map_err(SetError::encoding)?,
+        still: format!("data:image/png;base64,{}", STANDARD.encode(exploded_png(built)?)),
+    };
+    Ok(vec![OutputFile::new("report.html", PageState::Report(&recorded).html())])
 }
 
 #[cfg(test)]
@@ -84,9 +111,9 @@ mod tests {
     use crate::warnings::Warning;
     use pinswitch_diagnostic::codes;
 
-    /// The text between `start` and the next `end`, and the rest.
-    fn between<'a>(text: &'a str, start: &str, end: &str) -> (&'a str, &'a str) {
-        text.split_once(start).and_then(|(_, rest)| rest.split_once(end)).unwrap()
+    /// The text between `start` and the next `end`.
+    fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
+        text.split_once(start).and_then(|(_, rest)| rest.split_once(end)).unwrap().0
     }
 
     #[test]
@@ -96,19 +123,16 @@ mod tests {
         let built = Built::new(Design::new(configuration).unwrap()).unwrap();
         let prediction = Prediction::of(built.design());
         let mut manifest = Set::new(&built, &prediction, &named(&["stl"]).unwrap()).unwrap().manifest;
-        let text = "<!--<script>{{JS}}{{DATA}}</script>";
+        let text = "<!--<script>{{JS}}{{REPORT}}</script>";
         manifest.warnings.push(Warning::new(codes::THIN_PLACE, text));
-        let data = PageData::new(&built, &prediction, &manifest, None);
-        let page = page_html(&data, "").unwrap();
-        let (json, rest) = between(&page, "id=\"data\">", "</script>");
-        assert!(!json.contains('<') && json.contains("{{JS}}{{DATA}}"));
+        let files = make(&built, &prediction, &manifest).unwrap();
+        let page = std::str::from_utf8(&files[0].bytes).unwrap();
+        let json = between(page, "id=\"report\">", "</script>");
+        assert!(!json.contains('<') && json.contains("{{JS}}{{REPORT}}"));
         let read: serde_json::Value = serde_json::from_str(json).unwrap();
-        let warning = read["manifest"]["warnings"].as_array().unwrap().last().unwrap();
-        assert_eq!(warning, "<!--<script>{{JS}}{{DATA}}</script>");
-        // The scripts of the page are those of the policy.
-        assert!(page.contains(&page_policy()));
-        for script in [THREE, UPLOT, JS] {
-            assert!(rest.contains(&format!("<script>{script}</script>")));
-        }
+        let warning = read["design"]["data"]["manifest"]["warnings"].as_array().unwrap().last().unwrap();
+        assert_eq!(warning, text);
+        assert_eq!(read["facts"]["state"]["values"]["label.text"], "<!--<script>");
+        assert!(read["design"]["toml"].as_str().unwrap().contains("<!--<script>"));
     }
 }

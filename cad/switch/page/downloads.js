@@ -70,6 +70,7 @@ class Downloads {
   }
 
   showFiles(files) {
+    byId('beside').hidden = !files.some((file) => file.isBeside);
     const groups = new Map();
     for (const file of files) {
       const end = file.name.split('.').pop().toLowerCase();
@@ -82,10 +83,10 @@ class Downloads {
     byId('file-list').replaceChildren(...sorted.map(([kind, members]) => {
       const group = make('section');
       const list = make('ul');
-      for (const { name, bytes } of members) {
+      for (const { name, bytes, isBeside } of members) {
         const item = make('li');
-        const act = button(name, () => this.download({ command: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
-        act.append(make('span', TEXT.megabytes(bytes), { class: 'dim' }));
+        const act = isBeside ? make('a', name, { href: encodeURI(name), download: name, class: 'link' }) : button(name, () => this.download({ command: 'file', name }, name, 'application/octet-stream'), { class: 'link' });
+        if (bytes !== undefined) act.append(make('span', TEXT.megabytes(bytes), { class: 'dim' }));
         item.append(act);
         list.append(item);
       }

@@ -1,4 +1,4 @@
-// The engine in a worker, after `xz-decompress.min.js`. The first message is `{module, libraries}`,
+// The engine in a worker, after `xz-decompress.min.js`. The first message is `{module, texts}`,
 // each other one `{request}`. Answers are `{json}`, `{bytes}`, `{trap}` if the module stopped, or
 // `{failed}` if it does not start.
 
@@ -24,11 +24,11 @@ function stubs(module) {
   return all;
 }
 
-async function instance(packed, libraries) {
+async function instance(packed, texts) {
   if (typeof WebAssembly === 'undefined') throw new Error('no WebAssembly');
   const bytes = new Uint8Array(await unpacked(packed));
-  // Libraries of the page are left out of the packed module.
-  for (const [offset, text] of libraries) bytes.set(new TextEncoder().encode(text), offset);
+  // Texts of the page are left out of the packed module.
+  for (const [offset, text] of texts) bytes.set(new TextEncoder().encode(text), offset);
   const module = await WebAssembly.compile(bytes);
   return (await WebAssembly.instantiate(module, stubs(module))).exports;
 }
@@ -49,7 +49,7 @@ function answerTo(request, { memory, room, answer, free }) {
 
 onmessage = async ({ data }) => {
   if (data.module) {
-    ready = instance(data.module, data.libraries);
+    ready = instance(data.module, data.texts);
     // A failure is the answer to the first request.
     ready.catch(() => {});
     return;

@@ -8,7 +8,7 @@ class ServerFile {
 
   // What the server shows; null in a page with its own engine.
   static async start() {
-    if (byId('module').textContent.trim() || location.protocol === 'file:') return null;
+    if (document.body.dataset.state !== 'served' || location.protocol === 'file:') return null;
     try {
       const response = await fetch('start');
       return response.ok && (response.headers.get('content-type') ?? '').includes('json') ? await response.json() : null;
@@ -18,7 +18,6 @@ class ServerFile {
   }
 
   begin(started) {
-    byId('set-page').hidden = !started;
     if (!started?.source.file) return;
     this.file = started.source.file;
     byId('save').textContent = TEXT.saveTo(this.file);

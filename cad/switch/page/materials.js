@@ -19,7 +19,7 @@ function materialRows(bill, parts) {
     if (inserts) rows.push([TEXT.inserts, `${inserts} x ${thread}`]);
   }
   if (bill.dowels) rows.push([TEXT.dowels, `${bill.dowels.number} x ${formatNumber(bill.dowels.diameter_mm)} x ${formatNumber(bill.dowels.length_mm)} mm`]);
-  for (const item of [bill.mount?.bearing, bill.mount?.axle, bill.mount?.crimp_sleeve, bill.mount?.sheath_stop]) if (item) rows.push([String(item), TEXT.forMount]);
+  for (const item of [bill.pulley_bearing, bill.mount?.bearing, bill.mount?.axle, bill.mount?.crimp_sleeve, bill.mount?.sheath_stop]) if (item) rows.push([String(item), TEXT.forMount]);
   rows.push([TEXT.plastic, `${parts.reduce((sum, p) => sum + p.mass_g, 0).toFixed(1)} g`]);
   return rows;
 }

@@ -1,6 +1,8 @@
 // The state of the page: values that differ from the defaults, a calibrated model, targets; its
 // history; its address.
 
+// A report of a set shows one design.
+const IS_REPORT = document.body.dataset.state === 'report';
 const HASH_VERSION = 1;
 // Most characters of a packed model; a calibration has some five thousand.
 const MAX_MODEL_LENGTH = 60000;
@@ -33,6 +35,7 @@ class State extends EventTarget {
 
   // Replaces parts of the state. Consecutive steps with the same `name` are one.
   change(parts, name) {
+    if (IS_REPORT) return;
     const next = { ...this.now, ...parts };
     if (parts.values) next.values = this.withoutDefaults(parts.values);
     if (sameValue(next, this.now)) return;
@@ -199,14 +202,14 @@ async function unpackModel(packed) {
 // ---- between visits -----------------------------------------------------------------------------------------------
 
 // Without access to storage nothing is remembered. An embedded page remembers nothing: the
-// surrounding page does.
+// surrounding page does. A report has nothing to remember.
 const isEmbedded = () => new URLSearchParams(location.search).has('embed');
 function remember(what) {
-  if (isEmbedded()) return;
+  if (IS_REPORT || isEmbedded()) return;
   try { localStorage.setItem(STORAGE_KEY, JSON.stringify(what)); } catch { /* Not allowed in private windows and for files; the design is in the address. */ }
 }
 function remembered() {
-  if (isEmbedded()) return {};
+  if (IS_REPORT || isEmbedded()) return {};
   try {
     const { hash, kept, ...rest } = JSON.parse(localStorage.getItem(STORAGE_KEY)) ?? {};
     // Entries of earlier versions, and edited ones, may be invalid.

@@ -19,7 +19,8 @@ class Handles {
   }
 
   grip(kind, name, drag, nudge) {
-    const element = make('div', undefined, { class: `grip ${kind}`, role: 'slider', tabindex: 0, 'aria-label': name, 'aria-valuemin': 0 });
+    // In a report a mark, which is not moved.
+    const element = make('div', undefined, { class: `grip ${kind}`, ...(IS_REPORT ? { inert: '' } : { role: 'slider', tabindex: 0 }), 'aria-label': name, 'aria-valuemin': 0 });
     draggable(element, { start: (e) => { e.stopPropagation(); element.focus(); return true; }, move: drag });
     element.addEventListener('keydown', (event) => {
       const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], PageUp: [0, 10], PageDown: [0, -10] }[event.key];
@@ -51,7 +52,7 @@ class Handles {
   // The target frictions; without one, a mark on the curve that becomes one when it is moved.
   frictions() {
     const { friction } = this.state.now.targets;
-    if (friction.length || !this.curve.data) return friction;
+    if (friction.length || !this.curve.data || IS_REPORT) return friction;
     const { load_n, friction_n } = this.curve.data.curve;
     const load = Number((0.8 * load_n.at(-1)).toFixed(1));
     return [{ load_n: load, friction_n: Number(at(load_n, friction_n, load).toFixed(2)) }];

@@ -15,6 +15,8 @@ class Pins {
     byId('clear-pins').addEventListener('click', () => state.change({ values: { ...state.now.values, 'layout.pins': [] } }));
     byId('mirror-pins').addEventListener('click', () => this.set(this.pins().map((i) => this.grooves() + 1 - i)));
     this.draw();
+    // A report's drawing is a picture.
+    host.inert = IS_REPORT;
   }
 
   grooves() { return clamp(Math.round(this.state.value('segment.grooves')) || 1, 1, 60); }

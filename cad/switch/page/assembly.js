@@ -1,4 +1,4 @@
-// 3D view of an assembly, with filled cut faces. report.html shows one assembly; the configurator (cad/app/page) shows hundreds.
+// 3D view of an assembly, with filled cut faces. A report shows one assembly, the configurator hundreds.
 // Needs three.js as THREE. The data is `PageData`.
 
 // Decodes base64.
@@ -7,6 +7,13 @@ function bytesOf(base64) {
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i += 1) bytes[i] = text.charCodeAt(i);
   return bytes;
+}
+
+// Corners of a mesh in mm, three numbers each, and three indices of corners per triangle: of two bytes if that is enough.
+function arraysOf({ positions, triangles }) {
+  const corners = new Float32Array(bytesOf(positions).buffer);
+  const Indices = corners.length / 3 <= 65536 ? Uint16Array : Uint32Array;
+  return { positions: corners, indices: new Indices(bytesOf(triangles).buffer) };
 }
 
 const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
@@ -196,8 +203,9 @@ class Assembly {
       const same = before.find((shape) => shape.positions === positions && shape.triangles === triangles);
       if (same) { shapes.set(mesh, same); continue; }
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(positions).buffer), 3));
-      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(triangles).buffer), 1));
+      const arrays = arraysOf({ positions, triangles });
+      geometry.setAttribute('position', new THREE.BufferAttribute(arrays.positions, 3));
+      geometry.setIndex(new THREE.BufferAttribute(arrays.indices, 1));
       shapes.set(mesh, { positions, triangles, geometry, lines: sharpEdges(geometry) });
     }
     this.shapes = [...shapes.values()];

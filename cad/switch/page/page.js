@@ -43,7 +43,7 @@ function showNoticeAbout(about, text, ...actions) {
 function clearNoticeAbout(about) { if (byId('notice').dataset.about === about) showNotice(''); }
 
 function fillTexts() {
-  document.title = TEXT.title;
+  if (!IS_REPORT) document.title = TEXT.title;
   for (const element of document.querySelectorAll('[data-text]')) element.prepend(TEXT[element.dataset.text]);
   for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', TEXT[element.dataset.name]);
   for (const element of document.querySelectorAll('[data-placeholder]')) element.placeholder = TEXT[element.dataset.placeholder];
@@ -106,6 +106,7 @@ class Page {
   // Sets the first state: that of the address, of the server, of the last visit, or a published
   // layout.
   async begin(started) {
+    if (IS_REPORT) { this.state.begin(this.facts.state); return; }
     const decoded = await decodeHash(location.hash, this.state.fields);
     if (decoded?.messages.length) showNoticeAbout('address', decoded.messages.join(' '));
     if (decoded?.parts) { this.state.begin(decoded.parts); return; }
@@ -117,6 +118,7 @@ class Page {
 
   // Applies addresses in order: one with a model takes longer to decode than the next one.
   applyHash(hash) {
+    if (IS_REPORT) return Promise.resolve();
     const result = (this.hashQueue ?? Promise.resolve()).then(() => this.applyNow(hash));
     this.hashQueue = result.catch(() => {});
     return result;
@@ -137,6 +139,7 @@ class Page {
   addressChanged() { if (location.hash !== this.written) this.applyHash(location.hash); }
 
   writeAddress() {
+    if (IS_REPORT) return;
     this.written = encodeHash(this.state.now);
     history.replaceState(null, '', this.written);
     remember({ ...remembered(), hash: this.written });
@@ -224,6 +227,7 @@ class Page {
   }
 
   async open(text, file) {
+    if (IS_REPORT) { showNotice(TEXT.isReport); return; }
     try {
       const { values, trouble } = await this.engine.request({ command: 'open', toml: text, file });
       if (values) { this.state.change({ values }); showToast(TEXT.opened(file)); }

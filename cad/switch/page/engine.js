@@ -1,4 +1,4 @@
-// Requests to the engine: a worker with the module in the page, or the server of the page.
+// Requests to the engine: a worker with the module in the page, the server of the page, or the recorded answers of a report.
 
 // A request was not answered; the message is for the user. `kind` is `failed`, `trap`, `gone` or
 // `refused`.
@@ -109,16 +109,20 @@ class ServerClient {
 
 class Engine {
   constructor() {
+    this.inProgress = new Set();
+    if (IS_REPORT) {
+      this.designs = this.slow = new Recorded(byId('report').textContent);
+      return;
+    }
     const element = byId('module');
     const module = element.textContent.trim();
-    // Libraries of this page that the module needs, too, with their offsets in it, as
+    // Texts of this page that the module needs, too, with their offsets in it, as
     // `three:OFFSET`.
-    const libraries = element.dataset.libraryOffsets.split(' ').filter(Boolean).map((entry) => entry.split(':')).map(([id, offset]) => [Number(offset), byId(id).textContent]);
-    const client = () => (module ? new WorkerClient(byId('worker').textContent, () => ({ module: bytesOf(module).buffer, libraries })) : new ServerClient());
+    const texts = element.dataset.offsets.split(' ').filter(Boolean).map((entry) => entry.split(':')).map(([id, offset]) => [Number(offset), byId(id).textContent]);
+    const client = () => (module ? new WorkerClient(byId('worker').textContent, () => ({ module: bytesOf(module).buffer, texts })) : new ServerClient());
     // Designs do not wait for requests that take seconds.
     this.designs = client();
     this.slow = client();
-    this.inProgress = new Set();
   }
 
   // The long request in progress, for which files wait: `search`, `calibrate`, or undefined.

@@ -70,6 +70,7 @@ pub(crate) const PRINTED: &[(&str, i32, &str)] = &[
     ("tension-table", 0, "export three-double --to csv --out tables --json"),
     ("failure", 2, "generate three-double --set segment.grooves=40 --json"),
     ("failure", 2, "check set/shell.stl --bogus --json"),
+    ("failure", 2, "check set/shell.stl no-such.stl --json"),
     ("failure", 2, "power no-such.toml --json"),
     ("failure", 2, "power measured.toml --json"),
     ("failure", 2, "calibrate no-such.csv --out missing --json"),

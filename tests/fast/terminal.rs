@@ -240,15 +240,19 @@ fn errors_are_json() {
     assert_eq!(diagnostic["changes"][0], serde_json::json!({ "field": "segment.grooves", "value": "20" }));
 }
 
-/// A report that was printed before the failure is the only document.
+/// A list of verdicts that lacks a file could be taken for all of them.
 #[test]
-fn a_report_is_the_only_json() {
+fn verdicts_are_of_every_file_or_a_failure() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     done(path, &["-q", "generate", "three-double", "--format", "stl", "--out", "set"]);
     let output = expect_code(2, path, &["check", "set/shell.stl", "no-such.stl", "--json"]);
-    let verdicts: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(verdicts.as_array().unwrap().len(), 1, "{verdicts}");
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let diagnostic = &document["error"]["diagnostics"][0];
+    assert_eq!(
+        (&diagnostic["code"], &diagnostic["location"]["file"]),
+        (&"cannot-read".into(), &"no-such.stl".into())
+    );
     assert_eq!(json(path, &["check", "set/shell.stl", "--json"])[0]["valid"], true);
 }
 

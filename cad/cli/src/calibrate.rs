@@ -5,6 +5,7 @@ mod plans;
 mod spinner;
 mod summary;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -15,10 +16,12 @@ use pinswitch_calibration::{
     explain_published,
 };
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
-use pinswitch_report::{UNEXPLAINED, calibration_files, published_page, published_plot};
+use pinswitch_report::{
+    DATA_PACKAGE, UNEXPLAINED, calibration_files, data_package, published_page, published_plot,
+};
 use pinswitch_switch::output::OutputFile;
 
-use super::data_package::{DATA_PACKAGE, data_package, has_own_descriptor};
+use super::data_package::has_own_descriptor;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;
 use super::{Failure, SEED, print_json, print_text};
@@ -142,9 +145,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             stale_form(&out)?
         }
     };
-    files.insert(0, data_package(&title_of(&name), &files_read(), &files)?);
+    let contents: Vec<_> = files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect();
+    let (package, bytes) = data_package(&title_of(&name), &sources(), &contents).map_err(Failure::failed)?;
+    files.insert(0, OutputFile { name: package, bytes });
     out.replace_listed(&files, COMMAND, stale)?;
     if arguments.json { print_json(&calibration.report) } else { print_text(&summary(&calibration.report)) }
+}
+
+/// Returns name and SHA-256 of each file that this command has read.
+fn sources() -> BTreeSet<(String, String)> {
+    let named = |(path, input): (PathBuf, InputFile)| {
+        Some((path.file_name()?.to_string_lossy().into_owned(), input.sha256))
+    };
+    files_read().into_iter().filter_map(named).collect()
 }
 
 /// Returns the external ones of the files that this command has read.

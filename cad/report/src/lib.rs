@@ -59,6 +59,7 @@ mod calibration;
 mod calibration_files;
 mod calibration_page;
 mod contact;
+mod data_package;
 mod effect_words;
 mod finger;
 mod friction;
@@ -78,6 +79,7 @@ pub use calibration::{Plot, plots};
 pub use calibration_files::calibration_files;
 pub use calibration_page::page;
 pub use contact::contact_svg;
+pub use data_package::{DATA_PACKAGE, data_package};
 pub use effect_words::{
     constants_words, effect_clause, estimate_words, friction_words, other_probabilities, parameters_words,
     reported_clause,

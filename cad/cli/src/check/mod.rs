@@ -83,6 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outcomes: Vec<_> = arguments.files.par_iter().map(verdict).collect();
     let mut verdicts = Vec::new();
     let mut unjudged = Vec::new();
+    let mut is_each_read = true;
     for (file, outcome) in arguments.files.iter().zip(outcomes) {
         let name = file.display().to_string();
         match outcome {
@@ -92,12 +93,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 }
                 verdicts.push(verdict);
             }
-            Err(diagnostic) => unjudged.push(diagnostic.or_in_file(&name)),
+            Err(diagnostic) => {
+                is_each_read = false;
+                unjudged.push(diagnostic.or_in_file(&name));
+            }
         }
     }
     if arguments.json {
-        // Without a verdict, the failure is the only JSON document.
-        if !verdicts.is_empty() {
+        // Without a verdict on each file, the failure is the only JSON document: a list of the others could be taken for all.
+        if is_each_read {
             print_json(&verdicts)?;
         }
     } else {

@@ -1,5 +1,6 @@
 //! Calibrations, and their models.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use numpy::PyArray1;
@@ -11,9 +12,10 @@ use pinswitch::calibration::{
     self as library, Calibration as Found, ModelFile, Report, calibrate as calibrate_rows, calibrate_below,
 };
 use pinswitch::diagnostic::{Diagnostic, codes};
-use pinswitch::report::{calibration_files, run_sheet};
+use pinswitch::report::{calibration_files, data_package, run_sheet};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use sha2::{Digest, Sha256};
 
 use crate::error::{OrRaise, json};
 use crate::task;
@@ -112,7 +114,7 @@ pub(crate) struct Calibration {
     baseline_n: Vec<f64>,
     model_n: Vec<f64>,
     weights: Vec<f64>,
-    /// Files of the calibration except `report.json`.
+    /// Files of the calibration.
     files: Vec<NamedBytes>,
     table: Arc<PlateauTable>,
     vocabulary: Vocabulary,
@@ -153,7 +155,6 @@ impl Calibration {
         for (name, bytes) in &self.files {
             files.set_item(name, PyBytes::new(py, bytes))?;
         }
-        files.set_item("report.json", PyBytes::new(py, self.report(py)?.as_bytes()))?;
         Ok(files)
     }
 
@@ -187,6 +188,15 @@ impl Calibration {
     }
 }
 
+/// Returns the name of a table without its folder.
+fn title_of(name: &str) -> String {
+    name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// Calibrates plateau tables, which are sessions of one rig.
 #[pyfunction]
 #[pyo3(signature = (tables, effects, fit_below=None))]
@@ -198,8 +208,9 @@ pub(crate) fn calibrate(
 ) -> PyResult<Calibration> {
     let calibrated = task::run(py, None, move |_| -> Result<Calibration, Diagnostic> {
         let vocabulary = vocabulary(&effects)?;
-        let mut read = Vec::new();
+        let (mut read, mut sources) = (Vec::new(), BTreeSet::new());
         for (name, bytes) in tables {
+            sources.insert((title_of(&name), sha256(&bytes)));
             let table = PlateauTable::read(bytes.as_slice(), &name)?;
             read.push((table, name));
         }
@@ -221,8 +232,12 @@ pub(crate) fn calibrate(
         };
         let mut found = found.map_err(|error| Diagnostic::from(error).or_in_file(&name))?;
         found.report.ignored_columns = table.ignored_columns();
-        let title = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();
-        let files = calibration_files(&title, &table, &found)?;
+        let title = title_of(&name);
+        let mut files = calibration_files(&title, &table, &found)?;
+        let report = serde_json::to_string_pretty(&found.report);
+        let report = report.map_err(|e| Diagnostic::from_error(codes::INTERNAL_ERROR, e))?;
+        files.push(("report.json".to_owned(), (report + "\n").into_bytes()));
+        files.insert(0, data_package(&title, &sources, &files)?);
         Ok(Calibration {
             baseline: ModelFile::new(&found.baseline),
             augmented: ModelFile::new(&found.augmented),

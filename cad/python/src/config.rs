@@ -1,10 +1,11 @@
 //! Configurations.
 
 use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
 
 use pinswitch::diagnostic::{Diagnostic, Location, codes};
 use pinswitch::switch::config::{
-    self, Configuration as Values, FieldLocations, Name, parameter::Parameter, read_clamped, to_toml,
+    self, Configuration as Parameters, FieldLocations, Name, parameter::Parameter, read_clamped, to_toml,
 };
 use pinswitch::switch::design::Design;
 use pinswitch::switch::{feasibility, templates as switch_templates};
@@ -14,11 +15,15 @@ use pyo3::types::{PyDict, PyList};
 use crate::error::{OrRaise, exception};
 use crate::values::{to_python, to_toml as value_to_toml};
 
+/// A configuration. Threads may share it: each call sees the values before or after an assignment.
+#[pyclass(module = "pinswitch._pinswitch", frozen)]
+#[derive(Debug)]
+pub(crate) struct Configuration(Mutex<Snapshot>);
+
 /// The values of a configuration, with the text that they were read from for the location of an error.
-#[pyclass(module = "pinswitch._pinswitch")]
 #[derive(Clone, Debug)]
-pub(crate) struct Configuration {
-    values: Values,
+pub(crate) struct Snapshot {
+    values: Parameters,
     file: Option<String>,
     locations: FieldLocations,
     /// Fields that were set after the text was read.
@@ -29,20 +34,20 @@ pub(crate) struct Configuration {
 type ChangedField = (String, String, String, String);
 
 /// Returns the parameter at `table.key`.
-fn parameter(path: &str) -> Result<&'static Parameter<Values>, Diagnostic> {
-    let find = |path: &str| Values::PARAMETERS.iter().find(|parameter| parameter.path() == path);
+fn parameter(path: &str) -> Result<&'static Parameter<Parameters>, Diagnostic> {
+    let find = |path: &str| Parameters::PARAMETERS.iter().find(|parameter| parameter.path() == path);
     find(path).ok_or_else(|| {
         // The error of an assignment names the nearest parameter.
-        let error = config::assign(&mut Values::default(), &format!("{path}=0")).err();
+        let error = config::assign(&mut Parameters::default(), &format!("{path}=0")).err();
         error.unwrap_or_else(|| {
             Diagnostic::new(codes::UNKNOWN_FIELD, "unknown field").with_location(Location::field(path, ""))
         })
     })
 }
 
-impl Configuration {
+impl Snapshot {
     /// Returns the values.
-    pub(crate) fn values(&self) -> &Values {
+    pub(crate) fn values(&self) -> &Parameters {
         &self.values
     }
 
@@ -60,9 +65,21 @@ impl Configuration {
         let Some(file) = self.file.as_ref().filter(|_| !self.assigned.contains(&field)) else { return error };
         error.or_at(self.locations.get(&field).unwrap_or(&Location::file(file)))
     }
+}
 
-    fn without_text(values: Values) -> Self {
-        Self { values, file: None, locations: FieldLocations::default(), assigned: BTreeSet::new() }
+impl Configuration {
+    /// Returns the present values.
+    pub(crate) fn snapshot(&self) -> Snapshot {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn of(snapshot: Snapshot) -> Self {
+        Self(Mutex::new(snapshot))
+    }
+
+    fn without_text(values: Parameters) -> Self {
+        let (locations, assigned) = (FieldLocations::default(), BTreeSet::new());
+        Self::of(Snapshot { values, file: None, locations, assigned })
     }
 }
 
@@ -71,14 +88,14 @@ impl Configuration {
     /// Returns the defaults.
     #[new]
     fn new() -> Self {
-        Self::without_text(Values::default())
+        Self::without_text(Parameters::default())
     }
 
     /// Reads a TOML text over a base.
     #[staticmethod]
     #[pyo3(signature = (text, file, base=None))]
     fn read(py: Python<'_>, text: &str, file: &str, base: Option<PyRef<'_, Self>>) -> PyResult<Self> {
-        let base = base.map_or_else(Values::default, |base| base.values.clone());
+        let base = base.map_or_else(Parameters::default, |base| base.snapshot().values);
         let mut reading = read_clamped(base, text, file).or_raise(py)?;
         if let Some(error) = reading.out_of_range.into_iter().next() {
             return Err(exception(py, error));
@@ -86,12 +103,12 @@ impl Configuration {
         if !reading.locations.contains("switch.name") {
             reading.configuration.switch.name = Name::from_file_stem(file);
         }
-        Ok(Self {
+        Ok(Self::of(Snapshot {
             values: reading.configuration,
             file: Some(file.to_owned()),
             locations: reading.locations,
             assigned: BTreeSet::new(),
-        })
+        }))
     }
 
     /// Reads the configuration in a 3MF that pinswitch wrote.
@@ -110,46 +127,51 @@ impl Configuration {
     /// Returns the value of a field.
     fn get<'py>(&self, py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyAny>> {
         let parameter = parameter(path).or_raise(py)?;
-        to_python(py, &(parameter.get)(&self.values))
+        to_python(py, &(parameter.get)(&self.snapshot().values))
     }
 
     /// Sets a field.
-    fn set(&mut self, py: Python<'_>, path: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set(&self, py: Python<'_>, path: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let parameter = parameter(path).or_raise(py)?;
         let value = value_to_toml(value)?;
-        (parameter.set)(&mut self.values, &value)
-            .map_err(|error| error.in_field(path, value.to_string().trim()))
-            .or_raise(py)?;
-        self.assigned.insert(path.to_owned());
-        Ok(())
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let set = (parameter.set)(&mut held.values, &value);
+        if set.is_ok() {
+            held.assigned.insert(path.to_owned());
+        }
+        // An exception runs Python, which may wait for another thread.
+        drop(held);
+        set.map_err(|error| error.in_field(path, value.to_string().trim())).or_raise(py)
     }
 
     /// Returns the TOML text of the values that differ from the defaults.
     fn to_toml(&self) -> String {
-        to_toml(&self.values)
+        to_toml(&self.snapshot().values)
     }
 
     /// Returns a copy.
     fn copy(&self) -> Self {
-        self.clone()
+        Self::of(self.snapshot())
     }
 
     /// Whether two configurations have the same values.
     fn equals(&self, other: PyRef<'_, Self>) -> bool {
-        self.values == other.values
+        self.snapshot().values == other.snapshot().values
     }
 
     /// Checks every rule; returns the warnings.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        py.detach(|| self.design())
+        let snapshot = self.snapshot();
+        py.detach(|| snapshot.design())
             .or_raise(py)
             .map(|design| design.warnings().iter().map(ToString::to_string).collect())
     }
 
     /// Returns the nearest valid configuration, with the changes as (field, old, new, reason).
     fn repaired(&self, py: Python<'_>) -> PyResult<(Self, Vec<ChangedField>)> {
-        let proposal = py.detach(|| feasibility::repair(&self.values)).or_raise(py)?;
-        let Some(proposal) = proposal else { return Ok((self.clone(), Vec::new())) };
+        let snapshot = self.snapshot();
+        let proposal = py.detach(|| feasibility::repair(&snapshot.values)).or_raise(py)?;
+        let Some(proposal) = proposal else { return Ok((Self::of(snapshot), Vec::new())) };
         let changes = proposal.changes.into_iter().map(|c| (c.field, c.from, c.to, c.reason)).collect();
         Ok((Self::without_text(proposal.configuration), changes))
     }
@@ -158,8 +180,8 @@ impl Configuration {
 /// Returns every parameter: table, key, unit, range, origin, reason, default.
 #[pyfunction]
 pub(crate) fn parameters(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
-    let default = Values::default();
-    let entries = Values::PARAMETERS.iter().map(|parameter| {
+    let default = Parameters::default();
+    let entries = Parameters::PARAMETERS.iter().map(|parameter| {
         let entry = PyDict::new(py);
         entry.set_item("table", parameter.section)?;
         entry.set_item("key", parameter.key)?;

@@ -154,7 +154,7 @@ pub(crate) fn predict(
     law: Option<String>,
     model: Option<ModelText>,
 ) -> PyResult<Curve> {
-    let configuration = (*configuration).clone();
+    let configuration = configuration.snapshot();
     let predicted = task::run(py, None, move |_| -> Result<Curve, Diagnostic> {
         let design = configuration.design()?;
         let loads_n = loads_n.map_or_else(|| Ok(self::loads_n(&design)), checked_loads)?;

@@ -44,7 +44,7 @@ pub(crate) fn design(
     starts: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Vec<String>, String, Vec<(Option<f64>, f64, Vec<usize>)>)> {
-    let configuration = (*configuration).clone();
+    let configuration = configuration.snapshot();
     let found = task::run(py, progress.as_ref(), move |task| -> Result<Found, Diagnostic> {
         let request = Request::read(&request, &name)?;
         let base = configuration.design()?;

@@ -144,7 +144,7 @@ impl Parts {
 /// Builds and examines every part.
 #[pyfunction]
 pub(crate) fn build(py: Python<'_>, configuration: PyRef<'_, Configuration>) -> PyResult<Parts> {
-    let configuration = (*configuration).clone();
+    let configuration = configuration.snapshot();
     let built = task::run(py, None, move |_| -> Result<Built, Diagnostic> {
         let design = configuration.design()?;
         feasibility::build(design).map_err(|error| match error {

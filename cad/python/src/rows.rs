@@ -178,7 +178,7 @@ pub(crate) fn predict_rows<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Columns<'py>> {
-    let base = configuration.values().clone();
+    let base = configuration.snapshot().values().clone();
     let predicted = task::run(py, progress.as_ref(), move |task| -> Result<Option<Predicted>, Diagnostic> {
         let table = ConfigurationTable::read(table, &name)?;
         let law = law.as_deref().map(law_named).transpose()?;

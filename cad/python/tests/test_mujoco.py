@@ -226,6 +226,11 @@ def test_unknown_tendons_are_refused(surface: Surface) -> None:
     host, _ = rig(surface, 10.0)
     with pytest.raises(PinswitchError, match="no tendon"):
         Host(host.model, [Switch("absent", surface)])
+    with pytest.raises(PinswitchError, match="two switches are on this tendon"):
+        Host(host.model, [Switch("tendon", surface), Switch("tendon", surface)])
+    with pytest.raises(PinswitchError) as caught:
+        Host.load("no-such.xml")
+    assert caught.value.code == "cannot-read"
     with pytest.raises(PinswitchError, match="no switch on this tendon") as caught:
         host["absent"]
     assert caught.value.help == "its tendons are tendon"

@@ -79,6 +79,7 @@ def test_meshes_are_checked(parts: pinswitch.Parts, tmp_path: Path) -> None:
 def test_parts_are_pickled_as_their_configuration() -> None:
     parts = pinswitch.build(pinswitch.Config("three-double", shell__width_mm=14.0))
     restored = pickle.loads(pickle.dumps(parts))
+    assert "shell" in parts and "shel" not in parts and [one.name for one in parts[:2]] == parts.names[:2]
     assert restored.config == parts.config and restored["shell"].to_stl() == parts["shell"].to_stl()
 
 

@@ -16,7 +16,7 @@ HEAD = '''"""Tables of a configuration; written by tools/sections.py from the pa
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _pinswitch
 from ._read_only_list import read_only
@@ -32,15 +32,18 @@ class Section:
     def __init__(self, native: _pinswitch.Configuration) -> None:
         object.__setattr__(self, "_native", native)
 
-    def __getattr__(self, key: str) -> Any:
-        if key.startswith("_"):
-            raise AttributeError(key)
-        if key not in self._keys:
-            raise AttributeError(f"[{self._table}] has no {key!r}; its parameters are {', '.join(self._keys)}")
-        return read_only(self._native.get(f"{self._table}.{key}"))
+    # A type checker knows the parameters below, and no others.
+    if not TYPE_CHECKING:
 
-    def __setattr__(self, key: str, value: object) -> None:
-        self._native.set(f"{self._table}.{key}", value)
+        def __getattr__(self, key: str) -> Any:
+            if key.startswith("_"):
+                raise AttributeError(key)
+            if key not in self._keys:
+                raise AttributeError(f"[{self._table}] has no {key!r}; its parameters are {', '.join(self._keys)}")
+            return read_only(self._native.get(f"{self._table}.{key}"))
+
+        def __setattr__(self, key: str, value: object) -> None:
+            self._native.set(f"{self._table}.{key}", value)
 
     def __dir__(self) -> list[str]:
         return list(self._keys)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from ._errors import PinswitchError
 from ._pinswitch import __version__
-from .calibration import Calibration, Experiment, calibrate
+from .calibration import Calibration, Experiment, calibrate, experiment
 from .config import Config, parameters, templates
 from .curve import Curve, CurveTable, predict, predict_table
 from .effects import Constant, Effect, effect, effect_file, shape, size
@@ -52,6 +52,7 @@ __all__ = [
     "design",
     "effect",
     "effect_file",
+    "experiment",
     "parameters",
     "power",
     "predict",

@@ -1,4 +1,4 @@
-"""Files of the user: what cannot be read is a :class:`PinswitchError` with its path."""
+"""Files of the user: what cannot be read or written is a :class:`PinswitchError` with its path."""
 
 from __future__ import annotations
 
@@ -28,3 +28,17 @@ def read_text(path: PathLike) -> str:
     except UnicodeDecodeError as error:
         help = "save the file as UTF-8 text"
         raise PinswitchError("not UTF-8", code="not-utf-8", help=help, file=os.fspath(path)) from error
+
+
+def write_text(path: PathLike, text: str) -> None:
+    """Write a file of text in UTF-8, with its line feeds."""
+    try:
+        Path(path).write_bytes(text.encode("utf-8"))
+    except OSError as error:
+        raise cannot_write(path, error) from error
+
+
+def cannot_write(path: PathLike, error: OSError) -> PinswitchError:
+    """Return the error of a file or folder that cannot be written."""
+    help = "give a path in a folder that exists and can be written"
+    return PinswitchError(f"cannot write: {error.strerror}", code="cannot-write", help=help, file=os.fspath(path))

@@ -35,6 +35,7 @@ import numpy as np
 
 from . import _pendulum
 from ._bam_log import Log, read
+from ._checks import wrong_type
 from ._errors import PinswitchError
 from ._pendulum import BOUNDED, LOAD, LOGARITHMIC, NAMES, Bench, Floats, Solution
 
@@ -281,6 +282,9 @@ def identify(
 
 def _servo(logs: Sequence[Log], servo: Optional[Servo]) -> Servo:
     """Return the controller of all logs."""
+    for one in logs:
+        if not isinstance(one, Log):
+            raise wrong_type("logs", one, "a log, as bam.read returns it")
     if not logs:
         raise PinswitchError("no log is given", code="missing-field", help="give the logs of a servo", field="logs")
     motors = sorted({log.motor for log in logs})

@@ -12,6 +12,7 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _pinswitch
+from ._checks import in_range, wrong_type
 from ._files import read_text
 from .config import ConfigLike
 from .curve import Curve, predict
@@ -19,6 +20,11 @@ from .effects import effect_texts
 from .model import Floats, Model, plateau_bytes
 from .parts import write_files
 from .table import Table
+
+
+#: Longest session in minutes, a week of eight hours a day, and shares of the loads, as on the command line.
+MAX_MINUTES = 2400.0
+FIT_BELOW = (0.1, 0.99)
 
 
 class Experiment:
@@ -148,8 +154,9 @@ class Calibration:
         rig : path, optional
             Limits of the rig (``pinswitch init rig``).
         """
+        minutes = in_range("minutes", minutes, 1e-3, MAX_MINUTES, "minutes")
         limits = None if rig is None else (read_text(rig), os.fspath(rig))
-        report, runs, sheet = self._native.experiment(float(minutes), limits)
+        report, runs, sheet = self._native.experiment(minutes, limits)
         return Experiment(json.loads(report), runs, sheet)
 
     def to_html(self) -> str:
@@ -205,6 +212,15 @@ class Calibration:
         )
 
 
+def experiment(
+    calibration: Calibration, minutes: float = 60.0, *, rig: Optional[str | os.PathLike[str]] = None
+) -> Experiment:
+    """Plan the session that answers most open questions of a calibration: :meth:`Calibration.experiment`."""
+    if not isinstance(calibration, Calibration):
+        raise wrong_type("calibration", calibration, "a calibration")
+    return calibration.experiment(minutes, rig=rig)
+
+
 def calibrate(
     *tables: Any, effects: Sequence[Any] = (), fit_below: Optional[float] = None
 ) -> Calibration:
@@ -227,7 +243,9 @@ def calibrate(
         If a cell cannot be used, or the rows are too few.
     """
     named = []
-    for table in tables:
-        content, name = plateau_bytes(table)
+    for number, table in enumerate(tables, 1):
+        # Each session of several has a name of its own.
+        content, name = plateau_bytes(table, "table" if len(tables) == 1 else f"table {number}")
         named.append((name, content))
+    fit_below = None if fit_below is None else in_range("fit_below", fit_below, *FIT_BELOW)
     return Calibration(_pinswitch.calibrate(named, effect_texts(effects), fit_below))

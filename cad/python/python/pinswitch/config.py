@@ -11,7 +11,7 @@ from typing import Any, Union
 
 from . import _pinswitch
 from ._errors import PinswitchError
-from ._files import read_bytes
+from ._files import read_bytes, write_text
 from ._read_only_list import read_only
 from ._sections import SECTIONS, Sections
 
@@ -138,7 +138,7 @@ class Config(Sections):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write TOML to a file."""
-        Path(path).write_text(self.to_toml(), encoding="utf-8")
+        write_text(path, self.to_toml())
 
     def __repr__(self) -> str:
         changed = ", ".join(f"{path}={value!r}" for path, value in self._changed().items())

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from typing import Any, Optional, Protocol, Union, overload
+from typing import Any, Optional, Protocol, Union, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _pinswitch
+from ._checks import MAX_THREADS, whole
 from ._errors import PinswitchError
 from ._files import read_bytes
 from ._notebook import progress_bar
@@ -152,10 +153,13 @@ class CurveTable(Table):
 ModelLike = Union[Model, str, "os.PathLike[str]", Any]
 
 
-def _model_text(model: Any) -> Optional[tuple[str, str]]:
-    """Return the text and the name of a model, a calibration or a file."""
+def _model_text(model: Any, law: Optional[str] = None) -> Optional[tuple[str, str]]:
+    """Return the text and the name of a model, a calibration or a file; it replaces the law."""
     if model is None:
         return None
+    if law is not None:
+        help = "omit one of them: a calibrated model replaces the law"
+        raise PinswitchError("law and model exclude each other", code="conflicting-settings", help=help, field="law")
     if hasattr(model, "model"):
         model = model.model
     if not isinstance(model, Model):
@@ -207,7 +211,7 @@ def predict(
     >>> curve.friction_n.shape, curve.status
     ((2,), 'published')
     """
-    if hasattr(config, "__arrow_c_stream__") or hasattr(config, "iloc"):
+    if any(hasattr(config, name) for name in ("__arrow_c_stream__", "iloc", "collect")):
         if loads_n is not None:
             help = "set the loads with columns such as friction.load_max_n"
             raise PinswitchError("loads_n is for one configuration", code="usage", help=help, field="loads_n")
@@ -217,7 +221,8 @@ def predict(
     except (TypeError, ValueError) as error:
         help = "give positive loads in newtons, in ascending order"
         raise PinswitchError("not numbers", code="wrong-type", help=help, field="loads_n") from error
-    return _predicted(config_of(config), loads, law, _model_text(model))
+    # What is not a frame is a configuration, or refused as one.
+    return _predicted(config_of(cast(ConfigLike, config)), loads, law, _model_text(model, law))
 
 
 def _predicted(
@@ -267,7 +272,7 @@ def predict_table(
     content, name = _table_bytes(table)
     with progress_bar("rows", progress) as report:
         rows, counts, lines = _pinswitch.predict_rows(
-            config_of({} if config is None else config)._native, content, name, law, _model_text(model), threads, report
+            config_of({} if config is None else config)._native, content, name, law, _model_text(model, law), whole("threads", threads, 0, MAX_THREADS), report
         )
     columns: dict[str, Any] = {"row": np.repeat(np.arange(1, len(counts) + 1), counts)}
     for column, values in rows.items():
@@ -282,6 +287,9 @@ def _array(values: Any) -> NDArray[Any]:
         return np.array(values, dtype=np.float64)
     if values and all(isinstance(value, int) and not isinstance(value, bool) for value in values):
         return np.array(values, dtype=np.int64)
+    numbers = [None if value is None or value == "" else value for value in values]
+    if numbers and all(value is None or (isinstance(value, (int, float)) and not isinstance(value, bool)) for value in numbers):
+        return np.array([np.nan if value is None else value for value in numbers], dtype=np.float64)
     array = np.empty(len(values), dtype=object)
     array[:] = [value if isinstance(value, str) else str(value) for value in values]
     return array

@@ -11,11 +11,13 @@ import inspect
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _pinswitch
+from ._checks import wrong_type
 from ._errors import PinswitchError
 from ._files import read_text
 
@@ -185,6 +187,12 @@ class Constant:
     low: Optional[float] = None
     high: Optional[float] = None
 
+    def __post_init__(self) -> None:
+        for name in ("start", "low", "high"):
+            value = getattr(self, name)
+            if not (isinstance(value, Real) or (name != "start" and value is None)):
+                raise wrong_type(name, value, "a number")
+
     def to_toml(self) -> str:
         """Return the constant as an inline table."""
         bounds = "size = true" if self.low is None else f"low = {self.low!r}, high = {self.high!r}"
@@ -317,6 +325,9 @@ def effect(
 
 def effect_file(effects: Sequence[Effect]) -> str:
     """Return the file of effects, for ``pinswitch calibrate --effects``."""
+    for one in effects:
+        if not isinstance(one, Effect):
+            raise wrong_type("effects", one, "a function with @pinswitch.effect")
     return 'schema = "pinswitch.effects/1"\n\n' + "\n".join(one.to_toml() for one in effects)
 
 
@@ -332,10 +343,7 @@ def effect_texts(effects: Sequence[Any]) -> list[tuple[str, str]]:
         if not isinstance(path, (str, os.PathLike)):
             help = "give functions with @pinswitch.effect, or paths of files"
             raise PinswitchError(f"{path!r} is not an effect", code="wrong-type", help=help, field="effects")
-        try:
-            texts.append((os.fspath(path), read_text(path)))
-        except (OSError, UnicodeDecodeError) as error:
-            raise PinswitchError(str(error), code="cannot-read", file=os.fspath(path)) from error
+        texts.append((os.fspath(path), read_text(path)))
     return texts
 
 

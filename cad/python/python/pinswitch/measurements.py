@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from . import _pinswitch
+from ._checks import MAX_SEED, whole, wrong_type
 from ._errors import PinswitchError
 from ._files import PathLike, read_bytes, read_text
 from .curve import ModelLike, _model_text
@@ -21,6 +22,8 @@ from .table import Table, read_csv
 ENDINGS = frozenset({"csv", "txt", "tsv", "dat", "lvm", "xlsx", "xls", "ods", "parquet", "gz"})
 #: Most bytes of an unpacked file.
 MAX_UNPACKED = 1 << 29
+#: Most simulated experiments per effect and size.
+MOST_RUNS = 1_000
 
 
 class Measurements(Table):
@@ -80,6 +83,8 @@ def read(
     """
     files = [(os.fspath(path), _unpacked(path)) for path in _files(sources, pattern)]
     decisions = None if map is None else (read_text(map), os.fspath(map))
+    if set is not None and not isinstance(set, Mapping):
+        raise wrong_type("set", set, "a mapping")
     assignments = [f"{key}={value}" for key, value in (set or {}).items()]
     csv, kind, text, understanding, complete = _pinswitch.import_files(files, decisions, assignments, pattern)
     understood = json.loads(understanding)
@@ -226,7 +231,10 @@ def simulate(
     next : bool
         Simulate a later session of the same rig.
     """
-    values = [(id, _values(value)) for id, value in (acting or {}).items()]
+    if acting is not None and not isinstance(acting, Mapping):
+        raise wrong_type("acting", acting, "a mapping")
+    values = [(id, _values(id, value)) for id, value in (acting or {}).items()]
+    seed = None if seed is None else whole("seed", seed, 0, MAX_SEED)
     text = _plan_text(plan)
     return Simulation(
         *_pinswitch.simulate(text, randomised, values, effect_texts(effects), _model_text(noise), seed, next)
@@ -249,13 +257,19 @@ def power(
         ``id``, ``values``, ``runs``, and the numbers of runs ``named``, ``ambiguous`` and ``missed``; ``others``.
     """
     rates: list[dict[str, Any]] = json.loads(
-        _pinswitch.power(_plan_text(plan), randomised, effect_texts(effects), _model_text(noise), runs)
+        _pinswitch.power(
+            _plan_text(plan), randomised, effect_texts(effects), _model_text(noise), whole("runs", runs, 1, MOST_RUNS)
+        )
     )
     return rates
 
 
-def _values(value: Any) -> list[float]:
-    return [float(one) for one in value] if hasattr(value, "__iter__") else [float(value)]
+def _values(id: str, value: Any) -> list[float]:
+    is_sequence = hasattr(value, "__iter__") and not isinstance(value, str)
+    try:
+        return [float(one) for one in (value if is_sequence else [value])]
+    except (TypeError, ValueError) as error:
+        raise wrong_type(f"acting[{id!r}]", value, "a number, or several") from error
 
 
 def _plan_text(plan: Optional[PathLike]) -> Optional[tuple[str, str]]:

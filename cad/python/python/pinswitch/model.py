@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _pinswitch
-from ._files import read_bytes, read_text
+from ._checks import MAX_SEED, whole
+from ._files import read_bytes, read_text, write_text
 from .table import columns_of, csv_text
 
 Floats = NDArray[np.float64]
+#: Most draws of constants.
+MOST_DRAWS = 10_000_000
 
 
 class Model:
@@ -61,7 +63,7 @@ class Model:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file."""
-        Path(path).write_text(self.text, encoding="utf-8")
+        write_text(path, self.text)
 
     @property
     def constants(self) -> dict[str, tuple[float, str]]:
@@ -101,10 +103,11 @@ class Model:
         dict of str to ndarray, shape (count,)
             Draws of each constant, in its unit.
         """
+        count, seed = whole("count", count, 0, MOST_DRAWS), whole("seed", seed, 0, MAX_SEED)
         variates = np.random.default_rng(seed).standard_normal((count, self._native.dimension()))
         rows = [self._native.constants(z) for z in variates.tolist()]
-        names = [name for name, _, _ in rows[0]] if rows else []
-        values = np.array([[value for _, _, value in row] for row in rows], dtype=np.float64)
+        names = list(self.constants)
+        values = np.array([[value for _, _, value in row] for row in rows], dtype=np.float64).reshape(count, len(names))
         return {name: values[:, i] for i, name in enumerate(names)}
 
     def __repr__(self) -> str:
@@ -112,14 +115,14 @@ class Model:
         return f"Model({self.name}: {constants})"
 
 
-def plateau_bytes(table: Any) -> tuple[bytes, str]:
-    """Return a plateau table as CSV, with its name in errors."""
+def plateau_bytes(table: Any, name: str = "table") -> tuple[bytes, str]:
+    """Return a plateau table as CSV, with its name in errors; ``name`` is that of a frame."""
     if isinstance(table, (str, os.PathLike)):
         return read_bytes(table), os.fspath(table)
     columns = columns_of(table)
     if "repetition" in columns:
         columns["repetition"] = [_whole(value) for value in columns["repetition"]]
-    return csv_text(columns).encode(), "table"
+    return csv_text(columns).encode(), name
 
 
 def _whole(value: Optional[Any]) -> Any:

@@ -34,7 +34,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import PinswitchError
-from ._files import read_text
+from ._checks import wrong_type
+from ._files import read_bytes, read_text
 from .curve import Curve
 
 Floats = NDArray[np.float64]
@@ -47,6 +48,10 @@ DAMPING_RATIO = 0.7
 SWEEPS = 30
 #: Sweeps end when no friction changes by more than this, N.
 TOLERANCE_N = 1e-9
+
+
+#: Columns of a table.
+COLUMNS = ("wrap_rad", "load_n", "eccentric_n", "concentric_n")
 
 
 class Surface:
@@ -95,6 +100,8 @@ class Surface:
     @classmethod
     def of_curve(cls, curve: Curve, wrap_rad: float = 1.0) -> Surface:
         """Return the surface of a curve; with one wrap angle it applies to every wrap."""
+        if not isinstance(curve, Curve):
+            raise wrong_type("curve", curve, "a curve, as predict returns it")
         return cls(wrap_rad, curve.load_n, curve.eccentric_n, curve.concentric_n)
 
     @classmethod
@@ -105,12 +112,13 @@ class Surface:
             table = json.loads(text)
             if table["schema"] != "pinswitch.surface/1":
                 raise KeyError("schema")
-            return cls(table["wrap_rad"], table["load_n"], table["eccentric_n"], table["concentric_n"])
-        except (KeyError, TypeError, json.JSONDecodeError) as error:
+            columns = [np.asarray(table[name], dtype=np.float64) for name in COLUMNS]
+        except (KeyError, TypeError, ValueError) as error:
             help = "give a switch.json of `pinswitch export`"
             raise PinswitchError(
                 "not the table of a switch", code="other-kind-of-file", help=help, file=os.fspath(path)
             ) from error
+        return cls(*columns)
 
     def bounds_n(self, tension_n: float, wrap_rad: Optional[float] = None) -> tuple[float, float]:
         """Return the bounds of the friction ``T - F`` at a tension of the motor, N.
@@ -254,7 +262,7 @@ class Host:
         self.model = model
         self.switches = list(switches)
         self._mujoco: Any = mujoco
-        self._ids = []
+        self._ids: list[int] = []
         for switch in self.switches:
             number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TENDON, switch.tendon)
             if number < 0:
@@ -270,6 +278,10 @@ class Host:
                 problem = f"damping_ratio = {switch.damping_ratio} is not a number from 0"
                 help = "give a share of the critical damping: less than 0 would create energy"
                 raise PinswitchError(problem, code="out-of-range", help=help, field="damping_ratio")
+            if number in self._ids:
+                problem = "two switches are on this tendon"
+                help = "give each switch a tendon of its own; wraps in series are one surface"
+                raise PinswitchError(problem, code="duplicate-entry", help=help, field="tendon", value=switch.tendon)
             self._ids.append(number)
         is_tendon = model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON
         self._actuators = [np.flatnonzero(is_tendon & (model.actuator_trnid[:, 0] == id)) for id in self._ids]
@@ -283,6 +295,7 @@ class Host:
         """
         import mujoco
 
+        read_bytes(path)
         try:
             model = mujoco.MjModel.from_xml_path(os.fspath(path))
         except ValueError as error:

@@ -9,13 +9,14 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Optional, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import cannot_write
 from .config import Config, ConfigLike, config_of
 from .curve import Curve, predict
 
@@ -76,8 +77,15 @@ class Parts:
     def __iter__(self) -> Iterator[Part]:
         return iter(self._parts.values())
 
-    def __getitem__(self, name: str | int) -> Part:
-        return list(self._parts.values())[name] if isinstance(name, int) else self._parts[name]
+    @overload
+    def __getitem__(self, name: str | int) -> Part: ...
+    @overload
+    def __getitem__(self, name: slice) -> list[Part]: ...
+    def __getitem__(self, name: str | int | slice) -> Part | list[Part]:
+        return self._parts[name] if isinstance(name, str) else list(self._parts.values())[name]
+
+    def __contains__(self, part: object) -> bool:
+        return part in self._parts or part in self._parts.values()
 
     @property
     def names(self) -> list[str]:
@@ -184,12 +192,18 @@ def write_files(
     folder: str | os.PathLike[str], files: dict[str, bytes], *, overwrite: bool = False
 ) -> list[Path]:
     """Write files into a folder, each whole or not at all, in their order."""
-    place = Path(folder)
+    try:
+        return _written(Path(folder), files, overwrite)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def _written(place: Path, files: dict[str, bytes], overwrite: bool) -> list[Path]:
     existing = [name for name in files if (place / name).exists()]
     if existing and not overwrite:
         problem = f"{len(existing)} of the files exist, such as {existing[0]}"
         raise PinswitchError(
-            problem, code="file-in-the-way", help="give another folder, or overwrite=True", file=os.fspath(folder)
+            problem, code="file-in-the-way", help="give another folder, or overwrite=True", file=os.fspath(place)
         )
     written = []
     for name, content in files.items():

@@ -6,10 +6,12 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Optional, overload
+
+import numpy as np
 
 from . import _pinswitch
-from ._errors import PinswitchError
+from ._checks import MAX_SEED, MAX_THREADS, whole, wrong_type
 from ._files import read_bytes, read_text
 from ._notebook import progress_bar
 from .config import Config, ConfigLike, config_of
@@ -18,6 +20,8 @@ from .effects import _quoted
 from .table import Table, read_csv
 
 Request = Mapping[str, Any]
+#: Most proposals, draws and starts.
+MOST = 1_000_000
 
 
 class Proposal:
@@ -91,7 +95,11 @@ class Designs(Sequence[Proposal]):
     def __len__(self) -> int:
         return len(self._proposals)
 
-    def __getitem__(self, index: Any) -> Any:
+    @overload
+    def __getitem__(self, index: int) -> Proposal: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Proposal]: ...
+    def __getitem__(self, index: int | slice) -> Proposal | list[Proposal]:
         return self._proposals[index]
 
     def plot(self, ax: Any = None) -> Any:
@@ -157,15 +165,17 @@ def design(
         If the request is invalid. An impossible request is not an error: see :attr:`Designs.is_possible`.
     """
     if isinstance(request, Mapping):
+        for table, values in request.items():
+            if not isinstance(values, Mapping):
+                raise wrong_type(f"request[{table!r}]", values, "a mapping")
         text, name = "".join(_table(table, values) for table, values in request.items()), "request"
     else:
         text, name = read_text(request), os.fspath(request)
     native = config_of("three-double" if base is None else base)._native
-    for option, value in (("best", best), ("draws", draws), ("starts", starts)):
-        if value < 1:
-            raise PinswitchError(
-                f"{option} = {value} is below 1", code="out-of-range", help="give at least 1", field=option
-            )
+    best, draws, starts = (
+        whole(option, value, 1, MOST) for option, value in (("best", best), ("draws", draws), ("starts", starts))
+    )
+    seed = whole("seed", seed, 0, MAX_SEED)
     with progress_bar("steps", progress) as report:
         reports, texts, blocked, patterns = _pinswitch.design(
             native, text, name, _model_text(model), best, draws, seed, starts, report
@@ -179,6 +189,8 @@ def _table(name: str, values: Mapping[str, Any]) -> str:
 
 
 def _toml(value: Any) -> str:
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -239,6 +251,7 @@ def batch(
         Allow the sweep to name files outside its folder.
     """
     with progress_bar("variants", progress) as report:
+        threads = whole("threads", threads, 0, MAX_THREADS)
         tally = _pinswitch.batch(os.fspath(sweep), os.fspath(out), shard, threads, read_outside, report)
     return Batch(Path(out), json.loads(tally))
 
@@ -299,5 +312,6 @@ def check(
     PinswitchError
         If the file cannot be read.
     """
+    bodies = None if bodies is None else whole("bodies", bodies, 1, MOST)
     report, text = _pinswitch.check(read_bytes(path), os.fspath(path), bodies, min_wall_mm, strict, purpose)
     return MeshCheck(json.loads(report), text)

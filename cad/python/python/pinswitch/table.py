@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from . import _pinswitch
 from ._errors import PinswitchError
+from ._files import PathLike, write_text
 
 Column = NDArray[Any]
 
@@ -98,10 +99,9 @@ class Table:
         """Return CSV with a header; a number has as many digits as it needs to be read back unchanged."""
         return csv_text(self._columns)
 
-    def save(self, path: str) -> None:
+    def save(self, path: PathLike) -> None:
         """Write CSV to a file."""
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(self.to_csv())
+        write_text(path, self.to_csv())
 
     def __repr__(self) -> str:
         return f"Table({len(self)} rows: {', '.join(self._columns)})"
@@ -121,7 +121,8 @@ class Table:
 
 def _cell_text(value: object) -> str:
     """Return a value as a cell of CSV."""
-    if value is None or (isinstance(value, float) and value != value):
+    # pandas has values of its own for what is missing.
+    if value is None or (isinstance(value, float) and value != value) or type(value).__name__ in ("NAType", "NaTType"):
         return ""
     if isinstance(value, (list, tuple, np.ndarray)):
         return "[" + ", ".join(_cell_text(item) for item in value) + "]"
@@ -138,6 +139,11 @@ def csv_text(columns: Mapping[str, Any]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
     lists = [column.tolist() if hasattr(column, "tolist") else list(column) for column in columns.values()]
+    lengths = {name: len(column) for name, column in zip(columns, lists)}
+    if len(set(lengths.values())) > 1:
+        counted = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        help = "give each column the same number of rows, and a missing value as None or NaN"
+        raise PinswitchError(f"columns of different lengths: {counted}", code="wrong-type", help=help)
     writer.writerows([_cell_text(value) for value in row] for row in zip(*lists))
     return text.getvalue()
 
@@ -149,37 +155,63 @@ def columns_of(frame: Any) -> dict[str, list[Any]]:
     if hasattr(frame, "collect") and hasattr(frame, "lazy"):  # a lazy frame of polars
         frame = frame.collect()
     if hasattr(frame, "to_pydict"):  # pyarrow
+        _check_names(frame.column_names)
         return dict(frame.to_pydict())
     if hasattr(frame, "get_columns"):  # polars
         return {column.name: column.to_list() for column in frame.get_columns()}
     if hasattr(frame, "columns") and hasattr(frame, "iloc"):  # pandas
         names = [str(name) for name in frame.columns]
-        if len(set(names)) < len(names):
-            twice = next(name for name in names if names.count(name) > 1)
-            help = "rename or drop one of them"
-            raise PinswitchError("two columns have the same name", code="duplicate-entry", help=help, field=twice)
+        _check_names(names)
         return {name: frame.iloc[:, i].tolist() for i, name in enumerate(names)}
     if isinstance(frame, Mapping):
         return {str(name): list(column) for name, column in frame.items()}
     if hasattr(frame, "__arrow_c_stream__"):
         import pyarrow
 
-        return dict(pyarrow.table(frame).to_pydict())
+        try:
+            table = pyarrow.table(frame)
+        except (pyarrow.ArrowException, TypeError) as error:
+            raise _not_a_table(frame) from error
+        _check_names(table.column_names)
+        return dict(table.to_pydict())
     rows: list[Any] = list(frame) if isinstance(frame, Iterable) else [frame]
     if not all(isinstance(row, Mapping) for row in rows):
-        problem = f"a {type(frame).__name__} is not a table"
-        help = "give a frame of pandas, polars or pyarrow, a mapping of columns, or rows as mappings"
-        raise PinswitchError(problem, code="wrong-type", help=help)
+        raise _not_a_table(frame)
     names = list(dict.fromkeys(name for row in rows for name in row))
     return {name: [row.get(name) for row in rows] for name in names}
 
 
+def _check_names(names: Iterable[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            help = "rename or drop one of them"
+            raise PinswitchError("two columns have the same name", code="duplicate-entry", help=help, field=name)
+        seen.add(name)
+
+
+def _not_a_table(frame: object) -> PinswitchError:
+    problem = f"a {type(frame).__name__} is not a table"
+    help = "give a frame of pandas, polars or pyarrow, a mapping of columns, or rows as mappings"
+    return PinswitchError(problem, code="wrong-type", help=help)
+
+
 def read_csv(text: str) -> Table:
-    """Return the table of a CSV text; a column whose cells are all numbers or empty is float64."""
+    """Return the table of a CSV text; a column whose cells are all numbers or empty is float64.
+
+    Raises
+    ------
+    PinswitchError
+        If a row has another number of cells than the header.
+    """
     rows = list(csv.reader(io.StringIO(text)))
     if not rows:
         return Table({})
     head, body = rows[0], rows[1:]
+    for line, row in enumerate(body, 2):
+        if len(row) != len(head):
+            problem = f"row {line} has {len(row)} cells, the header {len(head)}"
+            raise PinswitchError(problem, code="wrong-type", help="give each row a cell per column", line=line)
     return Table({name: _column(name, [row[i] for row in body]) for i, name in enumerate(head)})
 
 

@@ -1,7 +1,7 @@
 // The report of a set: the same page, read only, with its answers inside.
 
 import { execFile } from 'node:child_process';
-import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { Browser, Visit } from './driver.mjs';
@@ -22,19 +22,20 @@ function splitStl(bytes) {
 }
 
 // Makes a set; returns its folder and the address of its report.
-async function made(binary, scratch, name, options = []) {
+async function made({ binary, scratch, findings }, name, options = []) {
   const folder = join(scratch, name);
   await promisify(execFile)(binary, ['-q', 'generate', 'three-double', ...options, '--out', folder]);
+  const bytes = statSync(join(folder, 'report.html')).size;
+  findings.check('a report has less than 1.5 MB', bytes < 1.5e6, `${name}: ${bytes}`);
   return { folder, address: `file://${join(folder, 'report.html')}` };
 }
 
 // One report is enough: it has neither server nor module.
 const isFirst = (site) => !site.file;
 
-export async function reportIsReadOnly(visit, site, { binary, scratch }) {
+export async function reportIsReadOnly(visit, site, shared) {
   if (!isFirst(site)) return;
-  const { folder, address } = await made(binary, scratch, 'read-only');
-  visit.findings.check('the page has less than 1.5 MB', readFileSync(join(folder, 'report.html')).length < 1.5e6);
+  const { address } = await made(shared, 'read-only');
   await visit.open(address);
   visit.findings.check('its title is the name of the set', await visit.page.title() === 'three-double: friction switch');
   const shown = await visit.page.evaluate(() => [...document.querySelectorAll('input, select, button, [tabindex="0"], [role=slider]')].filter((e) => e.checkVisibility() && !e.closest('[inert]')).map((e) => e.id || e.className));
@@ -58,9 +59,9 @@ export async function reportIsReadOnly(visit, site, { binary, scratch }) {
   visit.findings.check('checks, bill, parts and bed are filled', filled.every((n) => n > 2), filled);
 }
 
-export async function reportSavesItsFiles(visit, site, { binary, scratch }) {
+export async function reportSavesItsFiles(visit, site, shared) {
   if (!isFirst(site)) return;
-  const { folder, address } = await made(binary, scratch, 'saved');
+  const { folder, address } = await made(shared, 'saved');
   await visit.open(address);
   await visit.page.evaluate(() => {
     window.saved = new Map();
@@ -91,9 +92,10 @@ export async function reportSavesItsFiles(visit, site, { binary, scratch }) {
   }
 }
 
-export async function reportAtEachWidth(visit, site, { binary, scratch, pictures }) {
+export async function reportAtEachWidth(visit, site, shared) {
   if (!isFirst(site)) return;
-  const { address } = await made(binary, scratch, 'widths');
+  const { pictures } = shared;
+  const { address } = await made(shared, 'widths');
   for (const [name, [width, height]] of Object.entries(WIDTHS)) {
     for (const dark of [false, true]) {
       await visit.look(width, height, dark);
@@ -121,9 +123,10 @@ export async function reportAtEachWidth(visit, site, { binary, scratch, pictures
 }
 
 // Without WebGL, without scripts, and with a script of someone else.
-export async function reportElsewhere(visit, site, { binary, scratch, tools, executable, findings }) {
+export async function reportElsewhere(visit, site, shared) {
   if (!isFirst(site)) return;
-  const { folder, address } = await made(binary, scratch, 'elsewhere', ['--set', 'mount.kind=joint']);
+  const { tools, executable, findings } = shared;
+  const { folder, address } = await made(shared, 'elsewhere', ['--set', 'mount.kind=joint']);
   await visit.open(address);
   await visit.slide('#flexion', 40);
   visit.findings.check('a joint turns', (await visit.text('#flexion-value')).startsWith('40°'));

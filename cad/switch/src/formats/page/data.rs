@@ -98,8 +98,8 @@ impl PageData {
         let design = built.design();
         let contact = contact_states(design);
         let stl = |name: &str| Some(format!("{name}.stl"));
-        let mut meshes: Vec<MeshData> =
-            built.printed().iter().map(|p| encoded(&p.print_mesh, stl(&p.part().name))).collect();
+        // Those of the assembly only: a page does not show mould, proxy and coupon.
+        let mut meshes: Vec<MeshData> = Vec::new();
         let mut bodies = Vec::new();
         for body in built.assembly() {
             let Some(pose) = body.part.pose else { continue };
@@ -107,19 +107,17 @@ impl PageData {
             if body.part.role == Role::Tendon && !contact.load_n.is_empty() {
                 continue;
             }
-            let printed = built.printed().iter().position(|p| std::ptr::eq(&p.body, body));
+            let printed = built.printed().iter().find(|p| std::ptr::eq(&p.body, body));
             let (mesh, matrix) = match printed {
-                Some(mesh) => (mesh, into_assembly(body, pose)),
-                None => {
-                    meshes.push(encoded(&pose.apply(body.mesh.clone()), None));
-                    (meshes.len() - 1, nalgebra::Matrix4::identity())
-                }
+                Some(part) => (encoded(&part.print_mesh, stl(&part.part().name)), into_assembly(body, pose)),
+                None => (encoded(&pose.apply(body.mesh.clone()), None), nalgebra::Matrix4::identity()),
             };
+            meshes.push(mesh);
             bodies.push(Body {
                 name: body.part.name.clone(),
                 material: body.part.material(),
                 colour: body.part.role.colour(),
-                mesh,
+                mesh: meshes.len() - 1,
                 matrix: <[f64; 16]>::try_from(matrix.as_slice()).unwrap_or_default(),
                 explode_offset: body.part.role.explode_offset_mm().into(),
                 sink: sink(body.part.role, design, &contact),

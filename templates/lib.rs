@@ -55,7 +55,7 @@ pub const TEMPLATES: [Template; 10] = [
 ];
 
 /// Example files of other kinds, by the name that `pinswitch init` takes; each explains its keys and is valid unchanged.
-pub const EXAMPLES: [(&str, &str); 8] = [
+pub const EXAMPLES: [(&str, &str); 9] = [
     ("sweep", include_str!("batch/sweep.toml")),
     ("configurations", include_str!("batch/configurations.csv")),
     ("effects", include_str!("rig/effects.toml")),
@@ -64,6 +64,7 @@ pub const EXAMPLES: [(&str, &str); 8] = [
     ("rig", include_str!("rig/rig.toml")),
     ("import", include_str!("rig/import.toml")),
     ("measured", include_str!("rig/measured.toml")),
+    ("request", include_str!("requests/gripper.toml")),
 ];
 
 /// Rigs without a switch, by the word that `pinswitch init rig --kind` takes, in the format of the example `rig`.

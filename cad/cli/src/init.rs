@@ -22,7 +22,7 @@ use crate::write::write_file;
 pub(super) struct Arguments {
     /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
     /// of other kinds: `sweep` for a batch, `configurations` for a table to predict, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
-    /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file, `measured` for the readings of a made switch.
+    /// raw logs, `rig` for the limits of a rig, `import` for the columns of a file, `measured` for the readings of a made switch, `request` for a design.
     name: String,
     /// Kind of rig, with the name `rig` [default: the paper's].
     #[arg(long, value_name = "KIND", value_parser = RIGS.map(|(kind, _)| kind))]
@@ -43,8 +43,14 @@ pub(super) struct Arguments {
 pub(super) const CONFIGURATIONS: &str = "configurations";
 
 /// Commands whose names may be given by mistake, and the kind of file that each needs.
-const NEEDS: [(&str, &str); 5] =
-    [("batch", "sweep"), ("simulate", "plan"), ("power", "plan"), ("segment", "run"), ("experiment", "rig")];
+const NEEDS: [(&str, &str); 6] = [
+    ("batch", "sweep"),
+    ("simulate", "plan"),
+    ("power", "plan"),
+    ("segment", "run"),
+    ("experiment", "rig"),
+    ("design", "request"),
+];
 
 /// Returns the failure of a name that no template has, with the most similar one.
 fn unknown(name: &str) -> Failure {
@@ -146,7 +152,7 @@ mod tests {
             assert!(help.starts_with(suggestion), "{help}");
             assert!(
                 help.contains(
-                    "the kinds are sweep, configurations, effects, plan, run, rig, import, measured,"
+                    "the kinds are sweep, configurations, effects, plan, run, rig, import, measured, request,"
                 ),
                 "{help}"
             );

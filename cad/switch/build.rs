@@ -7,7 +7,7 @@ use std::path::Path;
 mod minified;
 
 /// Scripts of the page, in the order in which they are joined; see page/README.md.
-const SCRIPTS: [&str; 25] = [
+const SCRIPTS: [&str; 26] = [
     "text",
     "dom",
     "focus",
@@ -32,6 +32,7 @@ const SCRIPTS: [&str; 25] = [
     "downloads",
     "embed",
     "server",
+    "install",
     "page",
 ];
 

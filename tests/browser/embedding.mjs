@@ -93,3 +93,25 @@ export async function followedFile(visit, site, { anotherView }) {
     await view.end();
   }
 }
+
+// A published page names a manifest with which a browser installs it.
+export async function installable(visit, site) {
+  await visit.open(site.address);
+  const client = await visit.page.createCDPSession();
+  const { url, errors, data } = await client.send('Page.getAppManifest');
+  await client.detach();
+  if (!site.file) { visit.findings.check('a served page is not an app', !url, url); return; }
+  const manifest = JSON.parse(data);
+  visit.findings.check('the manifest has no error', errors.length === 0, JSON.stringify(errors));
+  visit.findings.check('it starts the page at its own address', manifest.start_url === site.address && manifest.display === 'standalone', manifest.start_url);
+  const shows = await visit.page.evaluate((src) => new Promise((done) => {
+    const image = new Image();
+    image.onload = () => done(image.naturalWidth > 0);
+    image.onerror = () => done(false);
+    image.src = src;
+  }), manifest.icons[0].src);
+  visit.findings.check('its icon is a picture', shows);
+  const obstacles = await visit.page.createCDPSession().then(async (session) => (await session.send('Page.getInstallabilityErrors')).installabilityErrors);
+  const real = obstacles.filter(({ errorId }) => errorId !== 'in-incognito');
+  visit.findings.check('nothing hinders the installation', real.length === 0, JSON.stringify(real));
+}

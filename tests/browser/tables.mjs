@@ -46,6 +46,32 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.settled();
 }
 
+// Without a table of one's own: an example, its verdict, and what to measure next.
+export async function exampleAndNextRuns(visit, site) {
+  await visit.open(site.address + START);
+  await visit.click('#sample-table');
+  await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
+  visit.findings.check('the example has its effect', /pins plough the coating/.test(await visit.text('#verdict')), await visit.text('#verdict'));
+  // The module has no room for it.
+  visit.findings.check('a served page plans the next runs', await visit.shown('#plan-runs') === !site.file);
+  if (site.file) return;
+  await visit.type('#next-minutes', '-3');
+  await visit.click('#plan-runs');
+  await visit.page.waitForSelector('#next-plan .error', { timeout: SLOW_MS });
+  visit.findings.check('an impossible time is refused', /at most 2400 minutes/.test(await visit.text('#next-plan')), await visit.text('#next-plan'));
+  await visit.type('#next-minutes', '20,5');
+  await visit.click('#plan-runs');
+  await visit.page.waitForSelector('#next-plan li', { timeout: SLOW_MS });
+  const text = await visit.text('#next-plan');
+  const [, runs, minutes] = /(\d+) runs in (\d+) minutes/.exec(text) ?? [];
+  visit.findings.check('runs within the time are planned', runs > 3 && minutes <= 21, text);
+  await visit.page.evaluate(() => { HTMLAnchorElement.prototype.click = function click() { window.saved = this.download; }; });
+  await visit.page.$$eval('#next-plan button', (all) => all.forEach((e) => e.click()));
+  await visit.check('the run sheet can be saved', () => window.saved === 'run-sheet.html');
+  await visit.drop('other.csv', 'a,b\n1,2\n');
+  visit.findings.check('another table has no such plan', !await visit.shown('#next'));
+}
+
 // A model says nothing about what its tendon never touched, so it is not offered for such a switch.
 export async function modelOfAnotherMaterial(visit, site, { table }) {
   await visit.open(site.address + START);

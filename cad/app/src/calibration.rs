@@ -2,7 +2,9 @@
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{EffectReport, Estimate, ModelFile, Report, SessionReport, calibrate};
+use pinswitch_calibration::{
+    Calibration, EffectReport, Estimate, ModelFile, Report, SessionReport, calibrate,
+};
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_report::friction_words;
 use serde::Serialize;
@@ -17,6 +19,17 @@ pub(crate) const MAX_TABLE_MB: usize = 20;
 const MAX_TABLE_BYTES: usize = MAX_TABLE_MB * 1_000_000;
 /// Seed of the interval of the expected error; it is fixed, so that a table has one result.
 const SEED: u64 = 1;
+
+/// A simulated table with one effect: every tenth series of
+/// `pinswitch simulate --randomised --effect coating_ploughing=0.024`.
+pub(crate) const SAMPLE: &str = include_str!("sample.csv");
+
+/// A table to try.
+#[derive(Serialize)]
+struct Sample {
+    csv: &'static str,
+    file: &'static str,
+}
 
 /// Least probability that is shown, and most of them.
 const LEAST_PROBABILITY: f64 = 0.05;
@@ -80,7 +93,16 @@ pub(crate) fn answer(csv: &str, file: &str) -> Answer {
     summary(csv, file).map_or_else(Answer::error, |summary| Answer::json(&summary))
 }
 
-fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
+/// Returns a table to try a calibration with.
+pub(crate) fn sample() -> Answer {
+    Answer::json(&Sample { csv: SAMPLE, file: "sample.csv" })
+}
+
+/// Reads a table and calibrates with it; `file` is its name in errors.
+///
+/// # Errors
+/// A [`Diagnostic`] if the table is too long, or cannot be read or fitted.
+pub(crate) fn calibrated(csv: &str, file: &str) -> Result<(PlateauTable, Calibration), Diagnostic> {
     if csv.len() > MAX_TABLE_BYTES {
         let mb = csv.len() / 1_000_000;
         let problem = format!("the table has {mb} MB, and a page reads at most {MAX_TABLE_MB} MB");
@@ -92,6 +114,11 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
     table.require_baseline(file).map_err(Diagnostic::from)?;
     let calibration = calibrate(&table.rows, &Vocabulary::built_in(), SEED)
         .map_err(|e| Diagnostic::from(e).or_in_file(file))?;
+    Ok((table, calibration))
+}
+
+fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
+    let (table, calibration) = calibrated(csv, file)?;
     let report = &calibration.report;
     let model = ModelFile::new(&calibration.augmented);
     let is_switch = table.rows.iter().any(|row| row.substrate.is_some());

@@ -58,6 +58,8 @@ mod files;
 mod measurement_file;
 #[cfg(target_arch = "wasm32")]
 mod module;
+#[cfg(not(target_arch = "wasm32"))]
+mod next_runs;
 mod prediction_cache;
 mod reach;
 mod refusal;
@@ -130,6 +132,9 @@ impl Engine {
             Request::Model { toml, file } => Answer::json(&calibration::check_model(&toml, &file)),
             Request::Import { data, file, set } => measurement_file::answer(&data, &file, &set),
             Request::Calibrate { csv, file } => calibration::answer(&csv, &file),
+            Request::Sample => calibration::sample(),
+            #[cfg(not(target_arch = "wasm32"))]
+            Request::Experiment { csv, file, minutes } => next_runs::answer(&csv, &file, minutes),
         }
     }
 }

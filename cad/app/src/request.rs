@@ -46,6 +46,12 @@ pub(crate) enum Request {
     Import { data: String, file: String, set: Vec<String> },
     /// A calibration with a table of measured plateaus.
     Calibrate { csv: String, file: String },
+    /// A table to try a calibration with.
+    Sample,
+    /// The runs after a table that answer most open questions in some minutes. In the module it would take 27 kB of the
+    /// published page after gzip.
+    #[cfg(not(target_arch = "wasm32"))]
+    Experiment { csv: String, file: String, minutes: f64 },
 }
 
 /// A design.

@@ -131,7 +131,7 @@ class Engine {
   // Returns the answer; throws EngineError if there is none, and Superseded if a newer design
   // replaces this one. A design with `extra` is neither replaced nor replaces others.
   async request({ extra, ...request }) {
-    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.command);
+    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate', 'experiment'].includes(request.command);
     const group = request.command === 'design' && !extra ? 'design' : undefined;
     this.inProgress.add(request);
     const answer = await (isSlow ? this.slow : this.designs).request(request, group).finally(() => this.inProgress.delete(request));

@@ -9,6 +9,11 @@ class Measurements {
     byId('table-file').addEventListener('change', (event) => { this.onFiles?.(event.target.files); event.target.value = ''; });
     byId('choose-table').addEventListener('click', () => byId('table-file').click());
     byId('use-model').addEventListener('click', () => this.useModel());
+    byId('sample-table').addEventListener('click', async () => {
+      const { csv, file } = await this.engine.request({ command: 'sample' });
+      this.calibrate(csv, file);
+    });
+    byId('plan-runs').addEventListener('click', () => this.plan());
     byId('stop-fit').addEventListener('click', () => this.engine.stop('calibrate'));
     byId('remove-model').addEventListener('click', () => this.state.change({ model: null }));
     this.updatePreview = debounce(() => this.preview(), EXACT_DELAY_MS);
@@ -33,6 +38,10 @@ class Measurements {
     this.fitted = null;
     // Whether the fitted model has a curve of the design, which the preview finds out.
     this.predicts = false;
+    // The table, from which the next runs are planned.
+    this.table = null;
+    byId('next').hidden = true;
+    byId('next-plan').replaceChildren();
     this.curve.setMeasured([]);
     byId('fit').hidden = true;
     byId('model-error').hidden = true;
@@ -81,6 +90,7 @@ class Measurements {
 
   async calibrate(csv, file) {
     const number = this.begin();
+    byId('sample-table').hidden = true;
     const endReports = reportElapsed((seconds) => this.report([TEXT.calibrating(file, seconds)]));
     byId('stop-fit').hidden = false;
     byId('measurements').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
@@ -95,6 +105,8 @@ class Measurements {
       const open = answer.verdict === 'inconclusive' ? [TEXT.notExcluded(answer.not_excluded)] : [];
       const friction = answer.friction ? [`${answer.friction}.`] : [];
       const { probabilities, sizes, points, residuals } = answer;
+      this.table = { csv, file };
+      byId('next').hidden = document.body.dataset.state !== 'served';
       this.keep({ file, model: answer.model, head: TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict), lines: [...friction, ...detected, ...open, ...errors], probabilities, sizes, points, residuals });
     } catch (problem) {
       if (number !== this.fitNumber) return;
@@ -102,6 +114,30 @@ class Measurements {
     } finally {
       // The fit of a later table can still be stopped.
       if (number === this.fitNumber) byId('stop-fit').hidden = true;
+    }
+  }
+
+  // Plans the runs that answer most open questions of the last table.
+  async plan() {
+    const { table } = this;
+    const box = byId('next-plan');
+    const endReports = reportElapsed((seconds) => box.replaceChildren(make('p', TEXT.planning(seconds))));
+    byId('plan-runs').disabled = true;
+    try {
+      const minutes = Number(byId('next-minutes').value.replace(',', '.'));
+      const plan = await this.engine.request({ command: 'experiment', ...table, minutes }).finally(endReports);
+      if (table !== this.table) return;
+      const questions = make('ul');
+      questions.append(...plan.questions.map(([between, p]) => make('li', `${TEXT.question(between)}: ${TEXT.percent(p)}`)));
+      const files = make('p', undefined, { class: 'row' });
+      files.append(button(TEXT.saveRuns, () => save('next-runs.csv', plan.csv, 'text/csv'), { class: 'btn small' }), button(TEXT.saveSheet, () => save('run-sheet.html', plan.sheet, 'text/html'), { class: 'btn small' }));
+      box.replaceChildren(make('p', plan.questions.length ? TEXT.planned(plan.runs, plan.minutes) : TEXT.nothingOpen), questions, files);
+    } catch (problem) {
+      if (table !== this.table || problem instanceof Superseded) return;
+      if (!(problem instanceof EngineError)) throw problem;
+      box.replaceChildren(make('p', problem.message, { class: 'error' }));
+    } finally {
+      byId('plan-runs').disabled = false;
     }
   }
 

@@ -53,6 +53,7 @@ function fillTexts() {
 class Page {
   async start() {
     fillTexts();
+    nameApp();
     floatNotice();
     new Focus();
     this.engine = new Engine();

@@ -25,6 +25,10 @@ const TEXT = {
   targetThreshold: 'Switches at', targetFriction: 'Friction of', targetLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', useDesign: 'Use this design',
   isReport: 'This page shows a set that is made. To change it, open assembly.3mf or its TOML file with `pinswitch view`.', filesBeside: 'Linked files are in the folder of this page.',
   measurements: 'Your measurements', chooseTable: 'Choose a table', useModel: 'Use this model in the design', removeModel: 'Back to the published constants',
+  sampleTable: 'Try an example', planRuns: 'What to measure next', withinMinutes: 'in', planning: (seconds) => `Planning the next runs: ${seconds} s`,
+  planned: (runs, minutes) => `${runs} runs in ${Math.round(minutes)} minutes. Probability that they answer each open question:`, nothingOpen: 'No question is open: every effect that matters is named without a rival, or ruled out.',
+  question: ([effect, other]) => (other === 'none' ? TEXT.effectNames[effect] ?? effect : `${TEXT.effectNames[effect] ?? effect}, or ${TEXT.effectNames[other] ?? other}`),
+  saveRuns: 'Save the runs', saveSheet: 'Save the run sheet',
   measurementsHelp: 'Drop a table of your rig (CSV, Excel, LVM) anywhere on the page. The calibration reports whether the model fits your switch, and what it lacks.',
   filesTitle: 'Download', everything: 'All files as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
 

@@ -52,7 +52,7 @@ impl Workload {
             command: Cow<'a, str>,
         }
         match serde_json::from_slice::<Kind<'_>>(request).as_ref().map(|kind| &*kind.command) {
-            Ok("search" | "calibrate" | "import") => Self::Long,
+            Ok("search" | "calibrate" | "import" | "experiment") => Self::Long,
             Ok("files" | "file" | "zip") => Self::Files,
             _ => Self::Design,
         }

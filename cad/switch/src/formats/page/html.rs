@@ -71,12 +71,13 @@ impl PageState<'_> {
     }
 
     /// Returns the Content-Security-Policy of the page, the same in a saved page and in a header: only its own scripts run.
-    /// The worker is a `blob:` of text in the page, and compiles the module.
+    /// The worker is a `blob:` of text in the page, and compiles the module; the manifest of the app is a `data:` of text.
     #[must_use]
     pub fn policy(self) -> String {
         let policy = policy(&[THREE, UPLOT, ASSEMBLY, SCRIPT]);
         match self {
-            Self::File(_) => policy.replace("script-src", "worker-src blob:; script-src 'wasm-unsafe-eval'"),
+            Self::File(_) => policy
+                .replace("script-src", "worker-src blob:; manifest-src data:; script-src 'wasm-unsafe-eval'"),
             Self::Served => policy,
             Self::Report(_) => policy.replace("connect-src 'self'", "connect-src 'none'"),
         }

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
     Calibration, ExternalInput, ProvenanceReport, SessionPlan, SessionReport, calibrate, calibrate_below,
@@ -17,7 +17,8 @@ use pinswitch_calibration::{
 };
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_report::{
-    DATA_PACKAGE, UNEXPLAINED, calibration_files, data_package, published_page, published_plot,
+    DATA_PACKAGE, FORM_FILE, FORM_HEADER, UNEXPLAINED, calibration_files, data_package, published_page,
+    published_plot,
 };
 use pinswitch_switch::output::OutputFile;
 
@@ -70,14 +71,6 @@ pub(super) struct Arguments {
 
 /// Name of this command in a manifest.
 const COMMAND: &str = "calibrate";
-/// File of a form that was fitted to unattributed structure.
-pub(super) const FORM_FILE: &str = "discovered.toml";
-/// Begin of that file, by which a later run recognises it.
-const FORM_HEADER: &str =
-    "# Fitted by `pinswitch calibrate`, not confirmed. Test it on other data; to rename the effect, edit a copy.
-#   pinswitch calibrate next.csv --effects discovered.toml --out DIR
-";
-
 /// Refuses a folder whose form was read as input: a later step would remove it.
 pub(super) fn check_stale_form(folder: &Path) -> Result<(), Failure> {
     let path = folder.join(FORM_FILE);
@@ -134,16 +127,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
     let mut files = files(&table, &calibration, &name)?;
-    let stale = match &calibration.form {
-        Some(form) => {
-            let text = format!("{FORM_HEADER}{}", own_effects_text([&form.definition]));
-            files.insert(0, OutputFile { name: FORM_FILE.to_owned(), bytes: text.into_bytes() });
-            &[]
-        }
-        None => {
-            check_stale_form(&arguments.out)?;
-            stale_form(&out)?
-        }
+    let stale = if calibration.form.is_some() {
+        &[]
+    } else {
+        check_stale_form(&arguments.out)?;
+        stale_form(&out)?
     };
     let contents: Vec<_> = files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect();
     let (package, bytes) = data_package(&title_of(&name), &sources(), &contents).map_err(Failure::failed)?;

@@ -11,10 +11,10 @@ use pinswitch_calibration::experiment::{
 };
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
-use pinswitch_report::run_sheet;
+use pinswitch_report::{FORM_FILE, run_sheet};
 use pinswitch_switch::output::OutputFile;
 
-use super::calibrate::{FORM_FILE, stale_form};
+use super::calibrate::stale_form;
 use super::calibrated_curve::read_model;
 use super::terminal::to_json;
 use super::user_effects::UserEffects;

@@ -28,6 +28,7 @@ def main() -> None:
         client.execute()
         print(path.name)
         if len(sys.argv) > 1:
+            Path(sys.argv[1]).mkdir(parents=True, exist_ok=True)
             FORMAT.write(notebook, Path(sys.argv[1]) / path.name)
 
 

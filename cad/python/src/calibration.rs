@@ -1,6 +1,5 @@
 //! Calibrations, and their models.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use numpy::PyArray1;
@@ -9,7 +8,8 @@ use pinswitch::calibration::evidence::Session;
 use pinswitch::calibration::experiment::{Known, RigLimits, propose, write_runs};
 use pinswitch::calibration::table::PlateauTable;
 use pinswitch::calibration::{
-    self as library, Calibration as Found, ModelFile, Report, calibrate as calibrate_rows, calibrate_below,
+    self as library, Calibration as Found, ModelFile, Report, SessionReport, calibrate as calibrate_rows,
+    calibrate_below,
 };
 use pinswitch::diagnostic::{Diagnostic, codes};
 use pinswitch::report::{calibration_files, data_package, run_sheet};
@@ -188,6 +188,20 @@ impl Calibration {
     }
 }
 
+/// Reads and joins tables; also returns their names for errors.
+fn joined(tables: &[NamedBytes]) -> Result<(PlateauTable, String), Diagnostic> {
+    let read = |(name, bytes): &NamedBytes| Ok((PlateauTable::read(bytes.as_slice(), name)?, name.clone()));
+    let mut read = tables.iter().map(read).collect::<Result<Vec<_>, Diagnostic>>()?;
+    let name = read.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(" + ");
+    let table = match read.len() {
+        0 => return Err(Diagnostic::new(codes::USAGE, "no plateau table").with_help("give at least one")),
+        1 => read.remove(0).0,
+        _ => PlateauTable::joined(read)?,
+    };
+    table.require_baseline(&name)?;
+    Ok((table, name))
+}
+
 /// Returns the name of a table without its folder.
 fn title_of(name: &str) -> String {
     name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
@@ -208,19 +222,16 @@ pub(crate) fn calibrate(
 ) -> PyResult<Calibration> {
     let calibrated = task::run(py, None, move |_| -> Result<Calibration, Diagnostic> {
         let vocabulary = vocabulary(&effects)?;
-        let (mut read, mut sources) = (Vec::new(), BTreeSet::new());
-        for (name, bytes) in tables {
-            sources.insert((title_of(&name), sha256(&bytes)));
-            let table = PlateauTable::read(bytes.as_slice(), &name)?;
-            read.push((table, name));
+        let sources = tables.iter().map(|(name, bytes)| (title_of(name), sha256(bytes))).collect();
+        let (mut table, name) = joined(&tables)?;
+        // The results after the first table, the first two, and so on, as the command line reports them.
+        let mut sessions = Vec::new();
+        for count in 1..tables.len() {
+            let (table, name) = joined(&tables[..count])?;
+            let found = calibrate_rows(&table.rows, &vocabulary, SEED);
+            let found = found.map_err(|error| Diagnostic::from(error).or_in_file(&name))?;
+            sessions.push(SessionReport::after(tables[count - 1].0.clone(), &found.report));
         }
-        let name = read.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(" + ");
-        let mut table = match read.len() {
-            0 => return Err(Diagnostic::new(codes::USAGE, "no plateau table").with_help("give at least one")),
-            1 => read.remove(0).0,
-            _ => PlateauTable::joined(read)?,
-        };
-        table.require_baseline(&name)?;
         let found: Result<Found, library::CalibrationError> = match fit_below {
             None => calibrate_rows(&table.rows, &vocabulary, SEED),
             Some(share) => {
@@ -232,6 +243,10 @@ pub(crate) fn calibrate(
         };
         let mut found = found.map_err(|error| Diagnostic::from(error).or_in_file(&name))?;
         found.report.ignored_columns = table.ignored_columns();
+        if let Some((last, _)) = tables.last().filter(|_| !sessions.is_empty()) {
+            sessions.push(SessionReport::after(last.clone(), &found.report));
+            found.report.sessions = sessions;
+        }
         let title = title_of(&name);
         let mut files = calibration_files(&title, &table, &found)?;
         let report = serde_json::to_string_pretty(&found.report);

@@ -34,10 +34,6 @@ impl Curve {
     pub(crate) fn curve(&self) -> &FrictionCurve {
         &self.curve
     }
-
-    pub(crate) fn others(&self) -> &[FrictionCurve] {
-        &self.others
-    }
 }
 
 /// Returns the numbers of a curve as arrays.

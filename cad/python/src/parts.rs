@@ -124,7 +124,8 @@ impl Parts {
         source: String,
     ) -> PyResult<Bound<'py, PyDict>> {
         let built = Arc::clone(&self.built);
-        let prediction = Prediction { curve: curve.curve().clone(), others: curve.others().to_vec() };
+        // With the other laws as `pinswitch generate` draws them.
+        let prediction = Prediction::with_curve(built.design(), curve.curve().clone());
         let set = task::run(py, None, move |_| -> Result<Set, Diagnostic> {
             let names: Vec<&str> = match &formats {
                 Some(all) => all.iter().map(String::as_str).collect(),

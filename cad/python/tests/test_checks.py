@@ -15,12 +15,21 @@ import pyarrow
 import pytest
 
 import pinswitch
-from pinswitch import PinswitchError
+from pinswitch import PinswitchError, bam
 from pinswitch.mujoco import Surface
 
 EXAMPLES = Path(__file__).parents[3] / "model" / "doc" / "examples"
 CAPSTAN = str(EXAMPLES / "capstan.csv")
 ROW: dict[str, Any] = {"shell.width_mm": [13.0]}
+
+
+def _effect(act: Callable[[Any, Any], object]) -> object:
+    @pinswitch.effect(side="rig", covariate="load", acts_on="reading", combine="factor")
+    def strange(row: Any, k: Any = pinswitch.size(0.1)) -> Any:
+        return act(row, k)
+
+    return strange
+
 
 REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("seed -1", "out-of-range", lambda: pinswitch.simulate(seed=-1)),
@@ -39,7 +48,7 @@ REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("set as a list", "wrong-type", lambda: pinswitch.read(CAPSTAN, set=["a=b"])),  # type: ignore[arg-type]
     ("acting as a list", "wrong-type", lambda: pinswitch.simulate(acting=["x"])),  # type: ignore[arg-type]
     ("acting as a word", "wrong-type", lambda: pinswitch.simulate(acting={"coating_ploughing": "x"})),
-    ("logs as words", "wrong-type", lambda: pinswitch.bam.identify(["x.json"])),  # type: ignore[attr-defined]
+    ("logs as words", "wrong-type", lambda: bam.identify(["x.json"])),  # type: ignore[list-item]
     ("curve as a word", "wrong-type", lambda: Surface.of_curve("three-double")),  # type: ignore[arg-type]
     ("effects as words", "wrong-type", lambda: pinswitch.effect_file(["x"])),  # type: ignore[list-item]
     ("size as a word", "wrong-type", lambda: pinswitch.size("a")),  # type: ignore[arg-type]
@@ -52,14 +61,25 @@ REFUSED: list[tuple[str, str, Callable[[], object]]] = [
     ("law and model", "conflicting-settings", lambda: pinswitch.predict("three-double", law="paper", model="m.toml")),
     ("law and model of a table", "conflicting-settings",
      lambda: pinswitch.predict_table(ROW, law="paper", model="m.toml")),
+    ("loads in two lists", "wrong-type", lambda: pinswitch.predict("three-double", [[1, 2], [3, 4]])),
+    ("law as a number", "wrong-type", lambda: pinswitch.predict("three-double", law=3)),  # type: ignore[call-overload]
+    ("model as a number", "wrong-type", lambda: pinswitch.predict("three-double", model=3)),
+    ("shard as a number", "wrong-type", lambda: pinswitch.batch("a.toml", "out", shard=5)),  # type: ignore[arg-type]
+    ("sweep as a mapping", "wrong-type", lambda: pinswitch.batch({"axes": {}}, "out")),  # type: ignore[arg-type]
+    ("wall as a word", "wrong-type", lambda: pinswitch.check(CAPSTAN, min_wall_mm="a")),  # type: ignore[arg-type]
+    ("frame as a file", "wrong-type", lambda: pinswitch.read(pandas.DataFrame())),  # type: ignore[arg-type]
+    ("list of files", "wrong-type", lambda: pinswitch.read([CAPSTAN])),  # type: ignore[arg-type]
+    ("servo as a word", "wrong-type", lambda: bam.identify([], servo="mx64")),  # type: ignore[arg-type]
+    ("step beyond the readings", "out-of-range", lambda: bam.identify([], step_s=10)),
+    ("effect without a result", "formula-syntax", lambda: _effect(lambda row, k: None)),
+    ("effect of an array", "formula-syntax", lambda: _effect(lambda row, k: k * np.array([1.0, 2.0]))),
+    ("effect of a text", "formula-syntax", lambda: _effect(lambda row, k: "k")),
     ("calibration as a word", "wrong-type", lambda: pinswitch.experiment("cal")),  # type: ignore[arg-type]
 ]
 
 
 @pytest.mark.parametrize(("name", "code", "call"), REFUSED, ids=[name for name, _, _ in REFUSED])
 def test_arguments_are_refused_with_a_code(name: str, code: str, call: Callable[[], object]) -> None:
-    import pinswitch.bam  # noqa: F401
-
     with pytest.raises(PinswitchError) as caught:
         call()
     assert caught.value.code == code and caught.value.help
@@ -93,6 +113,7 @@ def test_frames_are_sessions(session: pinswitch.Simulation) -> None:
     later = pinswitch.simulate(randomised=True, acting={"load_cell_offset": 0.8}, seed=3, next=True)
     both = pinswitch.calibrate(session, later)
     assert len(both.residuals) == len(session) + len(later)
+    assert [one["rows"] for one in both.report["sessions"]] == [len(session), len(session) + len(later)]
 
 
 def test_missing_values_of_frames_are_missing(config: pinswitch.Config, session: pinswitch.Simulation) -> None:
@@ -104,6 +125,33 @@ def test_missing_values_of_frames_are_missing(config: pinswitch.Config, session:
     assert curves["shell.width_mm"].dtype == np.float64 and np.isnan(curves["shell.width_mm"][-1])
     lazy = pinswitch.predict(polars.LazyFrame({"shell.width_mm": [13.0]}))  # type: ignore[call-overload]
     assert isinstance(lazy, pinswitch.CurveTable)
+
+
+def test_blocks_of_curves_have_the_same_columns(config: pinswitch.Config) -> None:
+    predicted = pinswitch.predict_table({"shell.width_mm": [12.5, 13.0]}, config)
+    mixed = pinswitch.predict_table({"shell.width_mm": [12.5, 1300.0]}, config)
+    refused = pinswitch.predict_table({"shell.width_mm": [1200.0, 1300.0]}, config)
+    whole = polars.concat([polars.DataFrame(block) for block in (predicted, mixed, refused)])
+    assert len(whole) == 2 * 21 + 21 + 1 + 2
+    assert pyarrow.concat_tables([pyarrow.table(predicted), pyarrow.table(refused)]).num_rows == 44
+
+
+def test_whole_numbers_stay_whole() -> None:
+    table = pinswitch.read_csv("load_mass_g,force_N\n500,1.25\n,2\n")
+    assert table.to_csv() == "load_mass_g,force_N\n500,1.25\n,2\n"
+
+
+def test_progress_is_shown(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    pinswitch.calibrate(CAPSTAN, progress=True)
+    assert "calibrating: done in" in capsys.readouterr().err
+
+
+def test_a_plan_is_saved_for_the_next_steps(calibration: pinswitch.Calibration, tmp_path: Path) -> None:
+    plan = calibration.experiment(20)
+    plan.save(tmp_path / "next")
+    assert sorted(f.name for f in (tmp_path / "next").iterdir()) == ["experiment.json", "next-runs.csv", "run-sheet.html"]
+    assert (tmp_path / "next" / "next-runs.csv").read_text() == plan.runs
 
 
 def test_a_request_takes_numbers_of_numpy() -> None:

@@ -76,7 +76,7 @@ mod scale;
 mod text_size;
 
 pub use calibration::{Plot, plots};
-pub use calibration_files::calibration_files;
+pub use calibration_files::{FORM_FILE, FORM_HEADER, calibration_files};
 pub use calibration_page::page;
 pub use contact::contact_svg;
 pub use data_package::{DATA_PACKAGE, data_package};

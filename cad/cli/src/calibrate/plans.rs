@@ -7,9 +7,9 @@ use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, by_contact, read_runs};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
+use pinswitch_report::FORM_FILE;
 
 use super::super::Failure;
-use super::FORM_FILE;
 use super::plan_match::PlanMatch;
 use crate::input::{read_file, read_text_file};
 use crate::terminal::warn;

@@ -22,9 +22,9 @@ def read_bytes(path: PathLike) -> bytes:
 
 
 def read_text(path: PathLike) -> str:
-    """Return the text of a file in UTF-8."""
+    """Return the text of a file in UTF-8, without the mark that some editors put at its begin."""
     try:
-        return read_bytes(path).decode("utf-8")
+        return read_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         help = "save the file as UTF-8 text"
         raise PinswitchError("not UTF-8", code="not-utf-8", help=help, file=os.fspath(path)) from error

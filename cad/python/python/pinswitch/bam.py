@@ -27,7 +27,7 @@ angle, and ``base`` to the drag of guides, which is the same at every load.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Optional
 
@@ -35,9 +35,12 @@ import numpy as np
 
 from . import _pendulum
 from ._bam_log import Log, read
-from ._checks import wrong_type
+from ._checks import in_range, whole, wrong_type
 from ._errors import PinswitchError
 from ._pendulum import BOUNDED, LOAD, LOGARITHMIC, NAMES, Bench, Floats, Solution
+
+#: Longest step of a simulation: that of the readings may be 0.1 s.
+LONGEST_STEP_S = 0.1
 
 __all__ = ["SERVOS", "Friction", "Interval", "Log", "Servo", "identify", "read"]
 
@@ -231,11 +234,18 @@ def identify(
         If there is no log, if a log is given twice, if logs are of several servos or without a supply voltage, if the
         servo is unknown, or if a step or speed is not positive.
     """
-    for name, value in (("step_s", step_s), ("block_s", block_s), ("stribeck_rad_s", stribeck_rad_s)):
-        if not 0 < value < math.inf:
-            problem = f"{name} = {value} is not a positive number"
-            help = f"give a positive {name}"
-            raise PinswitchError(problem, code="out-of-range", help=help, field=name, value=str(value))
+    if isinstance(logs, Log):
+        logs = [logs]
+    if not isinstance(logs, Iterable) or isinstance(logs, (str, bytes)):
+        raise wrong_type("logs", logs, "logs, as bam.read returns them")
+    logs = list(logs)
+    if servo is not None and not isinstance(servo, Servo):
+        raise wrong_type("servo", servo, "a Servo, such as SERVOS['mx64']")
+    step_s = in_range("step_s", step_s, 1e-5, LONGEST_STEP_S, "s")
+    block_s = in_range("block_s", block_s, step_s, 1e4, "s")
+    stribeck_rad_s = in_range("stribeck_rad_s", stribeck_rad_s, 1e-6, 1e3, "rad/s")
+    consequence = in_range("consequence", consequence, 1e-6, 1.0)
+    seed = whole("seed", seed, 0, 2**32)
     servo = _servo(logs, servo)
     bench = _bench(logs, servo, step_s, stribeck_rad_s)
     block = max(round(block_s / step_s), 1)

@@ -14,6 +14,7 @@ import numpy as np
 from . import _pinswitch
 from ._checks import in_range, wrong_type
 from ._files import read_text
+from ._notebook import elapsed
 from .config import ConfigLike
 from .curve import Curve, predict
 from .effects import effect_texts
@@ -42,6 +43,11 @@ class Experiment:
 
     def __init__(self, report: dict[str, Any], runs: str, sheet: str) -> None:
         self.report, self.runs, self.sheet = report, runs, sheet
+
+    def save(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> list[Path]:
+        """Write experiment.json, next-runs.csv and run-sheet.html, which ``pinswitch calibrate --plan`` reads."""
+        files = {"next-runs.csv": self.runs, "run-sheet.html": self.sheet, "experiment.json": json.dumps(self.report)}
+        return write_files(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
 
     def _repr_html_(self) -> str:
         return self.sheet
@@ -222,7 +228,7 @@ def experiment(
 
 
 def calibrate(
-    *tables: Any, effects: Sequence[Any] = (), fit_below: Optional[float] = None
+    *tables: Any, effects: Sequence[Any] = (), fit_below: Optional[float] = None, progress: bool = False
 ) -> Calibration:
     """Refit the paper's model to plateau tables, and infer the effects that it lacks.
 
@@ -236,6 +242,8 @@ def calibrate(
         User-defined effects, in addition to the catalogue.
     fit_below : float, optional
         Fit loads up to this share of the highest one, and test both models on the others.
+    progress : bool
+        Show the elapsed time.
 
     Raises
     ------
@@ -248,4 +256,6 @@ def calibrate(
         content, name = plateau_bytes(table, "table" if len(tables) == 1 else f"table {number}")
         named.append((name, content))
     fit_below = None if fit_below is None else in_range("fit_below", fit_below, *FIT_BELOW)
-    return Calibration(_pinswitch.calibrate(named, effect_texts(effects), fit_below))
+    texts = effect_texts(effects)
+    with elapsed("calibrating", progress):
+        return Calibration(_pinswitch.calibrate(named, texts, fit_below))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _pinswitch
-from ._checks import MAX_THREADS, whole
+from ._checks import MAX_THREADS, whole, wrong_type
 from ._errors import PinswitchError
 from ._files import read_bytes
 from ._notebook import progress_bar
@@ -22,6 +22,10 @@ from .table import Table, columns_of, csv_text
 Floats = NDArray[np.float64]
 #: Configuration, loads in N, law, and text and name of a model.
 _Inputs = tuple[Config, Optional[list[float]], Optional[str], Optional[tuple[str, str]]]
+
+
+#: Columns of a table of curves that are text, also if every cell is empty.
+TEXT_COLUMNS = frozenset({"status", "reason", "law", "trust"})
 
 
 class ArrowTable(Protocol):
@@ -155,6 +159,8 @@ ModelLike = Union[Model, str, "os.PathLike[str]", Any]
 
 def _model_text(model: Any, law: Optional[str] = None) -> Optional[tuple[str, str]]:
     """Return the text and the name of a model, a calibration or a file; it replaces the law."""
+    if law is not None and not isinstance(law, str):
+        raise wrong_type("law", law, "the name of a law")
     if model is None:
         return None
     if law is not None:
@@ -163,6 +169,8 @@ def _model_text(model: Any, law: Optional[str] = None) -> Optional[tuple[str, st
     if hasattr(model, "model"):
         model = model.model
     if not isinstance(model, Model):
+        if not isinstance(model, (str, os.PathLike)):
+            raise wrong_type("model", model, "a calibration, a model or the path of a model.toml")
         model = Model.load(model)
     return model.text, model.name
 
@@ -217,10 +225,13 @@ def predict(
             raise PinswitchError("loads_n is for one configuration", code="usage", help=help, field="loads_n")
         return predict_table(config, law=law, model=model)
     try:
-        loads = None if loads_n is None else np.atleast_1d(np.asarray(loads_n, dtype=float)).tolist()
+        loads = None if loads_n is None else np.atleast_1d(np.asarray(loads_n, dtype=float))
     except (TypeError, ValueError) as error:
         help = "give positive loads in newtons, in ascending order"
         raise PinswitchError("not numbers", code="wrong-type", help=help, field="loads_n") from error
+    if loads is not None and loads.ndim != 1:
+        raise wrong_type("loads_n", loads_n, "one list of loads in newtons")
+    loads = None if loads is None else loads.tolist()
     # What is not a frame is a configuration, or refused as one.
     return _predicted(config_of(cast(ConfigLike, config)), loads, law, _model_text(model, law))
 
@@ -276,7 +287,9 @@ def predict_table(
         )
     columns: dict[str, Any] = {"row": np.repeat(np.arange(1, len(counts) + 1), counts)}
     for column, values in rows.items():
-        columns[column] = np.repeat(_array(values), counts)
+        # Every table of curves has these as text, so that blocks can be joined.
+        array = np.array(values, dtype=object) if column in TEXT_COLUMNS else _array(values)
+        columns[column] = np.repeat(array, counts)
     return CurveTable({**columns, **lines})
 
 

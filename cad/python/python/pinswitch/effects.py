@@ -141,7 +141,12 @@ def _text(operand: Operand) -> str:
     """Return an operand as text of a formula, in which numbers are not negative."""
     if isinstance(operand, Expression):
         return operand.text
-    value = float(operand)
+    try:
+        value = float(operand)
+    except (TypeError, ValueError) as error:
+        help = "return arithmetic of the row and its constants, and use single numbers"
+        problem = f"the function of an effect uses {operand!r}, which is not a number"
+        raise PinswitchError(problem, code="formula-syntax", help=help) from error
     if not np.isfinite(value):
         raise PinswitchError(
             f"the function of an effect uses {value}", code="formula-not-finite", help="use finite numbers"
@@ -333,7 +338,7 @@ def effect_file(effects: Sequence[Effect]) -> str:
 
 def effect_texts(effects: Sequence[Any]) -> list[tuple[str, str]]:
     """Return (name, text) of files of effects: effects together in one text, and files as they are."""
-    if isinstance(effects, (str, os.PathLike)):
+    if isinstance(effects, (str, os.PathLike, Effect)):
         effects = [effects]
     own = [one for one in effects if isinstance(one, Effect)]
     texts = [("effects", effect_file(own))] if own else []

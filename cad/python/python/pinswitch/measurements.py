@@ -14,6 +14,7 @@ from . import _pinswitch
 from ._checks import MAX_SEED, whole, wrong_type
 from ._errors import PinswitchError
 from ._files import PathLike, read_bytes, read_text
+from ._notebook import elapsed
 from .curve import ModelLike, _model_text
 from .effects import effect_texts
 from .table import Table, read_csv
@@ -81,6 +82,9 @@ def read(
     PinswitchError
         If a file cannot be read, or a value has two readings; ``error.help`` lists the decisions.
     """
+    for source in sources:
+        if not isinstance(source, (str, os.PathLike)):
+            raise wrong_type("sources", source, "the path of a file or a folder")
     files = [(os.fspath(path), _unpacked(path)) for path in _files(sources, pattern)]
     decisions = None if map is None else (read_text(map), os.fspath(map))
     if set is not None and not isinstance(set, Mapping):
@@ -248,6 +252,7 @@ def power(
     randomised: bool = False,
     effects: Sequence[Any] = (),
     noise: Optional[ModelLike] = None,
+    progress: bool = False,
 ) -> list[dict[str, Any]]:
     """Estimate which effects a planned experiment could detect: ``runs`` simulated experiments per effect and size.
 
@@ -256,11 +261,10 @@ def power(
     list of dict
         ``id``, ``values``, ``runs``, and the numbers of runs ``named``, ``ambiguous`` and ``missed``; ``others``.
     """
-    rates: list[dict[str, Any]] = json.loads(
-        _pinswitch.power(
-            _plan_text(plan), randomised, effect_texts(effects), _model_text(noise), whole("runs", runs, 1, MOST_RUNS)
-        )
-    )
+    inputs = (_plan_text(plan), randomised, effect_texts(effects), _model_text(noise))
+    runs = whole("runs", runs, 1, MOST_RUNS)
+    with elapsed("simulating experiments", progress):
+        rates: list[dict[str, Any]] = json.loads(_pinswitch.power(*inputs, runs))
     return rates
 
 

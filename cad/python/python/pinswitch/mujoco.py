@@ -264,6 +264,8 @@ class Host:
         self._mujoco: Any = mujoco
         self._ids: list[int] = []
         for switch in self.switches:
+            if not isinstance(switch.surface, Surface):
+                raise wrong_type("surface", switch.surface, "a Surface: Surface.of_curve makes one of a curve")
             number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TENDON, switch.tendon)
             if number < 0:
                 raise PinswitchError(

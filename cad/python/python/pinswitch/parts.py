@@ -97,24 +97,24 @@ class Parts:
         """Warnings of the design, such as thin walls."""
         return self._native.warnings()
 
-    def to_files(self, formats: Optional[Sequence[str]] = None, *, curve: Optional[Curve] = None) -> dict[str, bytes]:
+    def to_files(self, formats: Optional[str | Sequence[str]] = None, *, curve: Optional[Curve] = None) -> dict[str, bytes]:
         """Return the files of the set by name, as ``pinswitch generate`` writes them.
 
         Parameters
         ----------
-        formats : sequence of str, optional
+        formats : str or sequence of str, optional
             Such as ``["stl", "3mf", "step"]``; ``["all"]`` for all. Without it, those of ``generate``.
         curve : Curve, optional
             The curve in the documents. Without it, that of :func:`pinswitch.predict`.
         """
-        names = None if formats is None else list(formats)
+        names = None if formats is None else [formats] if isinstance(formats, str) else list(formats)
         chosen = predict(self.config) if curve is None else curve
         return self._native.files(chosen._native, names, self.config.switch.name)
 
     def save(
         self,
         folder: str | os.PathLike[str],
-        formats: Optional[Sequence[str]] = None,
+        formats: Optional[str | Sequence[str]] = None,
         *,
         curve: Optional[Curve] = None,
         overwrite: bool = False,

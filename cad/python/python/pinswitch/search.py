@@ -11,7 +11,8 @@ from typing import Any, Optional, overload
 import numpy as np
 
 from . import _pinswitch
-from ._checks import MAX_SEED, MAX_THREADS, whole, wrong_type
+from ._checks import MAX_SEED, MAX_THREADS, in_range, whole, wrong_type
+from ._errors import PinswitchError
 from ._files import read_bytes, read_text
 from ._notebook import progress_bar
 from .config import Config, ConfigLike, config_of
@@ -218,7 +219,16 @@ class Batch:
 
     @property
     def variants(self) -> Table:
-        """``variants.csv``: a row for each variant."""
+        """``variants.csv``: a row for each variant. A shard has none: ``pinswitch merge`` joins all shards.
+
+        Raises
+        ------
+        PinswitchError
+            If the folder has no such table.
+        """
+        if not (self.folder / "variants.csv").exists():
+            help = f"make every shard, then join them with `pinswitch merge {self.folder}`"
+            raise PinswitchError("the shards are not joined", code="file-not-found", help=help, file=str(self.folder))
         return read_csv(read_text(self.folder / "variants.csv"))
 
     def __repr__(self) -> str:
@@ -250,6 +260,11 @@ def batch(
     read_outside : bool
         Allow the sweep to name files outside its folder.
     """
+    for name, value in (("sweep", sweep), ("out", out)):
+        if not isinstance(value, (str, os.PathLike)):
+            raise wrong_type(name, value, "a path")
+    if shard is not None and not isinstance(shard, str):
+        raise wrong_type("shard", shard, 'a text such as "1/4"')
     with progress_bar("variants", progress) as report:
         threads = whole("threads", threads, 0, MAX_THREADS)
         tally = _pinswitch.batch(os.fspath(sweep), os.fspath(out), shard, threads, read_outside, report)
@@ -313,5 +328,6 @@ def check(
         If the file cannot be read.
     """
     bodies = None if bodies is None else whole("bodies", bodies, 1, MOST)
+    min_wall_mm = in_range("min_wall_mm", min_wall_mm, 0.0, 1e6, "mm")
     report, text = _pinswitch.check(read_bytes(path), os.fspath(path), bodies, min_wall_mm, strict, purpose)
     return MeshCheck(json.loads(report), text)

@@ -129,7 +129,8 @@ def _cell_text(value: object) -> str:
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, float):
-        return repr(float(value))
+        # As the program writes numbers: a whole one has no fraction.
+        return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(float(value))
     return str(value)
 
 

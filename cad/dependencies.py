@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Describe the crates in the released binary: cad/dependencies.py TARGET sbom|licences > FILE
+"""Describe the crates in what is released: cad/dependencies.py TARGET sbom|licences|wheel-licences > FILE
 
 `sbom` prints a software bill of materials, CycloneDX 1.5 in JSON; `licences` prints the licence texts of all linked
-crates, which their licences require with every copy. The crates are those that `cargo tree` lists for the command line
+crates, which their licences require with every copy, and `wheel-licences` those of the Python package. The crates are those that `cargo tree` lists for the command line
 with the feature `cloud` and the compilation target TARGET. A crate that runs only during compilation (build script or
 procedural macro) has the scope `excluded`. The same commit gives the same bytes, with SOURCE_DATE_EPOCH as the time.
 """
@@ -17,20 +17,24 @@ import uuid
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = "pinswitch-cli"
+# Folder of a Cargo.lock, package and features, by output.
+BINARY = (ROOT, PACKAGE, ["--features", "cloud"])
+WHEEL = (ROOT / "cad" / "python", "pinswitch-python", [])
 # File names of licence texts in the crates, without case.
 LICENCE_FILES = ("licen", "copying", "copyright", "notice", "unlicense")
 
 
-def cargo(*arguments: str) -> str:
+def cargo(folder: pathlib.Path, *arguments: str) -> str:
     return subprocess.run(
-        ["cargo", *arguments], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True
+        ["cargo", *arguments], cwd=folder, check=True, stdout=subprocess.PIPE, text=True
     ).stdout
 
 
-def crates(target: str, edges: str) -> set[tuple[str, str]]:
+def crates(released: tuple, target: str, edges: str) -> set[tuple[str, str]]:
     """Return name and version of every crate on these edges of the dependency graph."""
+    folder, package, features = released
     lines = cargo(
-        "tree", "--locked", "-p", PACKAGE, "--features", "cloud", "--target", target, "-e", edges,
+        folder, "tree", "--locked", "-p", package, *features, "--target", target, "-e", edges,
         "--prefix", "none", "-f", "{p}",
     ).splitlines()  # fmt: skip
     return {(name, version[1:]) for name, version, *_ in (line.split() for line in lines if line)}
@@ -110,18 +114,20 @@ def licences(packages: list[dict], linked: set) -> str:
 
 
 def main() -> None:
-    if len(sys.argv) != 3 or sys.argv[2] not in ("sbom", "licences"):
+    if len(sys.argv) != 3 or sys.argv[2] not in ("sbom", "licences", "wheel-licences"):
         sys.exit(__doc__)
     target, output = sys.argv[1:]
-    linked = crates(target, "normal,no-proc-macro")
-    compiled = crates(target, "normal,build")
+    released = WHEEL if output == "wheel-licences" else BINARY
+    folder, _, features = released
+    linked = crates(released, target, "normal,no-proc-macro")
+    compiled = crates(released, target, "normal,build")
+    options = ["--features", f"{PACKAGE}/cloud"] if features else []
     metadata = json.loads(
-        cargo("metadata", "--locked", "--format-version", "1", "--filter-platform", target,
-              "--features", f"{PACKAGE}/cloud")
-    )  # fmt: skip
+        cargo(folder, "metadata", "--locked", "--format-version", "1", "--filter-platform", target, *options)
+    )
     packages = [p for p in metadata["packages"] if (p["name"], p["version"]) in compiled]
     packages.sort(key=lambda p: (p["name"], p["version"]))
-    if output == "licences":
+    if output != "sbom":
         print(licences(packages, linked), end="")
     else:
         nodes = {node["id"]: node["deps"] for node in metadata["resolve"]["nodes"]}

@@ -143,7 +143,7 @@ def test_whole_numbers_stay_whole() -> None:
 
 def test_progress_is_shown(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    pinswitch.calibrate(CAPSTAN, progress=True)
+    pinswitch.calibrate(pinswitch.read(CAPSTAN), progress=True)
     assert "calibrating: done in" in capsys.readouterr().err
 
 

@@ -286,10 +286,12 @@ def predict_table(
             config_of({} if config is None else config)._native, content, name, law, _model_text(model, law), whole("threads", threads, 0, MAX_THREADS), report
         )
     columns: dict[str, Any] = {"row": np.repeat(np.arange(1, len(counts) + 1), counts)}
+    reals = {f"{p['table']}.{p['key']}" for p in _pinswitch.parameters() if isinstance(p["default"], float)}
     for column, values in rows.items():
-        # Every table of curves has these as text, so that blocks can be joined.
+        # The same type in every table of curves, so that blocks can be joined.
         array = np.array(values, dtype=object) if column in TEXT_COLUMNS else _array(values)
-        columns[column] = np.repeat(array, counts)
+        is_whole = column in reals and array.dtype.kind == "i"
+        columns[column] = np.repeat(array.astype(np.float64) if is_whole else array, counts)
     return CurveTable({**columns, **lines})
 
 

@@ -183,7 +183,7 @@ fn a_calibration_is_a_data_package() {
     assert_eq!(names.join(","), text.lines().next().unwrap());
     let of = |name: &str| fields.iter().find(|field| field["name"] == name).unwrap();
     assert_eq!((&of("force_N")["type"], &of("force_N")["unit"]), (&"number".into(), &"N".into()));
-    assert_eq!((&of("repetition")["type"], &of("substrate")["type"]), (&"integer".into(), &"any".into()));
+    assert_eq!((&of("repetition")["type"], &of("substrate")["type"]), (&"number".into(), &"any".into()));
     assert_eq!(package["sources"][0]["title"], "plateaus.csv");
     let table = std::fs::read(path.join("rig/plateaus.csv")).unwrap();
     assert_eq!(package["sources"][0]["hash"], format!("sha256:{}", sha256(&table)));

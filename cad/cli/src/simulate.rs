@@ -196,7 +196,7 @@ fn rehearsal(arguments: &Arguments, runs: &Path, place: &SetFolder) -> Result<()
     };
     let table = PlateauTable::write(&rows).into_bytes();
     let files = [OutputFile { name: "plateaus.csv".to_owned(), bytes: table }];
-    finish(arguments, &place, &files)
+    finish(arguments, place, &files)
 }
 
 /// Returns the plan with the effects of the command line, and its name for errors.

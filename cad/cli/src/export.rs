@@ -176,7 +176,7 @@ fn finger(arguments: &Arguments, design: &Design) -> Result<Finger, Failure> {
 }
 
 /// Predicts the tensions over the wrap angles of the finger; at that of the configuration for a unit without a joint, a
-/// calibrated model, or the law of the paper, which has no other.
+/// calibrated model, or the law of the paper.
 ///
 /// The rows of a joint are the contacts at equal steps of its flexion, each at the wrap angle that the model of the finger
 /// has there.

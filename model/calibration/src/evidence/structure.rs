@@ -12,7 +12,7 @@ use crate::effects::Abscissa;
 pub(super) const NOISE: &str = "noise";
 /// Covariate of gross errors of a series.
 pub(super) const GROSS_ERROR: &str = "gross error";
-/// Prior probability that offsets of series wander, for each of the two channels: that of an effect.
+/// Prior probability that offsets of series wander, for each channel: that of an effect.
 const WANDERING_PROBABILITY: f64 = 0.05;
 
 /// A function of the rows that returns a basis.

@@ -67,7 +67,7 @@ impl Collector<'_> {
     }
 
     /// Adds offsets that wander from series to series in the order of time, in both directions alike or
-    /// oppositely.
+    /// oppositely, or in proportion to the force.
     pub(super) fn wandering(&mut self) {
         let count = self.rows.series_count();
         if count < LEAST_WANDERING_SERIES {
@@ -76,7 +76,7 @@ impl Collector<'_> {
         let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
             Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
         });
-        let channels = [Channel::Reading, Channel::Drag];
+        let channels = [Channel::Reading, Channel::Drag, Channel::Gain];
         self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
     }
 

@@ -7,7 +7,7 @@ use crate::direction_words::direction_in_name;
 use crate::number::{self, DecimalSign, SignEvidence, sign_evidence};
 use crate::quantity::Quantity;
 use crate::unit::{Dimension, Unit};
-use crate::vocabulary::{quantities, words};
+use crate::vocabulary::{is_friction, quantities, words};
 
 /// What the name of a column shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -122,6 +122,9 @@ fn has_factor(stem: &str) -> bool {
 /// Combines the words of a stem with a unit; `None` if they contradict each other.
 fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
     let words = words(stem);
+    if is_friction(&words) {
+        return Some(NameReading { unit, ..NameReading::default() });
+    }
     let fits = |quantity: &Quantity| unit.is_none_or(|unit| quantity.dimensions().contains(&unit.dimension));
     let direction = match stem.trim_end().chars().next_back() {
         Some('+') => Some(Direction::Concentric),
@@ -295,6 +298,8 @@ mod tests {
         assert_eq!((at_angle.angle.map(Decimal::to_f64), at_angle.repetition), (Some(45.0), None));
         assert_eq!(read("F- (N)", None).direction, Some(Direction::Eccentric));
         assert_eq!(read("Fup", None).direction, Some(Direction::Concentric));
+        // Friction may be the pull or the pull minus the load.
+        assert_eq!(["friction (N)", "Reibkraft [N]"].map(|name| read(name, None).quantity), [None, None]);
         // Forces at both ends of the tendon.
         assert_eq!((read("F_in [N]", None).direction, read("F_out [N]", None).direction), (None, None));
     }

@@ -259,6 +259,13 @@ const COMPOUNDS: [(&str, Quantity); 10] = [
     ("zeit", Quantity::Time),
 ];
 
+/// Returns whether a name is that of friction: the pull minus the load in the one laboratory, the pull itself in another.
+pub(crate) fn is_friction(words: &[String]) -> bool {
+    const FRICTION: [&str; 6] = ["friction", "frottement", "attrito", "friccion", "rozamiento", "reibung"];
+    let is_word = |word: &String| FRICTION.contains(&word.as_str()) || word.starts_with("reib");
+    words.iter().any(is_word)
+}
+
 /// Returns the quantities that the words of a name may mean, most specific first.
 pub(crate) fn quantities(words: &[String]) -> Vec<Quantity> {
     // A torque, or how fast or how well something is measured.

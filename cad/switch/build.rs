@@ -7,7 +7,7 @@ use std::path::Path;
 mod minified;
 
 /// Scripts of the page, in the order in which they are joined; see page/README.md.
-const SCRIPTS: [&str; 26] = [
+const SCRIPTS: [&str; 27] = [
     "text",
     "dom",
     "focus",
@@ -18,6 +18,7 @@ const SCRIPTS: [&str; 26] = [
     "controls",
     "pins",
     "templates",
+    "motion",
     "joint",
     "view",
     "scales",

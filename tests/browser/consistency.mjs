@@ -33,19 +33,21 @@ export async function curveOfAnUnusedModel(visit, site, { table }) {
 // Verdict, button and curve belong to the last table.
 export async function secondTable(visit, site, { table }) {
   await visit.open(site.address + START);
-  const isBare = () => document.querySelector('#use-model').hidden && !document.querySelector('#legend').textContent.includes('with your model');
   await visit.drop('first.csv', table);
   await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
   await visit.check('its curve is drawn', legendHas, 'with your model');
   visit.findings.check('a verdict names its file', (await visit.text('#verdict')).startsWith('first.csv: '), await visit.text('#verdict'));
   await visit.drop('second.csv', 'a,b\n1,2\n');
   await visit.check('an unreadable table is reported', () => /second\.csv/.test(document.querySelector('#verdict .error')?.textContent ?? ''));
-  visit.findings.check('nothing of the first table is shown', await visit.page.evaluate(isBare));
+  visit.findings.check('the fit of the first table stays', /first\.csv: the/.test(await visit.text('#verdict')) && await visit.shown('#use-model'), await visit.text('#verdict'));
   await visit.drop('third.csv', table);
-  await visit.page.waitForSelector('#use-model:not([hidden])', { timeout: SLOW_MS });
-  await visit.drop('fourth.csv', table);
-  await visit.check('nothing of the third table is shown during the fit of the fourth', () => /Fitting the model to fourth\.csv/.test(document.querySelector('#verdict').textContent));
-  visit.findings.check('no button offers the third model', await visit.page.evaluate(isBare));
+  await visit.page.waitForFunction(() => document.querySelector('#verdict b')?.textContent.startsWith('third.csv: '), { timeout: SLOW_MS });
+  await visit.click('#use-model');
+  await visit.settled();
+  await visit.drop('fourth.csv', `${table.trim()}\n`.replaceAll(/,([\d.]+)\n/g, (_, force) => `,${(1.01 * Number(force)).toFixed(4)}\n`));
+  await visit.check('the fit of the fourth is reported, above the third', () => /Fitting the model to fourth\.csv.*third\.csv: /.test(document.querySelector('#verdict').textContent));
+  await visit.page.waitForFunction(() => document.querySelector('#verdict b')?.textContent.startsWith('fourth.csv: '), { timeout: SLOW_MS });
+  await visit.check('its model can replace the one in use', () => /Use the model of fourth\.csv instead/.test(document.querySelector('#use-model:not([hidden])')?.textContent ?? ''));
   await visit.drop('fifth.csv', 'a,b\n1,2\n');
   await visit.page.waitForSelector('#verdict .error', { timeout: SLOW_MS });
   await new Promise((done) => { setTimeout(done, 1500); });

@@ -149,6 +149,7 @@ const DOWNLOAD_INTERVAL_MS = 110;
 
 // Files one by one equal those of the archive.
 async function oneByOne(visit, wait, archive, findings) {
+  await visit.page.$$eval('#file-list details', (all) => all.forEach((group) => { group.open = true; }));
   const buttons = await visit.page.$$('#file-list button');
   const differ = [];
   for (const button of buttons) {

@@ -50,6 +50,74 @@ export async function phone(_, site, { findings }) {
   await visit.end();
 }
 
+// A thumb moves in an arc: what starts along a slider and then scrolls edits nothing.
+export async function thumbs(_, site, { findings }) {
+  if (_.browser.isFirefox) return;
+  const visit = await Visit.begin(_.browser, { width: 375, height: 667, findings, showsAll: false });
+  await visit.open(site.address + START);
+  const free = () => ['download', 'share', 'undo', 'redo', 'more'].filter((id) => {
+    const r = document.getElementById(id).getBoundingClientRect();
+    return document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2)?.closest(`#${id}`) === null;
+  });
+  findings.check('nothing covers the header', (await visit.page.evaluate(free)).length === 0, await visit.page.evaluate(free));
+  await visit.click('#parameters');
+  const before = await hashOf(visit);
+  const session = await visit.page.createCDPSession();
+  const send = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  for (const slider of (await visit.page.$$('#fields .field:not([hidden]) input[type=range]')).slice(0, 5)) {
+    await slider.evaluate((e) => e.scrollIntoView({ block: 'center' }));
+    const { x, y, width, height } = await slider.boundingBox();
+    const [left, top] = [x + 0.62 * width, y + height / 2];
+    await send('touchStart', [{ x: left, y: top }]);
+    for (const [dx, dy] of [[5, -1], [11, -3], [17, -6], [22, -14], [26, -30], [29, -60], [31, -100]]) await send('touchMove', [{ x: left + dx, y: top + dy }]);
+    await send('touchEnd', []);
+    await pause(200);
+  }
+  await pause(400);
+  await visit.check('arcs over sliders change nothing', (hash) => decodeURIComponent(location.hash) === hash, before);
+  await visit.click('#sheet-close');
+  await visit.end();
+}
+
+// The first screen: one sentence, three steps, and a switch that moves.
+export async function firstScreen(_, site, { findings }) {
+  const visit = await Visit.begin(_.browser, { findings, showsAll: false });
+  await visit.open(site.address);
+  findings.check('one sentence says what it is', (await visit.text('.intro')).trim().split(/\.\s/).length === 1, await visit.text('.intro'));
+  findings.check('three steps follow', await visit.page.$$eval('#steps button', (all) => all.map((e) => e.textContent).join('|')) === 'What should it do?|Does it do it?|Make it');
+  const rope = () => visit.page.$eval('#pins .tendon', (e) => e.getAttribute('d'));
+  await visit.slide('#load', 5);
+  const light = await rope();
+  await visit.slide('#load', 45);
+  findings.check('the cross-section moves with the load', await rope() !== light);
+  await visit.page.$$eval('#steps button', (all) => all[0].click());
+  await visit.check('a step leads to its place', () => document.querySelector('#targets-title').getBoundingClientRect().top < innerHeight);
+  if (!_.browser.isFirefox) {
+    const moving = await Visit.begin(_.browser, { findings, showsAll: false });
+    await moving.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'no-preference' }]);
+    await moving.open(site.address);
+    if (site.file) await moving.check('the switch moves on a first visit', () => document.querySelector('#play').getAttribute('aria-pressed') === 'true');
+    await moving.page.keyboard.press('Shift');
+    await moving.check('until a person does something', () => document.querySelector('#play').getAttribute('aria-pressed') === 'false');
+    await moving.click('#play');
+    const load = await moving.text('#load-value');
+    await moving.check('and again on demand', (was) => document.querySelector('#load-value').textContent !== was, load);
+    await moving.click('#play');
+    await moving.end();
+  }
+  await visit.end();
+}
+
+// Fields without an effect on the design are not shown, unless they were changed.
+export async function needlessFields(visit, site, { findings }) {
+  await visit.open(`${site.address}#v=1&layout.substrate=abs&layout.pins=5,8,11`);
+  const shown = (path) => visit.page.$eval(`#f-${path.replace('.', '-')}-field`, (e) => !e.hidden);
+  findings.check('a rigid switch has no silicone', !await shown('silicone.thickness_mm'));
+  findings.check('without a mount, the mount has no sizes', await shown('mount.kind') && !await shown('mount.flange_thickness_mm').catch(() => false));
+  await visit.open(`${site.address}#v=1&layout.substrate=abs&layout.pins=5,8,11&silicone.thickness_mm=3`);
+  findings.check('what was changed stays', await shown('silicone.thickness_mm'));
+}
+
 // A message is in front of everything, and its cross closes it.
 export async function messages(visit, site) {
   for (const [width, height] of [[1440, 900], [820, 1100], [375, 740]]) {

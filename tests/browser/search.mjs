@@ -27,7 +27,10 @@ export async function search(visit, site) {
   await visit.addressHas('targets.friction=');
   await visit.click('#target-frictions .tiny');
   await visit.addressLacks('targets.friction');
+  const top = () => visit.page.$eval('#search', (e) => e.getBoundingClientRect().top);
+  const place = await top();
   await visit.click('#search');
+  visit.findings.check('the button stays under the pointer', await top() === place, `${place} ${await top()}`);
   const reports = await visit.page.evaluate(async () => {
     const texts = new Set();
     for (let i = 0; i < 35 && !document.querySelector('#stop').hidden; i += 1) {
@@ -40,6 +43,10 @@ export async function search(visit, site) {
   await visit.page.waitForSelector('#designs .design', { timeout: SLOW_MS });
   const cards = await visit.page.$$eval('.design', (all) => all.map((c) => Number(/(\d+) % probable/.exec(c.textContent)?.[1])));
   visit.findings.check('the designs are cards, the most probable first', cards.length > 1 && cards.every((p, i) => p >= 0 && p <= 100 && (i === 0 || p <= cards[i - 1])), cards);
+  visit.findings.check('all designs are on the chart', /proposed designs \(\d\)/.test(await visit.text('#legend')), await visit.text('#legend'));
+  await visit.page.$eval('.design details', (e) => { e.open = true; });
+  visit.findings.check('a card says what a change buys', /thickness \+1 mm[+-][\d.]+ N/.test(await visit.text('.design details')), await visit.text('.design details'));
+  await visit.page.$eval('.design details', (e) => { e.open = false; });
   await visit.page.hover('.design:nth-child(2)');
   await visit.check('a card shows its curve', () => /design 2/.test(document.querySelector('#legend').textContent));
   const pins = await visit.page.$eval('.design:nth-child(2)', (card) => /pins \[([\d, ]+)\]/.exec(card.textContent)[1].replaceAll(' ', ''));
@@ -53,8 +60,18 @@ export async function search(visit, site) {
   await visit.addressHas('targets.friction=40:8.5');
   await visit.click('#search');
   await visit.page.waitForFunction(() => /target: 8\.5 N/.test(document.querySelector('#designs').textContent), { timeout: SLOW_MS });
-  const card = await visit.text('.design');
+  const card = await visit.page.$eval('.design', (e) => [...e.children].filter((part) => part.tagName !== 'DETAILS').map((part) => part.textContent).join(' '));
   visit.findings.check('a card has each target, and the other properties once', /switches at [\d.]+ N; target: 24 N/.test(card) && /[\d.]+ N at 40 N of load; target: 8\.5 N/.test(card) && card.split('heaviest').length === 2, card);
+  // What the search may change is chosen.
+  await visit.page.$eval('#vary', (e) => { e.closest('details').open = true; });
+  await visit.page.$$eval('#vary input', (all) => all.forEach((box) => { box.checked = box.value === 'hardness_shore_a'; }));
+  await visit.click('#search');
+  await visit.page.waitForFunction(() => document.querySelector('#stop').hidden && /hardness/.test(document.querySelector('.design').textContent), { timeout: SLOW_MS });
+  visit.findings.check('only the chosen parameter changes', await visit.page.$$eval('.design', (all) => all.every((card) => /pins \[/.test(card.textContent) && !/span [\d.]+ °/.test(card.querySelector('details').previousSibling.textContent))));
+  // A text that is no target leaves the one before.
+  await visit.type('#target-threshold', '1.234,5');
+  await visit.page.keyboard.press('Tab');
+  await visit.check('a refused target leaves the one before', () => document.querySelector('#target-threshold').value === '24' && /still 24 N/.test(document.querySelector('#toast').textContent));
   visit.findings.check('the probability is explained', await visit.shown('#probability-note') && /within 10 %/.test(await visit.text('#probability-note')), await visit.text('#probability-note'));
   await visit.click('#results-close');
   await visit.check('the cards are closed', () => document.querySelector('#results').hidden);

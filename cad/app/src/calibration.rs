@@ -41,8 +41,10 @@ struct Summary {
     verdict: &'static str,
     /// Friction coefficient of a rig without a switch, in words.
     friction: Option<String>,
-    /// Held-out error of the baseline and of the augmented model, N.
+    /// Held-out error of the baseline, of least squares with drag, offset and gain, and of the augmented model, N: as
+    /// `pinswitch calibrate` prints them.
     before_n: f64,
+    least_squares_n: Option<f64>,
     after_n: f64,
     /// Expected error of a new session, N.
     promise_n: Option<f64>,
@@ -126,8 +128,9 @@ fn summary(csv: &str, file: &str) -> Result<Summary, Diagnostic> {
     Ok(Summary {
         verdict: report.verdict.as_str(),
         friction: friction_words(report),
-        before_n: report.baseline.heldout_rmse_n,
-        after_n: report.augmented.heldout_rmse_n,
+        before_n: report.baseline.heldout_series_rmse_n,
+        least_squares_n: report.least_squares_n,
+        after_n: report.augmented.heldout_series_rmse_n,
         promise_n: report.promise_n,
         noise_n: report.noise_floor_n,
         adequate: report.adequate,

@@ -4,13 +4,17 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_diagnostic::{Diagnostic, Location, codes};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_friction::published::GROOVES;
+use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
+use pinswitch_switch::design::rules::checklist;
 use pinswitch_switch::design_search::{
-    Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
+    Belief, Options, Proposal, PublishedPhysics, Sensitivity, Silent, TargetResult, load_range_n, search,
 };
 use pinswitch_switch::feasibility;
 use pinswitch_switch::prediction::predicted_curve;
-use pinswitch_switch::request::{DEFAULT_WITHIN, Quantity, Request, Requirement, Target, Vary};
+use pinswitch_switch::request::{
+    DEFAULT_WITHIN, Parameter, Quantity, Request, Requirement, Target, Varied, Vary,
+};
 use serde::Serialize;
 
 use crate::Answer;
@@ -22,13 +26,12 @@ use crate::request::SearchRequest;
 use crate::values::configuration;
 use crate::{Values, changed_values};
 
+/// Name of the occupied grooves among the varied parameters.
+const PATTERN: &str = "pattern";
 /// Most sources of uncertainty of a design.
 const MAX_SOURCES: usize = 3;
 /// Most designs that are returned, whatever the request.
 const MAX_DESIGNS: usize = 12;
-/// A third of the draws of the command line, since a person waits.
-const OPTIONS: Options = Options { best: 6, draws: 300, seed: 1, starts: 6 };
-
 /// One proposed design.
 #[derive(Debug, Serialize)]
 struct ProposedDesign {
@@ -42,6 +45,10 @@ struct ProposedDesign {
     friction_n: f64,
     /// Sources of the uncertainty, the largest first.
     uncertainty: Vec<UncertaintySource>,
+    /// What a change buys: fields with the change of the threshold and of the friction at the heaviest load, N per unit.
+    gains: Vec<Gain>,
+    /// Problems of the printed parts that need a review, as in the checks of the design.
+    problems: Vec<String>,
     curve: FrictionCurve,
 }
 
@@ -54,6 +61,14 @@ struct TargetValue {
     /// Value of the design, N; `None` if it does not switch.
     value_n: Option<f64>,
     is_met: bool,
+}
+
+/// What a change of a field buys, N per unit of the field.
+#[derive(Debug, Serialize)]
+struct Gain {
+    field: &'static str,
+    threshold_n: f64,
+    friction_n: f64,
 }
 
 /// Designs, the most probable first, with a summary of the search.
@@ -93,10 +108,11 @@ pub(crate) fn answer(request: &SearchRequest) -> Answer {
 
 fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
     let base = feasibility::design(configuration(&wanted.values)?)?;
-    let request = design_request(wanted);
+    let request = design_request(wanted)?;
     request.check()?;
     request.check_loads(load_range_n(base.configuration(), &request))?;
-    let options = Options { best: wanted.most.clamp(1, MAX_DESIGNS), ..OPTIONS };
+    // The limits of the command line, so that both find the same designs.
+    let options = Options { best: wanted.most.clamp(1, MAX_DESIGNS), ..Options::default() };
     let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL_NAME)).transpose()?;
     let grooves = base.configuration().segment.grooves;
     if model.is_some() && grooves != GROOVES {
@@ -121,7 +137,10 @@ fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
 
 /// Returns the targets of a request. Without a model the search varies what that of the command line varies; a calibrated
 /// model is of one rig, whose dimensions stay.
-fn design_request(request: &SearchRequest) -> Request {
+///
+/// # Errors
+/// [`Refusal`] if a name in `vary` is not that of a parameter.
+fn design_request(request: &SearchRequest) -> Result<Request, Refusal> {
     let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
     let threshold =
         request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });
@@ -129,11 +148,28 @@ fn design_request(request: &SearchRequest) -> Request {
         quantity: Quantity::Friction { load_n: at.load_n },
         requirement: about(at.friction_n),
     });
-    let vary = match request.model {
-        None => Vary::default(),
-        Some(_) => Vary { pattern: true, parameters: Vec::new() },
+    let vary = match (&request.model, &request.vary) {
+        (Some(_), _) => Vary { pattern: true, parameters: Vec::new() },
+        (None, None) => Vary::default(),
+        (None, Some(names)) => Vary {
+            pattern: names.iter().any(|name| name == PATTERN),
+            parameters: names
+                .iter()
+                .filter(|name| *name != PATTERN)
+                .map(|name| parameter(name).map(Varied::by_default))
+                .collect::<Result<_, _>>()?,
+        },
     };
-    Request { targets: threshold.into_iter().chain(friction).collect(), vary, ..Request::default() }
+    Ok(Request { targets: threshold.into_iter().chain(friction).collect(), vary, ..Request::default() })
+}
+
+fn parameter(name: &str) -> Result<Parameter, Diagnostic> {
+    Parameter::from_name(name).ok_or_else(|| {
+        let known = Parameter::ALL.map(Parameter::name).join(", ");
+        Diagnostic::new(codes::UNKNOWN_WORD, format!("no parameter {name:?}"))
+            .with_location(Location::field("vary", name.to_owned()))
+            .with_help(format!("give {PATTERN}, {known}"))
+    })
 }
 
 fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesign> {
@@ -155,8 +191,27 @@ fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesi
             .take(MAX_SOURCES)
             .map(|s| UncertaintySource { source: s.source.to_string(), share: s.share })
             .collect(),
+        gains: proposal.sensitivity.iter().map(|s| gain(s, &proposal.configuration)).collect(),
+        problems: checklist(&design, 0.0)
+            .into_iter()
+            .filter(|check| !check.is_satisfied)
+            .map(|check| check.statement)
+            .collect(),
         curve,
     })
+}
+
+/// The gain per unit of the field: the span is a number of pitches.
+fn gain(sensitivity: &Sensitivity, configuration: &Configuration) -> Gain {
+    let per_field = match sensitivity.parameter {
+        Parameter::PitchDeg => 1.0 / configuration.segment.grooves as f64,
+        _ => 1.0,
+    };
+    Gain {
+        field: sensitivity.parameter.field(),
+        threshold_n: sensitivity.threshold_n_per_unit * per_field,
+        friction_n: sensitivity.friction_n_per_unit * per_field,
+    }
 }
 
 fn target_value(result: &TargetResult, proposal: &Proposal) -> Option<TargetValue> {
@@ -194,6 +249,18 @@ mod tests {
             let targets: Vec<_> = design.targets.iter().map(|t| (t.load_n, t.target_n)).collect();
             assert_eq!(targets, [(None, 24.0), (Some(40.0), 8.5)]);
         }
+    }
+
+    /// The search varies what is asked for, and proposes what the command line proposes.
+    #[test]
+    fn varied_parameters_are_those_of_the_request() {
+        let found =
+            result(&request(r#"{"threshold_n": 24, "vary": ["hardness_shore_a"], "most": 1}"#)).unwrap();
+        assert_eq!(found.varied, ["silicone.hardness_shore_a"]);
+        assert!(found.designs[0].values.contains_key("silicone.hardness_shore_a"));
+        assert!(found.designs[0].gains.iter().any(|gain| gain.field == "silicone.hardness_shore_a"));
+        let refused = result(&request(r#"{"threshold_n": 24, "vary": ["colour"]}"#)).unwrap_err();
+        assert!(format!("{refused:?}").contains("hardness_shore_a"), "{refused:?}");
     }
 
     #[test]

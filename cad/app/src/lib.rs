@@ -58,7 +58,6 @@ mod files;
 mod measurement_file;
 #[cfg(target_arch = "wasm32")]
 mod module;
-#[cfg(not(target_arch = "wasm32"))]
 mod next_runs;
 mod prediction_cache;
 mod reach;
@@ -133,7 +132,6 @@ impl Engine {
             Request::Import { data, file, set } => measurement_file::answer(&data, &file, &set),
             Request::Calibrate { csv, file } => calibration::answer(&csv, &file),
             Request::Sample => calibration::sample(),
-            #[cfg(not(target_arch = "wasm32"))]
             Request::Experiment { csv, file, minutes } => next_runs::answer(&csv, &file, minutes),
         }
     }

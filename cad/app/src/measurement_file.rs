@@ -15,6 +15,8 @@ use crate::calibration::MAX_TABLE_MB;
 struct Preview {
     /// What was recognised, ignored and assumed, as `pinswitch import` prints it; empty for a plateau table.
     understood: String,
+    /// Names of the columns of the file.
+    columns: Vec<String>,
     /// What has two readings.
     questions: Vec<Question>,
     /// The plateau table; absent for a log, and while a question is open.
@@ -39,17 +41,25 @@ fn preview(data: &str, file: &str, set: &[String]) -> Result<Preview, Diagnostic
         .with_help("import it with `pinswitch import`"));
     }
     let bytes = BASE64_STANDARD.decode(data).map_err(|e| Diagnostic::from_error(codes::DAMAGED_FILE, e))?;
-    if let Some(table) = std::str::from_utf8(&bytes).ok().filter(|text| PlateauTable::has_header(text)) {
-        return Ok(Preview { csv: Some(table.to_owned()), ..Preview::default() });
+    let plateaus = std::str::from_utf8(&bytes).ok().filter(|text| PlateauTable::has_header(text));
+    let as_plateaus = |text: &str| Preview { csv: Some(text.to_owned()), ..Preview::default() };
+    if let Some(text) = plateaus.filter(|text| PlateauTable::read(text.as_bytes(), file).is_ok()) {
+        return Ok(as_plateaus(text));
     }
     let mut map = Map::default();
     for assignment in set {
         map.set(assignment)?;
     }
-    let Import { understanding, output, .. } = import(&[Source::new(file, &bytes)], &map)?;
+    let Import { understanding, output, .. } = match (import(&[Source::new(file, &bytes)], &map), plateaus) {
+        (Ok(import), _) => import,
+        // A table of plateaus with an error, which its calibration reports by line and column.
+        (Err(_), Some(text)) if set.is_empty() => return Ok(as_plateaus(text)),
+        (Err(error), _) => return Err(error.into()),
+    };
     Ok(Preview {
         understood: understanding.to_string(),
         is_log: understanding.kind == "log",
+        columns: understanding.files.iter().flat_map(|f| f.columns.iter().map(|c| c.name.clone())).collect(),
         questions: understanding.questions,
         csv: match output {
             Some(Output::Table(csv)) => Some(csv),

@@ -48,9 +48,7 @@ pub(crate) enum Request {
     Calibrate { csv: String, file: String },
     /// A table to try a calibration with.
     Sample,
-    /// The runs after a table that answer most open questions in some minutes. In the module it would take 27 kB of the
-    /// published page after gzip.
-    #[cfg(not(target_arch = "wasm32"))]
+    /// The runs after a table that answer most open questions in some minutes.
     Experiment { csv: String, file: String, minutes: f64 },
 }
 
@@ -90,6 +88,10 @@ pub(crate) struct SearchRequest {
     /// The text of a calibrated model, instead of the published constants.
     #[serde(default)]
     pub(crate) model: Option<String>,
+    /// Parameters that the search varies, by the names of a request, and `pattern` for the pins; by default those of the
+    /// command line.
+    #[serde(default)]
+    pub(crate) vary: Option<Vec<String>>,
     /// Most designs to return.
     #[serde(default = "default_most")]
     pub(crate) most: usize,

@@ -13,7 +13,7 @@ function showChecks(data) {
     li.append(content);
     return li;
   };
-  const problems = [...review.map((c) => line('!', 'review', c.words, c.remedy)), ...data.manifest.warnings.map((w) => line('!', 'warning', w))];
+  const problems = [...review.map((c) => line('!', 'review', inWords(c.words), inWords(c.remedy))), ...data.manifest.warnings.map((w) => line('!', 'warning', inWords(w)))];
   byId('checks-summary').textContent = TEXT.checksSummary(passed.length, data.checks.length);
   byId('checks').replaceChildren(...problems, ...(problems.length > 2 ? [] : passed.map((c) => line('✓', 'passed', c.words))));
   byId('passed-checks').hidden = problems.length <= 2;

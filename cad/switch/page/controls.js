@@ -7,6 +7,13 @@ const BASIC_FIELDS = ['layout.pins', 'layout.wrap_angle_deg', 'segment.grooves',
 const OPEN_SECTIONS = ['layout', 'segment', 'shell', 'silicone', 'pins', 'tendon', 'print'];
 // Words that people use for those of the fields.
 const SYNONYMS = { tendon: 'cable wire rope string', mould: 'mold cast', silicone: 'rubber elastomer', pins: 'rod dowel', fasteners: 'screw bolt nut', print: 'printer filament', shell: 'pulley body', label: 'text engraving', mesh: 'resolution quality', support: 'side plate cheek', friction: 'force load curve', mount: 'bracket holder', process: 'material plastic oven bake' };
+// Words for single fields.
+const FIELD_SYNONYMS = { 'silicone.hardness_shore_a': 'durometer softness', 'tendon.length_mm': 'spool', 'layout.wrap_angle_deg': 'bend turn', 'print.bed_mm': 'space size volume' };
+// Sections whose fields have no effect on a design. Changed fields stay visible.
+const NEEDLESS = {
+  silicone: (value) => value('layout.substrate') === 'abs', mould: (value) => value('layout.substrate') === 'abs',
+  pins: (value) => !value('layout.pins').length, mount: (value) => value('mount.kind') === 'none',
+};
 const SLIDER_STEPS = 1000;
 
 // The step of a number, by its range.
@@ -99,7 +106,10 @@ class Control {
     this.slider = make('input', undefined, { type: 'range', min: 0, max: SLIDER_STEPS, step: 'any', 'aria-label': TEXT.slider(this.name), tabindex: -1 });
     // Without a tab stop: the number input has the arrow keys, and ninety parameters would have
     // twice as many stops.
-    listenToSlider(this.slider, () => this.slide(scale.value(Number(this.slider.value))));
+    listenToSlider(this.slider, () => this.slide(scale.value(Number(this.slider.value))), () => {
+      const before = this.state.value(this.field.path);
+      return () => { this.sliding = null; this.apply(before); this.show(); };
+    });
     this.note = make('p', undefined, { class: 'about', role: 'status' });
     this.note.hidden = true;
     this.slider.addEventListener('blur', () => { this.note.hidden = true; });
@@ -117,6 +127,8 @@ class Control {
     const ends = await this.reach;
     // A later position of the slider counts.
     if (this.sliding !== value) return;
+    const { [this.field.path]: _own, ...present } = this.state.now.values;
+    if (!sameValue(this.others, present)) { await this.slide(value); return; }
     const [step, own] = [stepOf(this.field), this.state.value(this.field.path)];
     const inward = (end, round) => Number((round(end / step) * step).toFixed(6));
     const [low, high] = ends ? [Math.min(own, inward(ends[0] - 1e-9, Math.ceil)), Math.max(own, inward(ends[1] + 1e-9, Math.floor))] : this.field.ends;
@@ -247,8 +259,11 @@ class Controls {
       const changed = fields.filter((f) => this.state.isChanged(f.path)).length;
       count.textContent = changed ? TEXT.groupChanged(changed) : '';
     }
-    if (byId('only-changed').checked || !byId('all-parameters').checked) this.filter();
+    this.filter();
   }
+
+  // Whether the design does not depend on a field; the field that switches its section on does not count.
+  isNeedless({ section, path }) { return path !== 'mount.kind' && Boolean(NEEDLESS[section]?.((other) => this.state.value(other))); }
 
   filter() {
     const words = byId('find').value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -259,10 +274,10 @@ class Controls {
     for (const section of this.sections) {
       let any = false;
       for (const field of section.fields) {
-        const text = `${field.path} ${fieldName(field)} ${TEXT.groups[field.section] ?? ''} ${SYNONYMS[field.section] ?? ''} ${field.reason}`.toLowerCase();
+        const text = `${field.path} ${fieldName(field)} ${TEXT.groups[field.section] ?? ''} ${SYNONYMS[field.section] ?? ''} ${FIELD_SYNONYMS[field.path] ?? ''} ${field.reason}`.toLowerCase();
         const control = this.controls.get(field.path);
         // Errors are shown, whatever the filter.
-        const fits = control.hasError() || (words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path)) && (!isBasic || BASIC_FIELDS.includes(field.path) || this.state.isChanged(field.path) || control.element.contains(document.activeElement)));
+        const fits = control.hasError() || (words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path)) && (!this.isNeedless(field) || this.state.isChanged(field.path)) && (!isBasic || BASIC_FIELDS.includes(field.path) || this.state.isChanged(field.path) || control.element.contains(document.activeElement)));
         control.element.hidden = !fits;
         any ||= fits;
         matches += fits;

@@ -1,13 +1,14 @@
 // The plot of friction over load: curve, band, other laws, measured points, a curve for comparison,
 // the present load.
 
-const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, OTHER = 4, COMPARISON = OTHER + MAX_OTHER_LAWS, PREVIEW = COMPARISON + 1, CALIBRATED = COMPARISON + 2, MEASURED = COMPARISON + 3, OWN = COMPARISON + 4;
+const LOAD = 0, MAIN = 1, LOW = 2, HIGH = 3, OTHER = 4, COMPARISON = OTHER + MAX_OTHER_LAWS, PREVIEW = COMPARISON + 1, CALIBRATED = COMPARISON + 2, MEASURED = COMPARISON + 3, OWN = COMPARISON + 4, PROPOSAL = COMPARISON + 5;
 
 // Lines differ in dashes and in colour.
 const LINES = {
   [MAIN]: { colour: '--blue', width: 3 }, [OTHER]: { colour: '--green', width: 1.3, dash: [7, 4] }, [OTHER + 1]: { colour: '--violet', width: 1.3, dash: [2, 3] },
   [OTHER + 2]: { colour: '--red', width: 1.3, dash: [9, 3, 2, 3] }, [COMPARISON]: { colour: '--dim', width: 2, dash: [5, 4] }, [PREVIEW]: { colour: '--amber-ink', width: 2.5, dash: [10, 4] },
   [CALIBRATED]: { colour: '--green', width: 2.5, dash: [12, 3, 3, 3] },
+  ...Object.fromEntries(Array.from({ length: MAX_PROPOSALS }, (_, i) => [PROPOSAL + i, { colour: '--amber-ink', width: 1 }])),
 };
 
 // Most differing fields in the name of the comparison.
@@ -18,9 +19,11 @@ class Curve {
     this.state = state;
     this.host = byId('chart');
     this.load_n = null;
+    this.proposals = [];
     this.showsOtherLaws = byId('other-laws').checked;
     byId('other-laws').addEventListener('change', () => { this.showsOtherLaws = byId('other-laws').checked; this.draw(); });
-    byId('load').addEventListener('input', () => this.moveTo(Number(byId('load').value)));
+    byId('load').addEventListener('input', () => { this.motion.stop(); this.moveTo(Number(byId('load').value)); });
+    this.motion = new Motion(byId('play'), (share) => this.moveToShare(share), () => this.share());
     byId('keep-curve').addEventListener('click', () => this.toggleComparison());
     byId('trust').addEventListener('click', () => this.showReasons(byId('reasons').hidden));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.chart?.destroy(); this.chart = undefined; this.draw(); });
@@ -107,7 +110,7 @@ class Curve {
       scales: { x: { time: false, range: () => [0, this.ends.load] }, y: { range: () => [0, this.ends.friction] } },
       bands: [{ series: [HIGH, LOW], fill: colourOf('--band') }], axes: [axis(2), axis(3)], hooks: { draw: [(u) => this.drawLoad(u), () => this.handles?.place()] },
     }, columns, this.host);
-    draggable(this.chart.over, { start: (e) => { if (e.target !== this.chart.over) return false; this.moveToPointer(e); return true; }, move: (e) => this.moveToPointer(e) });
+    draggable(this.chart.over, { start: (e) => { if (e.target !== this.chart.over) return false; this.motion.stop(); this.moveToPointer(e); return true; }, move: (e) => this.moveToPointer(e) });
     this.chart.over.append(make('span', TEXT.axisLoad, { class: 'axis x', 'aria-hidden': 'true' }), make('span', TEXT.axisFriction, { class: 'axis y', 'aria-hidden': 'true' }));
     this.handles?.attach(this.chart.over);
   }
@@ -137,6 +140,17 @@ class Curve {
     ctx.strokeStyle = colourOf('--card');
     ctx.stroke();
     ctx.restore();
+  }
+
+  // The present load as a share of the range of loads, and the load of a share.
+  share() {
+    const loads = this.data?.curve.load_n ?? [0, 1];
+    return (this.load_n - loads[0]) / (loads.at(-1) - loads[0]);
+  }
+
+  moveToShare(share) {
+    const loads = this.data?.curve.load_n;
+    if (loads) this.moveTo(loads[0] + share * (loads.at(-1) - loads[0]));
   }
 
   moveTo(load_n) {
@@ -186,8 +200,9 @@ class Curve {
     };
     const item = (mark, text) => { const li = make('li'); li.append(mark, text); return li; };
     const items = [item(sample(MAIN), TEXT.predicted(this.data.curve.law)), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), TEXT.band)];
-    if (this.showsOtherLaws) this.data.other_laws.slice(0, MAX_OTHER_LAWS).forEach((o, i) => items.push(item(sample(OTHER + i), o.law)));
+    if (this.showsOtherLaws) this.data.other_laws.slice(0, MAX_OTHER_LAWS).forEach((o, i) => items.push(item(sample(OTHER + i), TEXT.lawNames[o.law] ?? o.law)));
     if (this.comparison) items.push(item(sample(COMPARISON), TEXT.comparison(this.comparisonName())));
+    if (this.proposals.length) items.push(item(sample(PROPOSAL), TEXT.proposedCurves(this.proposals.length)));
     if (this.preview) items.push(item(sample(PREVIEW), this.preview.name));
     if (this.calibrated) items.push(item(sample(CALIBRATED), TEXT.calibratedCurve));
     if (this.ownPoints.length) items.push(item(make('i', undefined, { class: 'dotmark own', 'aria-hidden': 'true' }), TEXT.ownPoints(this.ownPoints.length)));

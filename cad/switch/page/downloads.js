@@ -1,5 +1,8 @@
 // Files of the design: a list with sizes, for download one by one or in an archive.
 
+// Groups of files in their order.
+const KINDS = [['print', /\.(stl|3mf|ini)$/i], ['drawing', /^drawing\.|\.dxf$/i], ['guide', /^(manual|printing|measured)\.|^run-sheet/i], ['step', /\.step$/i], ['glb', /\.(glb|html)$/i], ['curve', /^friction\./i], ['png', /\.png$/i], ['data', /\.(csv|json|toml|md)$/i], ['other', /./]];
+
 class Downloads {
   constructor(state, engine) {
     Object.assign(this, { state, engine });
@@ -8,6 +11,10 @@ class Downloads {
     byId('files-close').addEventListener('click', () => this.dialog.close());
     byId('zip').addEventListener('click', () => this.download({ command: 'zip' }, `${this.name()}.zip`, 'application/zip'));
     byId('toml').addEventListener('click', () => this.configuration());
+    byId('session').addEventListener('click', () => {
+      save(`${this.name()}.json`, writeSession(this.state.now), 'application/json');
+      byId('files-status').textContent = TEXT.saved(`${this.name()}.json`);
+    });
   }
 
   // Takes the name of the last valid design. While the dialog is open, its list follows the design.
@@ -73,15 +80,16 @@ class Downloads {
     byId('beside').hidden = !files.some((file) => file.isBeside);
     const groups = new Map();
     for (const file of files) {
-      const end = file.name.split('.').pop().toLowerCase();
-      const kind = TEXT.kinds[end] ?? TEXT.kinds.other;
+      const kind = TEXT.kinds[KINDS.find(([, pattern]) => pattern.test(file.name))[0]];
       if (!groups.has(kind)) groups.set(kind, []);
       groups.get(kind).push(file);
     }
-    const order = [...new Set(Object.values(TEXT.kinds))];
+    const order = KINDS.map(([kind]) => TEXT.kinds[kind]);
     const sorted = [...groups].sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
     byId('file-list').replaceChildren(...sorted.map(([kind, members]) => {
-      const group = make('section');
+      // Pictures are many, and parts of the guide.
+      const isFolded = kind === TEXT.kinds.png;
+      const group = make(isFolded ? 'details' : 'section');
       const list = make('ul');
       for (const { name, bytes, isBeside } of members) {
         const item = make('li');
@@ -90,7 +98,7 @@ class Downloads {
         item.append(act);
         list.append(item);
       }
-      group.append(make('h3', kind), list);
+      group.append(make(isFolded ? 'summary' : 'h3', isFolded ? `${kind} (${members.length})` : kind), list);
       return group;
     }));
   }

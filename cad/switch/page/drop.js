@@ -2,16 +2,18 @@
 
 const MEGA = 1e6;
 const MAX_CONFIGURATION_BYTES = MEGA;
+// A session contains a table of measurements.
+const MAX_SESSION_BYTES = 30 * MEGA;
 const WORKBOOK = /\.(xlsx|xls|ods)$/i;
 
 class Drop {
   // Opens a file of measurements of at most `maxTable_mb`, the bound of the engine, a configuration, or a model.
-  constructor({ openTable, openConfiguration, openModel, maxTable_mb }) {
-    Object.assign(this, { openTable, openConfiguration, openModel, maxTable_mb });
+  constructor({ openTable, openConfiguration, openModel, openSession, maxTable_mb }) {
+    Object.assign(this, { openTable, openConfiguration, openModel, openSession, maxTable_mb });
     byId('open').addEventListener('click', () => byId('open-file').click());
     byId('open-file').addEventListener('change', (event) => { this.open(event.target.files); event.target.value = ''; });
     let depth = 0;
-    const hint = (on) => { byId('drop').hidden = !on; };
+    const hint = (on) => { byId('drop').hidden = !on || IS_REPORT; };
     const hasFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes('Files');
     addEventListener('dragenter', (event) => { if (hasFiles(event)) { depth += 1; hint(true); event.preventDefault(); } });
     addEventListener('dragleave', (event) => { if (hasFiles(event)) { depth -= 1; hint(depth > 0); } });
@@ -31,12 +33,13 @@ class Drop {
     if (byId('files').open) byId('files').close();
     if (files.length > 1) showToast(TEXT.manyFiles);
     const [file] = files;
-    const kind = /\.(csv|tsv|txt|dat|log|lvm|xlsx|xls|ods)$/i.test(file.name) ? 'table' : /\.toml$/i.test(file.name) ? 'toml' : null;
+    const kind = /\.(csv|tsv|txt|dat|log|lvm|xlsx|xls|ods)$/i.test(file.name) ? 'table' : /\.toml$/i.test(file.name) ? 'toml' : /\.json$/i.test(file.name) ? 'session' : null;
+    if (IS_REPORT) return this.refuse(TEXT.isReport);
     const mega = (file.size / MEGA).toFixed(1);
     if (!kind) return this.refuse(TEXT.unknownType(file.name));
     if (file.size === 0) return this.refuse(TEXT.empty(file.name));
     if (kind === 'table' && file.size > this.maxTable_mb * MEGA) return this.refuse(TEXT.tooLarge(file.name, mega, this.maxTable_mb));
-    if (kind === 'toml' && file.size > MAX_CONFIGURATION_BYTES) return this.refuse(TEXT.tooLargeConfiguration(file.name, mega));
+    if (kind !== 'table' && file.size > (kind === 'toml' ? MAX_CONFIGURATION_BYTES : MAX_SESSION_BYTES)) return this.refuse(TEXT.tooLargeConfiguration(file.name, mega));
     let bytes;
     try { bytes = new Uint8Array(await file.arrayBuffer()); } catch { return this.refuse(TEXT.unreadable(file.name)); }
     const isUtf16 = (bytes[0] === 0xff && bytes[1] === 0xfe) || (bytes[0] === 0xfe && bytes[1] === 0xff);
@@ -46,6 +49,7 @@ class Drop {
     const text = new TextDecoder().decode(bytes);
     if (text.includes('\uFFFD')) return this.refuse(TEXT.notText(file.name));
     showNotice('');
+    if (kind === 'session') return this.openSession(text, file.name);
     return /^\s*schema\s*=\s*"pinswitch\.model\//m.test(text) ? this.openModel(text, file.name) : this.openConfiguration(text, file.name);
   }
 

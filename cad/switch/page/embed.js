@@ -57,7 +57,7 @@ class Embed {
   sendDesign(requested, { targets }, data, trouble) {
     const f = data?.manifest.friction;
     this.sent = { hash: encodeHash({ ...requested, targets }), values: requested.values, friction_n: f?.friction_n ?? null, load_n: f?.load_n ?? null,
-      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? troubleText(trouble) : null };
+      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? plainTrouble(trouble) : null };
     this.send();
   }
 

@@ -21,7 +21,12 @@ class Handles {
   grip(kind, name, drag, nudge) {
     // In a report a mark, which is not moved.
     const element = make('div', undefined, { class: `grip ${kind}`, ...(IS_REPORT ? { inert: '' } : { role: 'slider', tabindex: 0 }), 'aria-label': name, 'aria-valuemin': 0 });
-    draggable(element, { start: (e) => { e.stopPropagation(); element.focus(); return true; }, move: drag });
+    // A swipe over a mark that scrolls the page sets no target.
+    let before;
+    draggable(element, {
+      start: (e) => { e.stopPropagation(); element.focus(); before = this.state.now.targets; return true; }, move: drag,
+      end: (e, cancelled) => { if (cancelled) this.state.change({ targets: before }); },
+    });
     element.addEventListener('keydown', (event) => {
       const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], PageUp: [0, 10], PageDown: [0, -10] }[event.key];
       if (!by || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -8,9 +8,9 @@ function nameApp() {
   const icon = dataUrl('image/svg+xml', ICON);
   document.querySelector('link[rel=icon]').href = icon;
   if (document.body.dataset.state !== 'file' || !/^https?:$/.test(location.protocol) || isEmbedded()) return;
-  const address = new URL('.', location.href).href;
+  const address = location.href.replace(/#.*/, '');
   const manifest = {
-    name: TEXT.title, short_name: TEXT.brand, description: TEXT.intro, id: address, start_url: address, scope: address,
+    name: TEXT.title, short_name: TEXT.brand, description: TEXT.intro, id: address, start_url: address, scope: new URL('.', address).href,
     display: 'standalone', background_color: '#fbfbf9', theme_color: '#00589b', icons: [{ src: icon, sizes: 'any', type: 'image/svg+xml' }],
   };
   document.head.append(make('link', undefined, { rel: 'manifest', href: dataUrl('application/manifest+json', JSON.stringify(manifest)) }));

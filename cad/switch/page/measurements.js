@@ -6,6 +6,8 @@ const MAX_KEPT_FIT = 400_000;
 class Measurements {
   constructor(state, engine, curve) {
     Object.assign(this, { state, engine, curve });
+    // A model that was opened as a file, without a table.
+    this.opened = null;
     byId('table-file').addEventListener('change', (event) => { this.onFiles?.(event.target.files); event.target.value = ''; });
     byId('choose-table').addEventListener('click', () => byId('table-file').click());
     byId('use-model').addEventListener('click', () => this.useModel());
@@ -16,36 +18,44 @@ class Measurements {
     byId('plan-runs').addEventListener('click', () => this.plan());
     byId('stop-fit').addEventListener('click', () => this.engine.stop('calibrate'));
     byId('remove-model').addEventListener('click', () => this.state.change({ model: null }));
+    byId('remove-fit').addEventListener('click', () => this.state.change({ fit: null }));
+    byId('save-model').addEventListener('click', () => { save('model.toml', this.fitted.toml, 'application/toml'); showToast(TEXT.saved('model.toml')); });
     this.updatePreview = debounce(() => this.preview(), EXACT_DELAY_MS);
-    this.restore();
     state.addEventListener('change', () => this.show());
     this.show();
   }
 
+  // The last fitted or opened model, which a design can use.
+  get fitted() {
+    const { fit } = this.state.now;
+    return fit?.model ? { name: fit.file, toml: fit.model } : this.opened;
+  }
+
   show() {
-    const { model } = this.state.now;
+    const { model, fit } = this.state.now;
+    if (fit !== this.shown) {
+      this.shown = fit;
+      this.showFit(fit);
+      this.keep(fit);
+    }
     byId('model-used').hidden = !model;
     byId('model-text').textContent = model ? `${TEXT.modelName(model.name)}. ${TEXT.modelApplied}` : '';
     byId('use-model').hidden = !this.fitted || !this.predicts || model?.toml === this.fitted.toml;
+    byId('use-model').textContent = model && this.fitted ? TEXT.useOtherModel(this.fitted.name) : TEXT.useModel;
+    byId('save-model').hidden = !this.fitted;
+    byId('remove-fit').hidden = !fit;
+    byId('sample-table').hidden = Boolean(fit);
     // Not the curve of an earlier design.
-    if (this.curve.calibrated && (!this.fitted || model || this.curve.calibrated.values !== this.state.now.values)) this.curve.setExtra('calibrated', null);
-    if (this.fitted && !model) this.updatePreview();
+    const { calibrated } = this.curve;
+    if (calibrated && (!this.fitted || model?.toml === this.fitted.toml || calibrated.values !== this.state.now.values)) this.curve.setExtra('calibrated', null);
+    if (this.fitted && model?.toml !== this.fitted.toml) this.updatePreview();
   }
 
-  // Removes everything about the last table, and ends its fit.
+  // Ends work on an earlier table; its fit stays until another one replaces it.
   begin() {
     this.engine.stop('calibrate');
-    this.fitted = null;
-    // Whether the fitted model has a curve of the design, which the preview finds out.
-    this.predicts = false;
-    // The table, from which the next runs are planned.
-    this.table = null;
-    byId('next').hidden = true;
-    byId('next-plan').replaceChildren();
-    this.curve.setMeasured([]);
-    byId('fit').hidden = true;
-    byId('model-error').hidden = true;
-    this.show();
+    this.engine.stop('experiment');
+    byId('stop-fit').hidden = true;
     this.fitNumber = (this.fitNumber ?? 0) + 1;
     return this.fitNumber;
   }
@@ -64,7 +74,7 @@ class Measurements {
       throw problem;
     }
     if (number !== this.fitNumber) return;
-    const { understood, questions, csv, is_log: isLog } = answer;
+    const { understood, columns, questions, csv, is_log: isLog } = answer;
     if (!understood) return void this.calibrate(csv, file);
     this.report([], TEXT.understood(file));
     const box = byId('verdict');
@@ -73,11 +83,12 @@ class Measurements {
       box.append(make('p', problem, { class: 'error' }));
       const row = make('p', undefined, { class: 'row' });
       for (const { reading, options } of answers) {
-        // An option with NAME or a sample value is for a person to complete.
-        const isComplete = !options.some((option) => /\bNAME\b/.test(option));
-        const choice = isComplete ? make('button', reading, { type: 'button', class: 'btn small' }) : make('span', `${reading}: --set ${options.join(' --set ')}`, { class: 'dim' });
-        if (isComplete) choice.addEventListener('click', () => this.open(bytes, file, [...set, ...options]));
-        row.append(choice);
+        // An option with NAME is for one of the columns.
+        const needsColumn = options.some((option) => /\bNAME\b/.test(option));
+        const column = make('select', undefined, { 'aria-label': reading });
+        column.append(...columns.map((name) => make('option', name)));
+        const answer = () => this.open(bytes, file, [...set, ...options.map((option) => option.replace(/\bNAME\b/, () => column.value))]);
+        row.append(button(reading, answer, { class: 'btn small' }), ...(needsColumn ? [column] : []));
       }
       box.append(row);
     }
@@ -90,7 +101,6 @@ class Measurements {
 
   async calibrate(csv, file) {
     const number = this.begin();
-    byId('sample-table').hidden = true;
     const endReports = reportElapsed((seconds) => this.report([TEXT.calibrating(file, seconds)]));
     byId('stop-fit').hidden = false;
     byId('measurements').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
@@ -98,16 +108,19 @@ class Measurements {
       const answer = await this.engine.request({ command: 'calibrate', csv, file }).finally(endReports);
       if (number !== this.fitNumber) return;
       const digits = (v) => (v < 0.1 ? v.toFixed(4) : v.toFixed(2));
-      const errors = answer.before_n === null || answer.after_n === null ? [] : [TEXT.heldOutErrors(digits(answer.before_n), digits(answer.after_n), digits(answer.promise_n ?? answer.after_n))];
+      const { before_n: before, least_squares_n: plain, after_n: after, promise_n: expected } = answer;
+      const errors = before === null || after === null ? [] : [TEXT.heldOutErrors(digits(before), plain === null ? null : digits(plain), digits(after), expected === null ? null : digits(expected))];
       // `unattributed` is not an effect; it is the verdict.
       const effects = answer.effects.filter(([id]) => id !== 'unattributed');
       const detected = effects.length ? [TEXT.detectedEffects(effects)] : [];
-      const open = answer.verdict === 'inconclusive' ? [TEXT.notExcluded(answer.not_excluded)] : [];
+      const open = answer.verdict === 'inconclusive' && answer.not_excluded.length ? [TEXT.notExcluded(answer.not_excluded)] : [];
       const friction = answer.friction ? [`${answer.friction}.`] : [];
       const { probabilities, sizes, points, residuals } = answer;
-      this.table = { csv, file };
-      byId('next').hidden = document.body.dataset.state !== 'served';
-      this.keep({ file, model: answer.model, head: TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict), lines: [...friction, ...detected, ...open, ...errors], probabilities, sizes, points, residuals });
+      const fit = { file, csv, model: answer.model, head: TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict), lines: [...friction, ...detected, ...open, ...errors], probabilities, sizes, points, residuals };
+      this.opened = null;
+      this.state.change({ fit });
+      // Another table with the same result.
+      if (this.state.now.fit !== fit) this.showFit(this.state.now.fit);
     } catch (problem) {
       if (number !== this.fitNumber) return;
       this.report([problem instanceof Superseded ? TEXT.stopped : problem.message], undefined, !(problem instanceof Superseded));
@@ -119,21 +132,26 @@ class Measurements {
 
   // Plans the runs that answer most open questions of the last table.
   async plan() {
-    const { table } = this;
+    const { fit } = this.state.now;
     const box = byId('next-plan');
+    const { value: minutes, problem: wrong } = readQuantity(byId('next-minutes').value, 'min');
+    if (wrong) { box.replaceChildren(make('p', wrong, { class: 'error' })); return; }
     const endReports = reportElapsed((seconds) => box.replaceChildren(make('p', TEXT.planning(seconds))));
     byId('plan-runs').disabled = true;
     try {
-      const minutes = Number(byId('next-minutes').value.replace(',', '.'));
-      const plan = await this.engine.request({ command: 'experiment', ...table, minutes }).finally(endReports);
-      if (table !== this.table) return;
+      const plan = await this.engine.request({ command: 'experiment', csv: fit.csv, file: fit.file, minutes }).finally(endReports);
+      if (fit !== this.state.now.fit) return;
       const questions = make('ul');
       questions.append(...plan.questions.map(([between, p]) => make('li', `${TEXT.question(between)}: ${TEXT.percent(p)}`)));
       const files = make('p', undefined, { class: 'row' });
       files.append(button(TEXT.saveRuns, () => save('next-runs.csv', plan.csv, 'text/csv'), { class: 'btn small' }), button(TEXT.saveSheet, () => save('run-sheet.html', plan.sheet, 'text/html'), { class: 'btn small' }));
-      box.replaceChildren(make('p', plan.questions.length ? TEXT.planned(plan.runs, plan.minutes) : TEXT.nothingOpen), questions, files);
+      const [head, ...rows] = plan.csv.trim().split('\n').map((line) => line.split(','));
+      const runs = make('div', undefined, { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': TEXT.planRuns });
+      if (rows.length) runs.append(table(head.map((name) => name.replaceAll('_', ' ')), rows));
+      box.replaceChildren(make('p', plan.questions.length ? TEXT.planned(plan.runs, plan.minutes) : TEXT.nothingOpen), questions, runs, files);
     } catch (problem) {
-      if (table !== this.table || problem instanceof Superseded) return;
+      if (fit !== this.state.now.fit) return;
+      if (problem instanceof Superseded) { box.replaceChildren(make('p', TEXT.stopped)); return; }
       if (!(problem instanceof EngineError)) throw problem;
       box.replaceChildren(make('p', problem.message, { class: 'error' }));
     } finally {
@@ -141,32 +159,31 @@ class Measurements {
     }
   }
 
-  // Keeps a fit for the next visit, if the browser has room for it, and shows it.
+  // Keeps a fit for the next visit, or says that it is lost then.
   keep(fit) {
-    const text = JSON.stringify(fit);
-    remember({ ...remembered(), fit: text.length <= MAX_KEPT_FIT ? fit : undefined });
-    this.showFit(fit);
+    if (sameValue(remembered().fit ?? null, fit)) return;
+    const isShort = JSON.stringify(fit).length <= MAX_KEPT_FIT;
+    const isKept = remember({ ...remembered(), fit: isShort ? fit ?? undefined : undefined });
+    if (fit && !(isShort && isKept)) showToast(TEXT.notKept);
   }
 
-  restore() {
-    const { fit } = remembered();
-    const isFit = fit && typeof fit.file === 'string' && ['lines', 'probabilities', 'sizes', 'points', 'residuals'].every((name) => Array.isArray(fit[name]));
-    if (isFit) this.showFit(fit);
-  }
-
-  showFit({ file, model, head, lines, probabilities, sizes, points, residuals }) {
-    this.report(lines, head);
-    this.fitted = model ? { name: file, toml: model } : null;
-    this.predicts = Boolean(model) && this.state.now.model?.toml === model;
-    this.curve.setMeasured(points);
+  showFit(fit) {
+    byId('next-plan').replaceChildren();
+    byId('next').hidden = !fit?.csv;
+    byId('fit').hidden = !fit;
+    byId('model-error').hidden = true;
+    // Whether the fitted model has a curve of the design, which the preview finds out.
+    this.predicts = Boolean(fit?.model) && this.state.now.model?.toml === fit.model;
+    this.curve.setMeasured(fit?.points ?? []);
+    this.report([]);
+    if (!fit) return;
+    const { probabilities, sizes, points, residuals } = fit;
     const box = byId('fit');
-    box.hidden = false;
     box.replaceChildren();
     if (probabilities.length) box.append(this.bars(probabilities));
     if (sizes.length) box.append(table(TEXT.sizeColumns, sizes.map((s) => [TEXT.effectNames[s.id] ?? s.id, `${s.name} = ${formatNumber(s.value, 4)} ${s.unit}`.trim(), `${formatNumber(s.ci95[0], 4)} … ${formatNumber(s.ci95[1], 4)}`])));
     if (residuals.length) box.append(this.residualPlot(residuals));
-    box.append(make('p', TEXT.pointsOf(points.length), { class: 'dim' }));
-    this.show();
+    box.append(make('p', TEXT.pointsOf(points.length, this.curve.ownPoints.length), { class: 'dim' }));
   }
 
   // Probabilities of effects as bars.
@@ -201,7 +218,7 @@ class Measurements {
   async preview() {
     const { fitted } = this;
     const { values, model } = this.state.now;
-    if (!fitted || model) return;
+    if (!fitted || model?.toml === fitted.toml) return;
     let answer;
     try {
       answer = await this.engine.request({ command: 'design', values, quality: 'coarse', model: fitted.toml, extra: true });
@@ -210,7 +227,7 @@ class Measurements {
       if (problem instanceof EngineError || problem instanceof Superseded) return;
       throw problem;
     }
-    if (fitted !== this.fitted || values !== this.state.now.values || this.state.now.model) return;
+    if (fitted.toml !== this.fitted?.toml || values !== this.state.now.values || this.state.now.model?.toml === fitted.toml) return;
     const { data, trouble } = answer;
     if (data) this.curve.setExtra('calibrated', { curve: data.curve, values });
     this.predicts = !trouble;
@@ -220,10 +237,19 @@ class Measurements {
   }
 
   async useModel() {
-    const model = await packModel(this.fitted.name, this.fitted.toml);
-    // The address is the whole state: a longer model would be lost with the next visit.
-    if (model.packed.length > MAX_MODEL_LENGTH) { showNotice(TEXT.modelTooLong(model.name, model.packed.length, MAX_MODEL_LENGTH)); return; }
+    const model = await this.packed(this.fitted);
+    if (!model) return;
+    this.applied?.();
     this.state.change({ model });
+  }
+
+  // A model for the address, or null.
+  async packed({ name, toml }) {
+    const model = await packModel(name, toml);
+    // The address is the design: a longer model would be lost with the next visit.
+    if (model.packed.length <= MAX_MODEL_LENGTH) return model;
+    showNotice(TEXT.modelTooLong(model.name, model.packed.length, MAX_MODEL_LENGTH));
+    return null;
   }
 
   // Uses a model.toml of an earlier calibration.
@@ -237,15 +263,19 @@ class Measurements {
       return;
     }
     this.begin();
-    byId('stop-fit').hidden = true;
-    this.report([TEXT.opened(file)]);
-    this.fitted = { name: file, toml };
+    this.opened = { name: file, toml };
     this.predicts = true;
-    await this.useModel();
+    const model = await this.packed(this.opened);
+    if (!model) return;
+    this.state.change({ model, fit: null });
+    this.report([TEXT.opened(file)]);
   }
 
   report(lines, head, isError = false) {
-    byId('measurements-help').hidden = true;
-    byId('verdict').replaceChildren(...(head ? [make('b', head)] : []), ...lines.map((line) => make('p', line, { class: isError ? 'error' : undefined })));
+    const { fit } = this.state.now;
+    byId('measurements-help').hidden = Boolean(head || lines.length || fit);
+    // The last fit stays below what is said about another file.
+    const earlier = fit && !head ? [make('b', fit.head), ...fit.lines.map((line) => make('p', line))] : [];
+    byId('verdict').replaceChildren(...(head ? [make('b', head)] : []), ...lines.map((line) => make('p', line, { class: isError ? 'error' : undefined })), ...earlier);
   }
 }

@@ -29,9 +29,9 @@ function showNotice(text, ...actions) {
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': TEXT.close }));
 }
 
-// While the picture is out of view, the notice floats over the page.
+// While the picture is out of view, messages float over the page.
 function floatNotice() {
-  const update = ([{ isIntersecting }]) => byId('notice').classList.toggle('floating-banner', !isIntersecting);
+  const update = ([{ isIntersecting }]) => document.querySelector('.banners').classList.toggle('floating-banners', !isIntersecting);
   new IntersectionObserver(update, { rootMargin: '-60px 0px 0px 0px' }).observe(document.querySelector('.picture'));
 }
 
@@ -44,6 +44,15 @@ function clearNoticeAbout(about) { if (byId('notice').dataset.about === about) s
 
 function fillTexts() {
   if (!IS_REPORT) document.title = TEXT.title;
+  // A report asks nothing.
+  if (IS_REPORT) byId('curve-title').textContent = TEXT.curve;
+  // The steps, each a button that shows where it is taken.
+  const places = { parameters: 'targets-title', curve: 'curve-title', download: 'materials-title' };
+  byId('steps').append(...Object.entries(TEXT.steps).map(([step, text]) => {
+    const item = make('li');
+    item.append(button(text, () => byId(places[step]).scrollIntoView({ block: 'start', behavior: 'smooth' }), { class: 'link' }));
+    return item;
+  }));
   for (const element of document.querySelectorAll('[data-text]')) element.prepend(TEXT[element.dataset.text]);
   for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', TEXT[element.dataset.name]);
   for (const element of document.querySelectorAll('[data-placeholder]')) element.placeholder = TEXT[element.dataset.placeholder];
@@ -69,25 +78,29 @@ class Page {
     }
     this.facts = facts;
     const state = this.state = new State(facts);
+    FIELDS = state.fields;
     const started = await ServerFile.start();
     await this.begin(started);
     this.view = new View();
     // The exact design brings a picture in place of the view.
     this.view.lost = () => this.design('exact');
     this.curve = new Curve(state);
-    this.curve.moved = (load_n) => this.view.load(load_n);
+    this.curve.moved = (load_n) => { this.view.load(load_n); this.pins?.pose(load_n); };
     this.handles = new Handles(this.curve, state);
     this.strip = new Strip(this.curve, state);
     this.controls = new Controls(byId('fields'), facts, state, this.engine);
     this.pins = new Pins(byId('pins'), state);
     this.targets = new Targets(state, this.engine, this.curve, this.handles);
+    this.targets.applied = () => { this.from = this.data?.manifest.friction; };
     this.measurements = new Measurements(state, this.engine, this.curve);
+    this.measurements.applied = this.targets.applied;
     this.downloads = new Downloads(state, this.engine);
     this.embed = new Embed((hash) => this.applyHash(hash), state);
     const drop = new Drop({
       openTable: (bytes, file) => this.measurements.open(bytes, file),
       openConfiguration: (text, file) => this.open(text, file),
       openModel: (text, file) => this.measurements.openModel(text, file),
+      openSession: (text, file) => this.openSession(text, file),
       maxTable_mb: facts.largest_table_mb,
     });
     this.measurements.onFiles = (files) => drop.open(files);
@@ -102,11 +115,23 @@ class Page {
     this.changed();
     this.writeAddress();
     new ServerFile(state).begin(started);
+    this.introduce();
+  }
+
+  // On a first visit the switch moves once, until a person does something.
+  introduce() {
+    const isFirst = !IS_REPORT && !this.embed.isOn && !this.visited;
+    if (!isFirst) return;
+    const { motion } = this.curve;
+    motion.start(2 * MOTION_MS);
+    for (const name of ['pointerdown', 'keydown', 'wheel', 'hashchange']) addEventListener(name, () => motion.stop(), { once: true, capture: true, passive: true });
   }
 
   // Sets the first state: that of the address, of the server, of the last visit, or a published
   // layout.
   async begin(started) {
+    this.visited = Boolean(remembered().hash || location.hash || started?.source.file);
+    this.state.begin({ fit: remembered().fit ?? null });
     if (IS_REPORT) { this.state.begin(this.facts.state); return; }
     const decoded = await decodeHash(location.hash, this.state.fields);
     if (decoded?.messages.length) showNoticeAbout('address', decoded.messages.join(' '));
@@ -207,7 +232,9 @@ class Page {
     this.data = data;
     this.markTemplate();
     this.view.show(data);
+    this.pins.show(data, values);
     this.curve.show(data, values, model?.name ?? null);
+    this.sayChange(data.manifest.friction);
     this.strip.update();
     showChecks(data);
     showMaterials(data);
@@ -219,6 +246,13 @@ class Page {
     if (quality !== 'exact') return;
     byId('announcement').textContent = this.announcement(data);
     this.view.showPicture(this.engine, { values, model: model?.toml ?? null });
+  }
+
+  // Says what an applied design or model changed.
+  sayChange(friction) {
+    const { from } = this;
+    this.from = null;
+    if (from) showToast(TEXT.changeOf(from, friction));
   }
 
   // The change, for screen readers.
@@ -238,6 +272,14 @@ class Page {
     }
   }
 
+  // Opens what a page has saved: design, targets, model and measurements.
+  async openSession(text, file) {
+    const parts = IS_REPORT ? null : await readSession(text, this.state.fields);
+    if (!parts) { showNotice(IS_REPORT ? TEXT.isReport : TEXT.notSession(file)); return; }
+    this.state.change(parts);
+    showToast(TEXT.opened(file));
+  }
+
   addTemplates() {
     this.chips = [];
     const published = this.facts.templates.filter((t) => t.kind === 'published');
@@ -252,7 +294,14 @@ class Page {
     const templates = new TemplateList(this.engine, this.pins, apply);
     list.append(button(TEXT.open, () => byId('open-file').click(), { class: 'link narrow' }));
     templates.add(list, TEXT.published, published);
-    templates.add(list, TEXT.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
+    const printers = this.facts.templates.filter((t) => t.kind === 'printer');
+    templates.add(list, TEXT.printers, printers);
+    const choice = byId('printer');
+    choice.append(make('option', TEXT.ownPrinter, { value: '' }), ...printers.map((t) => make('option', t.about, { value: t.name })));
+    choice.addEventListener('change', () => {
+      const printer = printers.find((t) => t.name === choice.value);
+      if (printer) this.applyTemplate(printer);
+    });
     menu.addEventListener('toggle', () => menu.open && templates.drawCurves());
   }
 
@@ -267,15 +316,29 @@ class Page {
       showToast(TEXT.printerApplied(template.name, kept.map((path) => fieldName(this.state.fields.get(path)))));
       return;
     }
+    // The printer stays, as with --preset.
+    const printer = this.printer();
+    const kept = Object.fromEntries(Object.keys(printer?.values ?? {}).filter((path) => path in values).map((path) => [path, values[path]]));
     const isOfTemplates = (path) => this.facts.templates.some((t) => t.kind === 'published' && path in t.values);
-    const lost = Object.keys(values).filter((path) => !(path in template.values) && !isOfTemplates(path)).length;
-    this.state.change({ values: { ...template.values } });
-    showToast(TEXT.templateApplied(template.name, lost));
+    const lost = Object.keys(values).filter((path) => !(path in template.values) && !(path in kept) && !isOfTemplates(path)).length;
+    this.state.change({ values: { ...kept, ...template.values } });
+    const { model, targets } = this.state.now;
+    const others = [...(printer ? [printer.name] : []), ...(model ? [TEXT.modelName(model.name)] : []), ...(targets.threshold_n !== null || targets.friction.length ? [TEXT.yourTargets] : [])];
+    showToast(TEXT.templateApplied(template.name, lost, others));
+  }
+
+  // The printer whose values the design has; undefined without one.
+  printer() {
+    const { values } = this.state.now;
+    return this.facts.templates.find((t) => t.kind === 'printer' && Object.entries(t.values).every(([path, value]) => sameValue(values[path], value)));
   }
 
   markTemplate() {
     const now = this.state.now.values;
-    const isThis = (t) => sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now));
+    const printer = this.printer();
+    byId('printer').value = printer?.name ?? '';
+    const rest = Object.fromEntries(Object.entries(now).filter(([path]) => !(path in (printer?.values ?? {}))));
+    const isThis = (t) => sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(rest));
     for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(isThis(t)));
     const name = this.data?.manifest.name ?? '';
     const template = this.facts.templates.find((t) => t.name === name);
@@ -333,10 +396,12 @@ class Page {
   async share() {
     this.writeAddress();
     // An address of this computer opens nowhere else: there the design itself is shared, as a text that the page opens.
-    const isLocal = location.protocol === 'file:' || ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+    const isLocal = location.protocol === 'file:' || /^(localhost|.*\.localhost|127(\.\d+){3}|0\.0\.0\.0|\[::1?\])$/.test(location.hostname);
+    const { model, fit, targets } = this.state.now;
+    const lacks = isLocal ? Boolean(model || fit || targets.threshold_n !== null || targets.friction.length) : Boolean(fit);
     try {
       await navigator.clipboard.writeText(isLocal ? await this.configurationText() : location.href);
-      showToast(isLocal ? TEXT.sharedText : TEXT.shared);
+      showToast((isLocal ? TEXT.sharedText : TEXT.shared) + (lacks ? ` ${TEXT.sharedLacks(isLocal)}` : ''));
     } catch {
       showToast(isLocal ? TEXT.shareFileByHand : TEXT.shareByHand);
     }

@@ -1,5 +1,9 @@
 // The segment with its grooves, seen along the axis: pins are added, moved and removed here.
 
+// Distance from the silicone below which the tendon is shown to touch it, in mm.
+const TOUCHING_MM = 0.002;
+// Enlargement of heights above the silicone.
+const HEIGHT_SCALE = 3;
 // Most grooves with a number each; of more, every fifth has one.
 const MAX_NUMBERED = 24;
 
@@ -17,6 +21,41 @@ class Pins {
     this.draw();
     // A report's drawing is a picture.
     host.inert = IS_REPORT;
+  }
+
+  // Takes the shapes of the tendon of a design, for the drawing at a load.
+  show({ contact }, values) {
+    Object.assign(this, { contact, contactOf: values });
+    this.pose(this.load_n ?? contact.load_n.at(-1));
+  }
+
+  // Moves tendon and pins to their places at a load. Heights above the silicone are enlarged; the pins follow the tendon.
+  pose(load_n) {
+    this.load_n = load_n;
+    const { contact, s } = this;
+    // Not the shapes of other pins.
+    const isKnown = contact?.load_n.length && this.contactOf === this.state.now.values;
+    byId('pins-scale').hidden = !contact?.load_n.length;
+    // It keeps its place while a design is refused.
+    byId('pins-scale').classList.toggle('unknown', !isKnown);
+    if (!isKnown) return;
+    const gaps = contact.angle_rad.map((_, i) => at(contact.load_n, contact.gap_mm.map((state) => state[i]), load_n));
+    byId('pins-scale').textContent = TEXT.pinsScale(formatNumber(load_n, 1), HEIGHT_SCALE);
+    const points = contact.angle_rad.map((angle, i) => point(s.contact + s.rope + HEIGHT_SCALE * gaps[i], angle));
+    // The tendon leaves straight.
+    const beyond = ([x, y], [inner_x, inner_y]) => {
+      const share = 0.28 * s.contact / (Math.hypot(x - inner_x, y - inner_y) || 1);
+      return [x + share * (x - inner_x), y + share * (y - inner_y)];
+    };
+    this.rope.setAttribute('d', `M${[beyond(points[0], points[1]), ...points, beyond(points.at(-1), points.at(-2))].join('L')}`);
+    // Where the tendon lies on the silicone.
+    const touching = contact.angle_rad.map((angle, i) => [angle, gaps[i] < TOUCHING_MM]);
+    this.touch.setAttribute('d', touching.map(([angle, isOn], i) => (isOn ? `${touching[i - 1]?.[1] ? 'L' : 'M'}${point(s.contact, angle)}` : '')).join(''));
+    for (const i of this.pins()) {
+      const angle = this.angle(i, s);
+      const [x, y] = point(HEIGHT_SCALE * at(contact.angle_rad, gaps, angle) - s.pin, angle);
+      this.marks[i - 1]?.querySelector('.dot').setAttribute('transform', `translate(${x} ${y})`);
+    }
   }
 
   grooves() { return clamp(Math.round(this.state.value('segment.grooves')) || 1, 1, 60); }
@@ -65,6 +104,8 @@ class Pins {
     this.listen(drawing);
     const hadFocus = this.host.contains(document.activeElement);
     this.host.replaceChildren(drawing);
+    [this.rope, this.touch] = ['.tendon', '.touch'].map((name) => drawing.querySelector(name));
+    if (this.load_n !== undefined) this.pose(this.load_n);
     if (hadFocus) this.marks[this.focused - 1]?.focus();
     byId('pins-title').textContent = TEXT.pinsIn(pins);
     byId('pins-count').textContent = pins.length ? TEXT.pinsCount(pins.length, s.n) : TEXT.noPinsNote;
@@ -93,7 +134,7 @@ class Pins {
     const bed = substrate === 'abs' ? 'shell' : 'layer';
     const rope = `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`;
     drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: bed }),
-      svg('path', { d: rope, class: 'tendon', 'stroke-width': 2 * s.rope }));
+      svg('path', { d: '', class: 'touch', 'stroke-width': 0.5 * s.rope }), svg('path', { d: rope, class: 'tendon', 'stroke-width': 2 * s.rope }));
     return drawing;
   }
 

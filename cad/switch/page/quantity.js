@@ -9,6 +9,7 @@ const QUANTITY_UNITS = {
   '%': { '%': 1 },
   C: { c: 1, '°c': 1 },
   'mm/s': { 'mm/s': 1, 'cm/s': 10, 'm/s': 1000, 'in/s': 25.4 },
+  min: { min: 1, h: 60, s: 1 / 60 },
   Hz: { hz: 1, khz: 1000 },
   'Shore A': { a: 1, shore: 1 },
   'g/cm3': { 'g/cm3': 1, 'g/cm³': 1, 'kg/m3': 1e-3, 'kg/m³': 1e-3 },
@@ -134,30 +135,37 @@ function stepByArrows(input, step, unit, apply) {
   });
 }
 
-// On a touch screen a slider changes only by a horizontal drag: a tap, or a swipe that scrolls, leaves it unchanged.
-const LEAST_DRAG_PX = 10;
+// On a touch screen a slider changes only by a horizontal drag: a tap, or a swipe that scrolls, leaves it unchanged. A drag that
+// leaves the slider upward or downward was a swipe: the value goes back, as sliders of operating systems do.
+const LEAST_DRAG_PX = 10, SNAP_BACK_PX = 40;
 let touch = null;
 addEventListener('pointermove', (event) => {
-  if (!touch || touch.isDrag) return;
+  if (!touch || touch.isSwipe) return;
   const [dx, dy] = [Math.abs(event.clientX - touch.x), Math.abs(event.clientY - touch.y)];
-  touch.isDrag = dx > LEAST_DRAG_PX && dx > 2 * dy;
+  touch.isDrag ||= dx > LEAST_DRAG_PX && dx > 2 * dy;
+  touch.isSwipe = dy > SNAP_BACK_PX;
+  if (!touch.isSwipe) return;
+  touch.slider.value = touch.value;
+  if (touch.isDrag) touch.revert();
 });
 for (const name of ['pointerup', 'pointercancel']) {
   addEventListener(name, () => {
     const ended = touch;
     // After the last event of the slider itself.
     setTimeout(() => {
-      if (ended && !ended.isDrag) ended.slider.value = ended.value;
+      if (ended && (!ended.isDrag || ended.isSwipe)) ended.slider.value = ended.value;
       if (touch === ended) touch = null;
     });
   });
 }
-function listenToSlider(slider, apply) {
+
+// Calls `apply` for changes of a slider, and `revert`, which `begin` returns, where a drag turns out to be a swipe.
+function listenToSlider(slider, apply, begin) {
   slider.addEventListener('pointerdown', (event) => {
-    touch = event.pointerType === 'touch' ? { slider, x: event.clientX, y: event.clientY, value: slider.value, isDrag: false } : null;
+    touch = event.pointerType === 'touch' ? { slider, x: event.clientX, y: event.clientY, value: slider.value, isDrag: false, isSwipe: false, revert: begin() } : null;
   });
   slider.addEventListener('input', () => {
-    if (touch?.slider === slider && !touch.isDrag) { slider.value = touch.value; return; }
+    if (touch?.slider === slider && (!touch.isDrag || touch.isSwipe)) { slider.value = touch.value; return; }
     apply();
   });
 }

@@ -1,5 +1,5 @@
-// The state of the page: values that differ from the defaults, a calibrated model, targets; its
-// history; its address.
+// The state of the page: values that differ from the defaults, a calibrated model, targets, the last
+// fit; its history; its address.
 
 // A report of a set shows one design.
 const IS_REPORT = document.body.dataset.state === 'report';
@@ -15,12 +15,14 @@ const MAX_TARGET_N = 1000;
 const MIN_TARGET_N = 0.001;
 const isTarget = (value) => Number.isFinite(value) && value > 0 && value <= MAX_TARGET_N;
 const sameValue = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+// A fit is long, and never changed.
+const sameState = ({ fit, ...a }, { fit: other, ...b }) => fit === other && sameValue(a, b);
 
 class State extends EventTarget {
   constructor(facts) {
     super();
     this.fields = new Map(facts.fields.map((f) => [f.path, f]));
-    this.now = { values: {}, model: null, targets: { threshold_n: null, friction: [] } };
+    this.now = { values: {}, model: null, targets: { threshold_n: null, friction: [] }, fit: null };
     this.past = [];
     this.future = [];
     this.last = { name: null, time: 0 };
@@ -38,7 +40,7 @@ class State extends EventTarget {
     if (IS_REPORT) return;
     const next = { ...this.now, ...parts };
     if (parts.values) next.values = this.withoutDefaults(parts.values);
-    if (sameValue(next, this.now)) return;
+    if (sameState(next, this.now)) return;
     const time = performance.now();
     const continues = name && name === this.last.name && time - this.last.time < ONE_STEP_MS && this.past.length;
     if (!continues) this.past.push(this.now);
@@ -46,6 +48,8 @@ class State extends EventTarget {
     this.future = [];
     this.last = { name, time };
     this.now = next;
+    // A change that was taken back is no step.
+    if (continues && sameState(this.past.at(-1), next)) this.past.pop();
     this.notify();
   }
 
@@ -100,7 +104,7 @@ function encodeHash(now) {
 // alike, so that the page reads what it has written, with the same error.
 function wholeNumbers(texts) {
   const numbers = texts.map(Number);
-  return texts.every((text) => text.trim() !== '') && numbers.every(Number.isSafeInteger) ? numbers : undefined;
+  return texts.every((text) => /^\s*[-+]?\d+\s*$/.test(text)) && numbers.every(Number.isSafeInteger) ? numbers : undefined;
 }
 
 // Parses a value for a field; undefined if it is not of the field's kind. The engine checks ranges.
@@ -204,19 +208,65 @@ async function unpackModel(packed) {
 // Without access to storage nothing is remembered. An embedded page remembers nothing: the
 // surrounding page does. A report has nothing to remember.
 const isEmbedded = () => new URLSearchParams(location.search).has('embed');
+// Returns whether it is kept.
 function remember(what) {
-  if (IS_REPORT || isEmbedded()) return;
-  try { localStorage.setItem(STORAGE_KEY, JSON.stringify(what)); } catch { /* Not allowed in private windows and for files; the design is in the address. */ }
+  if (IS_REPORT || isEmbedded()) return true;
+  try {
+    localStorage.setItem(STORAGE_KEY, JSON.stringify(what));
+    return true;
+  } catch {
+    // Not allowed in private windows and for files, or full; the design is in the address.
+    return false;
+  }
 }
 function remembered() {
   if (IS_REPORT || isEmbedded()) return {};
   try {
-    const { hash, kept, ...rest } = JSON.parse(localStorage.getItem(STORAGE_KEY)) ?? {};
+    const { hash, kept, fit, ...rest } = JSON.parse(localStorage.getItem(STORAGE_KEY)) ?? {};
     // Entries of earlier versions, and edited ones, may be invalid.
     const isCurve = (curve) => ['load_n', 'friction_n'].every((name) => Array.isArray(curve?.[name]));
     const isValid = kept && typeof kept.name === 'string' && kept.values && typeof kept.values === 'object' && isCurve(kept.curve);
-    return { ...rest, ...(typeof hash === 'string' && { hash }), ...(isValid && { kept }) };
+    const knownFit = readFit(fit);
+    return { ...rest, ...(typeof hash === 'string' && { hash }), ...(isValid && { kept }), ...(knownFit && { fit: knownFit }) };
   } catch {
     return {};
+  }
+}
+
+// ---- a session in a file ------------------------------------------------------------------------------------------
+
+const SESSION = 'pinswitch.session/1';
+const isText = (value) => typeof value === 'string';
+const areNumbers = (...values) => values.every(Number.isFinite);
+
+// A fit that was kept or that a file contains; null if it is none, since people edit files.
+function readFit(fit) {
+  const isList = (list, isEntry) => Array.isArray(list) && list.every((entry) => entry !== null && isEntry(entry));
+  const isFit = fit && isText(fit.file) && isText(fit.model) && isText(fit.head) && isList(fit.lines, isText)
+    && isList(fit.probabilities, (p) => isText(p[0]) && areNumbers(p[1]))
+    && isList(fit.sizes, (s) => isText(s.id) && isText(s.name) && isText(s.unit) && areNumbers(s.value) && isList(s.ci95, areNumbers) && s.ci95.length === 2)
+    && isList(fit.points, (p) => Array.isArray(p.pins) && areNumbers(p.wrap_angle_deg, p.load_n, p.friction_n))
+    && isList(fit.residuals, (r) => areNumbers(r.load_n, r.before_n, r.after_n));
+  return isFit ? { ...fit, csv: isText(fit.csv) ? fit.csv : null } : null;
+}
+
+// The whole state as a text that `readSession` reads.
+function writeSession({ values, targets, model, fit }) {
+  return `${JSON.stringify({ schema: SESSION, values, targets, model: model && { name: model.name, toml: model.toml }, fit }, null, 1)}\n`;
+}
+
+// Returns the state of a saved session; null for another file. Unknown fields are left out.
+async function readSession(text, fields) {
+  try {
+    const { schema, values, targets, model, fit } = JSON.parse(text);
+    if (schema !== SESSION) return null;
+    const known = Object.fromEntries(Object.entries(values).filter(([path]) => fields.has(path)));
+    const isThreshold = targets.threshold_n === null || isTarget(targets.threshold_n);
+    const areFrictions = targets.friction.every((f) => isTarget(f.load_n) && isTarget(f.friction_n)) && targets.friction.length <= MAX_FRICTIONS;
+    if (!isThreshold || !areFrictions) return null;
+    const packed = model && isText(model.name) && isText(model.toml) ? await packModel(model.name, model.toml) : null;
+    return { values: known, targets: { threshold_n: targets.threshold_n, friction: targets.friction }, model: packed, fit: readFit(fit) };
+  } catch {
+    return null;
   }
 }

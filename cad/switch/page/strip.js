@@ -1,5 +1,5 @@
-// On a narrow screen: what the design does, pinned to the upper edge while the curve itself is out of view or behind the
-// parameters.
+// On a narrow screen: what the design does, pinned to the lower edge while the curve itself is out of view, or to the upper
+// edge while the parameters are open.
 
 const STRIP = { width: 132, height: 44 };
 
@@ -32,7 +32,9 @@ class Strip {
     if (wanted !== null) mark(wanted, 'wanted');
     const text = make('span');
     text.append(make('b', TEXT.switchesAt(f.threshold_n)), make('span', `${TEXT.newtons(f.friction_n, 2)} ${TEXT.frictionAt(TEXT.newtons(f.load_n))}`));
-    if (wanted !== null) text.append(make('span', TEXT.target(TEXT.newtons(wanted))));
+    const { friction: frictions } = this.state.now.targets;
+    const targets = [...(wanted === null ? [] : [TEXT.newtons(wanted)]), ...frictions.map((t) => `${TEXT.newtons(t.friction_n)} ${TEXT.frictionAt(TEXT.newtons(t.load_n))}`)];
+    if (targets.length) text.append(make('span', TEXT.target(targets.join(', '))));
     this.host.replaceChildren(drawing, text);
   }
 }

@@ -1,5 +1,11 @@
 // Targets of the design, the search, and the proposed designs as cards.
 
+// Parameters that the search can change, and whether it does at first, as on the command line.
+const VARIED = [['pattern', true], ['pitch_deg', true], ['layer_mm', true], ['hardness_shore_a', false], ['pin_diameter_mm', false], ['radius_mm', false], ['wrap_deg', false]];
+// Height of the results that is enough to see that there are any.
+const LEAST_SEEN_PX = 120;
+const signed = (value) => `${value > 0 ? '+' : ''}${value.toFixed(2)} N`;
+
 class Targets {
   constructor(state, engine, curve, handles) {
     Object.assign(this, { state, engine, curve, handles });
@@ -7,12 +13,22 @@ class Targets {
     this.listen(threshold, (value) => this.handles.set({ threshold_n: value }, 'target.threshold'), () => this.state.now.targets.threshold_n);
     byId('remove-threshold').addEventListener('click', () => { this.handles.set({ threshold_n: null }); threshold.focus(); });
     byId('add-friction').addEventListener('click', () => this.add());
-    for (const id of ['search', 'search-here']) byId(id).addEventListener('click', () => this.search());
+    for (const id of ['search', 'search-here']) byId(id).addEventListener('click', (event) => this.search(event));
     byId('results-close').addEventListener('click', () => this.close());
     byId('stop').addEventListener('click', () => this.engine.stop('search'));
     state.addEventListener('change', () => this.show());
+    for (const [name, isOn] of VARIED) {
+      const label = make('label', undefined, { class: 'check' });
+      const box = make('input', undefined, { type: 'checkbox', value: name });
+      box.checked = isOn;
+      label.append(box, TEXT.varied[name]);
+      byId('vary').append(label);
+    }
     this.show();
   }
+
+  // Parameters that the search may change.
+  get vary() { return [...byId('vary').querySelectorAll('input:checked')].map((box) => box.value); }
 
   add() {
     const { friction } = this.state.now.targets;
@@ -27,6 +43,8 @@ class Targets {
   // An input in newtons. An invalid text is reported while it is typed, and replaced when the input
   // loses the focus.
   listen(input, apply, current) {
+    let before = null;
+    input.addEventListener('focus', () => { before = this.state.now; });
     const report = (text) => {
       byId('targets-status').hidden = !text;
       byId('targets-status').textContent = text;
@@ -38,11 +56,16 @@ class Targets {
       // An empty threshold removes the target; an empty friction is incomplete.
       if (input.value.trim() === '' && input.id === 'target-threshold') { report(''); apply(null); return; }
       report(value === undefined && problem !== TEXT.notNumber ? problem : TEXT.invalidTarget(MAX_TARGET_N));
+      // Of 1.234,5 the part 1.234 was a target: the one before it was typed comes back.
+      if (before && !sameValue(before.targets, this.state.now.targets)) { this.isRestoring = true; this.state.change({ targets: before.targets }); this.isRestoring = false; }
     });
     stepByArrows(input, 0.5, 'N', (value) => { if (isTarget(value)) apply(value); });
-    input.addEventListener('keydown', (event) => { if (event.key === 'Enter' && !byId('search').disabled) this.search(); });
+    input.addEventListener('keydown', (event) => { if (event.key === 'Enter' && !byId('search').disabled && !input.hasAttribute('aria-invalid')) this.search(); });
     input.addEventListener('blur', () => {
-      if (input.hasAttribute('aria-invalid')) report('');
+      if (input.hasAttribute('aria-invalid')) {
+        report('');
+        showToast(TEXT.targetUnchanged(current() ?? null));
+      }
       input.value = current() ?? '';
     });
   }
@@ -50,7 +73,7 @@ class Targets {
   // Shows a target, unless the focused input has the same number in another form.
   fill(input, value) {
     const typed = input.value.trim() === '' ? null : readQuantity(input.value, 'N').value;
-    if (document.activeElement === input && typed === value) return;
+    if (document.activeElement === input && (typed === value || this.isRestoring)) return;
     input.value = value ?? '';
     if (!input.hasAttribute('aria-invalid')) return;
     input.removeAttribute('aria-invalid');
@@ -79,30 +102,32 @@ class Targets {
       label.append(input, make('span', TEXT.units.n, { class: 'unit' }));
       return label;
     };
-    const remove = button('×', () => this.handles.set({ friction: this.state.now.targets.friction.filter((_, k) => k !== i) }), { class: 'tiny', 'aria-label': TEXT.removeFriction(i + 1) });
+    const remove = button('×', () => this.handles.set({ friction: this.state.now.targets.friction.filter((_, k) => k !== i) }), { class: 'tiny', 'aria-label': TEXT.removeFriction(i + 1), 'data-focus-next': 'add-friction' });
     row.append(labelled(TEXT.targetFriction, 'friction_n'), labelled(TEXT.targetLoad, 'load_n'), remove);
     return row;
   }
 
-  async search() {
+  async search(event) {
     const { targets, values, model } = this.state.now;
     const isEmpty = targets.threshold_n === null && !targets.friction.length;
     byId('targets-status').hidden = !isEmpty;
     byId('targets-status').textContent = isEmpty ? TEXT.noTargets : '';
     if (isEmpty) return;
     byId('results').hidden = false;
-    byId('results').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+    // The button itself stays where it is.
+    if (event?.currentTarget === byId('search-here')) byId('results').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     byId('search').disabled = byId('search-here').disabled = true;
     byId('stop').hidden = false;
     this.lastSearch = null;
     byId('results').classList.add('outdated');
     const endReports = reportElapsed((seconds) => { byId('search-status').textContent = TEXT.searching(seconds); });
     try {
-      const answer = await this.engine.request({ command: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, most: 6, model: model?.toml ?? null });
+      const answer = await this.engine.request({ command: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, vary: this.vary, most: 6, model: model?.toml ?? null });
       this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), varied: answer.varied, input: this.searchInput(targets, values, model, answer.varied) };
       byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
       this.showBlocked(answer.blocked);
       this.showDesigns(answer.designs, answer.varied);
+      if (byId('results').getBoundingClientRect().top > innerHeight - LEAST_SEEN_PX) byId('results').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     } catch (problem) {
       byId('search-status').textContent = problem instanceof Superseded ? TEXT.stopped : problem.message;
     } finally {
@@ -132,12 +157,14 @@ class Targets {
     this.engine.stop('search');
     this.lastSearch = null;
     this.curve.setExtra('preview', null);
+    this.curve.setExtra('proposals', []);
     byId('results').hidden = true;
-    byId('search').focus();
+    byId('search').focus({ preventScroll: true });
   }
 
   showDesigns(designs, varied) {
     this.curve.setExtra('preview', null);
+    this.curve.setExtra('proposals', designs.map((design) => design.curve));
     byId('designs').replaceChildren(...designs.map((design, i) => this.card(design, i, varied)));
   }
 
@@ -158,14 +185,22 @@ class Targets {
       // Everything that the search does not vary stays unchanged.
       const values = { ...this.state.now.values };
       for (const path of varied) { if (path in design.values) values[path] = design.values[path]; else delete values[path]; }
+      this.applied?.();
       this.state.change({ values });
-      showToast(TEXT.designApplied);
     }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
     const changes = this.changes(design.values, varied);
     const sources = design.uncertainty.filter((s) => s.share >= 0.01).map((s) => TEXT.sourceShare(s.source, Math.round(100 * s.share)));
     card.append(head, bar, make('p', TEXT.designPins(design.pins)), targets, make('p', rest, { class: 'dim' }));
+    if (design.problems.length) card.append(make('p', TEXT.designProblems(design.problems.map(inWords)), { class: 'error' }));
     if (changes.length) card.append(make('p', changes.join(', '), { class: 'dim' }));
-    if (sources.length) card.append(make('p', TEXT.uncertain(sources), { class: 'dim' }));
+    const more = make('details');
+    more.append(make('summary', TEXT.details));
+    if (sources.length) more.append(make('p', TEXT.uncertain(sources), { class: 'dim' }));
+    const gains = design.gains.map((gain) => ({ ...gain, field: this.state.fields.get(gain.field) })).filter((gain) => gain.field);
+    if (gains.length) {
+      more.append(table(TEXT.gainColumns, gains.map(({ field, threshold_n: threshold, friction_n: friction }) => [`${fieldName(field)} +1 ${unitName(field)}`.trim(), signed(threshold), signed(friction)])));
+    }
+    card.append(more);
     card.append(use);
     const preview = (on) => this.curve.setExtra('preview', on ? { name: TEXT.previewCurve(i + 1), curve: design.curve } : null);
     for (const [event, on] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]]) card.addEventListener(event, () => preview(on));
@@ -187,8 +222,8 @@ class Targets {
     box.hidden = !blocked;
     if (!blocked) return;
     const list = make('ul');
-    list.append(...blocked.help.map((help) => make('li', help)));
-    box.replaceChildren(make('p', `${blocked.problem}.`, { class: 'error' }), list);
+    list.append(...blocked.help.map((help) => make('li', inWords(help))));
+    box.replaceChildren(make('p', `${inWords(blocked.problem)}.`, { class: 'error' }), list);
   }
 
   spark({ load_n, friction_n }) {

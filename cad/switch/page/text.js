@@ -11,26 +11,34 @@ const TEXT = {
   parameters: 'Parameters', close: 'Close',
   find: 'Find a parameter', changedOnly: 'Changed', allParameters: 'All',
   stripName: 'Summary of the design: show the curve', clipboard: 'the clipboard', noField: 'No matching parameter.',
-  intro: 'A friction switch is a pulley for the tendon of a robot or a machine: slippery at light loads, holding at heavy ones. The tendon runs over steel pins in silicone; as the load grows, the pins sink and it meets the silicone. ',
-  introNext: 'Choose pins and sizes, watch the curve, then download parts, drawings and a guide.',
+  intro: 'A friction switch is a pulley that lets the tendon of a robot or a machine slip at light loads and holds it at heavy ones: as the load grows, its steel pins sink, and the tendon meets the silicone between them.',
+  steps: { parameters: 'What should it do?', curve: 'Does it do it?', download: 'Make it' }, stepsName: 'Three steps',
+  playLoad: '▶ Play the load', pinsScale: (load, scale) => `At ${load} N of load; heights are ${scale} times as large. Blue: here the tendon lies on the silicone.`,
   explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
   flexion: 'Flexion', flex: 'Play', flexionText: (flexion, wrap) => `${flexion}°, wrap ${wrap}°`,
   assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
   curve: 'Friction over load', load: 'Load', otherLaws: 'Other laws', keepCurve: 'Keep for comparison', clearComparison: 'Clear comparison',
   curveTable: 'The curve as a table', why: 'Prediction status and reasons',
   clearPins: 'Remove all pins', mirror: 'Mirror',
-  pinsHelp: 'Click a groove to add or remove a pin, drag a pin to move it. Keyboard: arrows select a groove, Space adds or removes a pin, Shift and an arrow move it.',
+  pinsHelp: 'Click or tap a groove to add or remove a pin, drag a pin to move it. Keyboard: arrows select a groove, Space adds or removes a pin, Shift and an arrow move it.',
   checks: 'Checks', materials: 'Bill of materials', parts: 'Printed parts', bed: 'Print bed',
-  targets: 'Design for targets', results: 'Proposed designs', targetsHelp: 'Drag the marks on the curve, or enter the load at which it should switch and the friction it should have.',
+  targets: 'What should it do?', mayChange: 'The search may change', details: 'Details', printer: 'Printer', ownPrinter: 'my own, under Parameters', curveStep: 'Does it do it?', materialsStep: 'Make it: ',
+  varied: { pattern: 'pins', pitch_deg: 'pitch', layer_mm: 'thickness of the silicone', hardness_shore_a: 'hardness', pin_diameter_mm: 'diameter of the pins', radius_mm: 'radius', width_mm: 'width', wrap_deg: 'wrap angle' },
+  gainColumns: ['change', 'threshold', 'friction at the heaviest load'], designProblems: (problems) => `To review before printing: ${problems.join('; ')}.`,
+  changeOf: (a, b) => `${TEXT.switchesAt(a.threshold_n) === TEXT.switchesAt(b.threshold_n) ? '' : `before: ${TEXT.switchesAt(a.threshold_n)}; now ${TEXT.switchesAt(b.threshold_n)}. `}Friction at ${TEXT.newtons(b.load_n)}: ${TEXT.newtons(a.friction_n, 2)}, now ${TEXT.newtons(b.friction_n, 2)}. Undo to revert.`,
+  proposedCurves: (n) => `proposed designs (${n})`, lawNames: { paper: 'law of the paper', layout: 'law of layouts', physics: 'equilibrium of the tendon' },
+  targetUnchanged: (value) => (value === null ? 'No target is set.' : `The target is still ${value} N.`), yourTargets: 'your targets',
+ results: 'Proposed designs', targetsHelp: 'Drag the marks on the curve, or enter the load at which it should switch and the friction it should have.',
   targetThreshold: 'Switches at', targetFriction: 'Friction of', targetLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', useDesign: 'Use this design',
   isReport: 'This page shows a set that is made. To change it, open assembly.3mf or its TOML file with `pinswitch view`.', filesBeside: 'Linked files are in the folder of this page.',
-  measurements: 'Your measurements', chooseTable: 'Choose a table', useModel: 'Use this model in the design', removeModel: 'Back to the published constants',
+  measurements: 'Your measurements', chooseTable: 'Choose a table', useModel: 'Use this model in the design', useOtherModel: (file) => `Use the model of ${file} instead`, removeFit: 'Remove these measurements', saveModel: 'Save model.toml',
+  notKept: 'These measurements are too large for the memory of this browser. To keep them, save the session under Download.', notSession: (file) => `${file} was not saved by this page.`, session: 'Session with measurements (JSON)', removeModel: 'Back to the published constants',
   sampleTable: 'Try an example', planRuns: 'What to measure next', withinMinutes: 'in', planning: (seconds) => `Planning the next runs: ${seconds} s`,
   planned: (runs, minutes) => `${runs} runs in ${Math.round(minutes)} minutes. Probability that they answer each open question:`, nothingOpen: 'No question is open: every effect that matters is named without a rival, or ruled out.',
   question: ([effect, other]) => (other === 'none' ? TEXT.effectNames[effect] ?? effect : `${TEXT.effectNames[effect] ?? effect}, or ${TEXT.effectNames[other] ?? other}`),
   saveRuns: 'Save the runs', saveSheet: 'Save the run sheet',
   measurementsHelp: 'Drop a table of your rig (CSV, Excel, LVM) anywhere on the page. The calibration reports whether the model fits your switch, and what it lacks.',
-  filesTitle: 'Download', everything: 'All files as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
+  filesTitle: 'Download: make it', everything: 'All files as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
 
   groups: {
     switch: 'Switch', layout: 'Layout', segment: 'Segment', shell: 'Shell', fasteners: 'Fasteners', silicone: 'Silicone layer', pins: 'Pins', tendon: 'Tendon',
@@ -68,7 +76,7 @@ const TEXT = {
   frictionAt: (load) => `of friction at ${load} of load`,
   range: (low, high) => `${low} to ${high}`,
   curveName: (law, load, friction, low, high) => `Friction over load by ${law}: ${friction} N at ${load} N of load, band ${low} to ${high} N`,
-  trust: { published: 'published layout', interpolated: 'between measured layouts', extrapolated: 'extrapolated' },
+  trust: { published: 'layout measured in the paper', interpolated: 'between measured layouts', extrapolated: 'extrapolated' },
   trustMark: { published: '●', interpolated: '◐', extrapolated: '○' },
   calibratedTrust: (status) => `your model, ${status}`,
   trustName: (status) => `Prediction status: ${status}. Show the reasons`,
@@ -100,7 +108,7 @@ const TEXT = {
   invalidTarget: (max) => `Enter a number above 0 and up to ${max} N.`, noTargets: 'First enter a load at which it should switch, or a friction.',
   sourceShare: (source, percent) => `${source} ${percent} %`, uncertain: (sources) => `Sources of uncertainty: ${sources.join(', ')}.`, changedTo: (name, value) => `${name} ${value}`,
   ownPoints: (n) => `your readings (${n})`, probabilities: 'Probabilities of effects', percent: (p) => (p > 0.995 ? '> 99 %' : `${Math.round(100 * p)} %`), sizeColumns: ['effect', 'size', '95 % interval'],
-  residualsName: (most) => `Residuals over the load, up to ${most} N: those of the published model, and those of the calibrated one.`, residualsCaption: 'Residuals over the load: \u25cb published model, \u25cf calibrated model.', pointsOf: (n) => `${n} measured points; those of the design’s layout are on the curve.`,
+  residualsName: (most) => `Residuals over the load, up to ${most} N: those of the published model, and those of the calibrated one.`, residualsCaption: 'Residuals over the load (N): grey rings by the published model, blue dots by the calibrated one.', pointsOf: (n, own) => `${n} measured points; ${own} of them are of the layout of the design, and on the curve.`,
   stopped: 'Stopped.', probability: (p) => `${p} % probable`, designPins: (pins) => (pins.length ? `pins [${pins.join(', ')}]` : 'no pins'),
   probabilityNote: (tolerance) => `Probability that a printed part is within ${formatNumber(100 * tolerance)} % of all targets.`,
   switchesAt: (n) => (n === null ? 'does not switch' : `switches at ${n.toFixed(1)} N`), heaviest: (n) => `${n.toFixed(2)} N at the heaviest load`,
@@ -111,7 +119,7 @@ const TEXT = {
   understood: (file) => `${file} contains`, useTable: 'Calibrate with this table',
   logOf: (file) => `This is a log of the force over time. Run pinswitch import ${file} and pinswitch segment to convert it to a table.`,
   calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute, tens of thousands some minutes; you can continue to work on the page.`,
-  heldOutErrors: (before, after, newSession) => `Held-out error: ${before} N before, ${after} N after; expected in a new session: ${newSession} N.`,
+  heldOutErrors: (before, plain, after, newSession) => `Held-out error: ${before} N by the published model,${plain === null ? '' : ` ${plain} N by least squares,`} ${after} N by this model${newSession === null ? '' : `; expected in a new session: ${newSession} N`}.`,
   modelApplied: 'The design uses your calibrated model. The address contains it and is long.', modelName: (file) => `model from ${file}`,
   verdictOf: (file, verdict) => `${file}: ${verdict}`,
   verdicts: {
@@ -130,19 +138,19 @@ const TEXT = {
   },
   tooLarge: (name, mb, limit) => `${name} is ${mb} MB. A table of plateaus has one line per plateau and at most ${limit} MB. To convert a raw log: pinswitch segment.`,
   tooLargeConfiguration: (name, mb) => `${name} is ${mb} MB, and not a pinswitch configuration. Drop a TOML file that pinswitch wrote.`,
-  unknownType: (name) => `${name} has an unknown type. The page reads tables (CSV, text, LVM, Excel, OpenDocument), and configurations and models (.toml).`,
+  unknownType: (name) => `${name} has an unknown type. The page reads tables (CSV, text, LVM, Excel, OpenDocument), configurations and models (.toml), and its saved sessions (.json).`,
   notText: (name) => `${name} is not a text file. If another program wrote it, export it as CSV.`,
   empty: (name) => `${name} is empty.`, unreadable: (name) => `${name} could not be read. Does it still exist?`, manyFiles: 'The page opens one file at a time: the first one.',
 
-  waitsFor: { search: 'Waiting for the search for designs.', calibrate: 'Waiting for the fit to your table.' },
+  waitsFor: { experiment: 'Waiting for the plan of the next runs.', search: 'Waiting for the search for designs.', calibrate: 'Waiting for the fit to your table.' },
   generatingFiles: 'Generating the files …', filesFailed: 'No files: ', generating: (name) => `Generating ${name} …`, saved: (name) => `Saved ${name}.`, noFiles: 'This design cannot be built and has no files. Fix it first.',
   megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
-  kinds: { stl: 'Printed parts, one per file', '3mf': 'All parts on a plate', step: 'CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'Viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
+  kinds: { print: 'Print', drawing: 'Drawing', guide: 'Guide and manual', step: 'CAD, exact', glb: 'Viewers and web pages', curve: 'Curve', data: 'Data', png: 'Pictures', other: 'Other' },
 
-  shared: 'Address copied: it contains the whole design.', shareByHand: 'Copy the address of this page: it contains the whole design.',
+  shared: 'Address copied: it contains the whole design.', sharedLacks: (isLocal) => `It lacks your ${isLocal ? 'targets, model and measurements' : 'measurements'}: to keep them, save the session under Download.`, shareByHand: 'Copy the address of this page: it contains the whole design.',
   sharedText: 'This page runs on your computer, so its address opens nowhere else. The design is copied as text: paste it on any pinswitch page, or save it as a .toml file.', shareFileByHand: 'This page runs on your computer, so its address opens nowhere else. Share the configuration (TOML) under Download.',
-  templateApplied: (name, lost) => (lost ? `${name} opened. Undo restores your ${lost} changed ${lost === 1 ? 'value' : 'values'}.` : `${name} opened.`), printerApplied: (name, kept) => `${name} applied.${kept.length ? ` Your own values are kept: ${kept.join(', ')}.` : ''}`,
-  opened: (file) => `${file} opened.`, notOpened: (file) => `Cannot open ${file}: `, designApplied: 'Applied. Undo to revert.',
+  templateApplied: (name, lost, kept) => `${name} opened.${lost ? ` Undo restores your ${lost} changed ${lost === 1 ? 'value' : 'values'}.` : ''}${kept.length ? ` Kept: ${kept.join(', ')}.` : ''}`, printerApplied: (name, kept) => `${name} applied.${kept.length ? ` Your own values are kept: ${kept.join(', ')}.` : ''}`,
+  opened: (file) => `${file} opened.`, notOpened: (file) => `Cannot open ${file}: `,
   restored: 'Your last design is restored.',
   published: 'Published', printers: 'Printers',
 
@@ -179,11 +187,26 @@ const TEXT = {
   fault: (message) => `Error in the page: ${message}. Reload it; the design is in the address.`,
 };
 
+// The fields of a configuration by path.
+let FIELDS = new Map();
+
+// Replaces names of fields and of parameters of a request by those that the page shows.
+function inWords(text) {
+  const named = text.replace(/\b[a-z]+\.[a-z][a-z0-9_]*\b/g, (path) => {
+    const field = FIELDS.get(path);
+    return field ? `“${TEXT.groups[field.section] ?? field.section}: ${fieldName(field)}”` : path;
+  });
+  return named.replace(/\b[a-z]+_(deg|mm|a)\b/g, (name) => TEXT.varied[name] ?? name).replaceAll(', because it is not in vary', ', which the search does not change');
+}
+
 // An effect in words, with its id in the catalogue and the reports.
 const effectText = (id) => (TEXT.effectNames[id] ? `${TEXT.effectNames[id]} (${id})` : id.replaceAll('_', ' '));
 
 // Why the engine refuses a design or a file: field, value, problem, help.
-function troubleText({ field, value, problem, help }, name = field) {
+const troubleText = (trouble, name) => inWords(plainTrouble(trouble, name));
+
+// The same with the names of a configuration, for other programs.
+function plainTrouble({ field, value, problem, help }, name = field) {
   const subject = [name, value === null || value === undefined || value === '' ? '' : `= ${String(value).slice(0, 60)}`].filter(Boolean).join(' ');
   return `${subject ? `${subject}: ` : ''}${problem}${help ? `; ${help}` : ''}`;
 }

@@ -47,7 +47,7 @@ export async function refusalCoversNothing(visit, site, { pictures }) {
     await visit.page.evaluate(() => scrollTo(0, 0));
     const moved = (await places()).filter((now, i) => Math.abs(now.top - before[i].top) + Math.abs(now.bottom - before[i].bottom) > 1);
     visit.findings.check(`a refusal moves nothing at ${width} px`, moved.length === 0, JSON.stringify(moved));
-    for (const down of [0, 120, 250, 400]) {
+    for (const down of [0, 120, 250]) {
       const covered = await visit.page.evaluate((y) => {
         scrollTo(0, y);
         const a = document.querySelector('#trouble').getBoundingClientRect();
@@ -57,6 +57,16 @@ export async function refusalCoversNothing(visit, site, { pictures }) {
         });
       }, down);
       visit.findings.check(`a refusal covers nothing at ${width} px, scrolled by ${down} px`, covered.length === 0, covered.join(' '));
+    }
+    // Wherever the page is scrolled, the message is in view.
+    for (let down = 300; down <= 1200; down += 50) {
+      const hidden = await visit.page.evaluate(async (y) => {
+        scrollTo(0, y);
+        await new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
+        const { left, top, bottom } = document.querySelector('#trouble').getBoundingClientRect();
+        return top < 0 || bottom > innerHeight || document.elementFromPoint(left + 20, top + 8)?.closest('#trouble') === null ? `${top} to ${bottom}` : '';
+      }, down);
+      visit.findings.check(`a refusal is in view at ${width} px, scrolled by ${down} px`, hidden === '', hidden);
     }
     await visit.page.evaluate(() => scrollTo(0, 0));
     await visit.page.screenshot({ path: `${pictures}/${site.name}-trouble-${width}.png` });

@@ -69,13 +69,26 @@ export async function thumbs(_, site, { findings }) {
     const { x, y, width, height } = await slider.boundingBox();
     const [left, top] = [x + 0.62 * width, y + height / 2];
     await send('touchStart', [{ x: left, y: top }]);
-    for (const [dx, dy] of [[5, -1], [11, -3], [17, -6], [22, -14], [26, -30], [29, -60], [31, -100]]) await send('touchMove', [{ x: left + dx, y: top + dy }]);
+    for (const [dx, dy] of [[8, -2], [16, -6], [24, -14], [30, -26], [34, -36]]) await send('touchMove', [{ x: left + dx, y: top + dy }]);
     await send('touchEnd', []);
     await pause(200);
   }
   await pause(400);
   await visit.check('arcs over sliders change nothing', (hash) => decodeURIComponent(location.hash) === hash, before);
   await visit.click('#sheet-close');
+  for (const mark of ['.grip.threshold', '.grip.diamond', '[data-groove="8"]']) {
+    for (const path of [[[5, -1], [11, -3], [17, -6], [22, -14], [26, -30], [29, -60], [31, -100]], [[8, -2], [16, -6], [24, -14], [30, -26], [34, -36]]]) {
+      if (mark === '[data-groove="8"]' && path.at(-1)[1] > -50) continue;
+      await visit.page.$eval(mark, (e) => e.scrollIntoView({ block: 'center' }));
+      const { x, y, width, height } = await (await visit.page.$(mark)).boundingBox();
+      const [left, top] = [x + width / 2, y + height / 2];
+      await send('touchStart', [{ x: left, y: top }]);
+      for (const [dx, dy] of path) await send('touchMove', [{ x: left + dx, y: top + dy }]);
+      await send('touchEnd', []);
+      await pause(300);
+      await visit.check(`an arc over ${mark} changes nothing`, (hash) => decodeURIComponent(location.hash) === hash, before);
+    }
+  }
   await visit.end();
 }
 

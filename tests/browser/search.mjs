@@ -41,11 +41,11 @@ export async function search(visit, site) {
   });
   visit.findings.check('the time of a search is not reported each second', reports.length === 1, reports.join(' / '));
   await visit.page.waitForSelector('#designs .design', { timeout: SLOW_MS });
-  const cards = await visit.page.$$eval('.design', (all) => all.map((c) => Number(/(\d+) % probable/.exec(c.textContent)?.[1])));
-  visit.findings.check('the designs are cards, the most probable first', cards.length > 1 && cards.every((p, i) => p >= 0 && p <= 100 && (i === 0 || p <= cards[i - 1])), cards);
+  const cards = await visit.page.$$eval('.design', (all) => all.map((c) => [c.querySelector('.error') ? 1 : 0, Number(/(\d+) % probable/.exec(c.textContent)?.[1])]));
+  visit.findings.check('the designs are cards, printable ones first, the most probable first', cards.length > 1 && cards.every(([review, p], i) => p >= 0 && p <= 100 && (i === 0 || review > cards[i - 1][0] || (review === cards[i - 1][0] && p <= cards[i - 1][1]))), cards);
   visit.findings.check('all designs are on the chart', /proposed designs \(\d\)/.test(await visit.text('#legend')), await visit.text('#legend'));
   await visit.page.$eval('.design details', (e) => { e.open = true; });
-  visit.findings.check('a card says what a change buys', /thickness \+1 mm[+-][\d.]+ N/.test(await visit.text('.design details')), await visit.text('.design details'));
+  visit.findings.check('a card says what a change buys', /thickness \+0\.1 mm[+-][\d.]+ N/.test(await visit.text('.design details')), await visit.text('.design details'));
   await visit.page.$eval('.design details', (e) => { e.open = false; });
   await visit.page.hover('.design:nth-child(2)');
   await visit.check('a card shows its curve', () => /design 2/.test(document.querySelector('#legend').textContent));

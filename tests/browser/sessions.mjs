@@ -54,7 +54,7 @@ export async function sessions(_, site, { table, findings, scratch }) {
   findings.check('with residuals and points', await other.shown('.residuals') && /your readings/.test(await other.text('#legend')));
   await other.click('#undo');
   await other.check('one step undoes it', () => document.querySelector('#fit').hidden && document.querySelector('#target-threshold').value === '');
-  for (const [name, content] of [['other.json', '{"schema": "other"}'], ['cut.json', text.slice(0, 200)], ['wrong.json', JSON.stringify({ ...JSON.parse(text), targets: { threshold_n: -1, friction: [] } })]]) {
+  for (const [name, content] of [['other.json', '{"schema": "other"}'], ['cut.json', text.slice(0, 200)], ['list.json', JSON.stringify({ ...JSON.parse(text), values: { 'layout.pins': '5,8,11' } })], ['wrong.json', JSON.stringify({ ...JSON.parse(text), targets: { threshold_n: -1, friction: [] } })]]) {
     await other.drop(name, content);
     await other.check(`${name} is refused`, (wanted) => document.querySelector('#notice').textContent.includes(`${wanted} was not saved by this page`), name);
   }

@@ -43,6 +43,8 @@ fn photograph(address: &str, picture: &Path, size: &str) {
             "--disable-gpu",
             "--enable-unsafe-swiftshader",
             "--no-first-run",
+            // On a first visit the switch moves.
+            "--force-prefers-reduced-motion",
         ])
         .args([
             "--disable-background-networking",

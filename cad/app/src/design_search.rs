@@ -135,8 +135,7 @@ fn result(wanted: &SearchRequest) -> Result<SearchResult, Refusal> {
     Ok(SearchResult { designs, summary, varied, blocked, tolerance: DEFAULT_WITHIN })
 }
 
-/// Returns the targets of a request. Without a model the search varies what that of the command line varies; a calibrated
-/// model is of one rig, whose dimensions stay.
+/// Returns the targets of a request, and what the search varies: by default what that of the command line varies.
 ///
 /// # Errors
 /// [`Refusal`] if a name in `vary` is not that of a parameter.
@@ -148,10 +147,9 @@ fn design_request(request: &SearchRequest) -> Result<Request, Refusal> {
         quantity: Quantity::Friction { load_n: at.load_n },
         requirement: about(at.friction_n),
     });
-    let vary = match (&request.model, &request.vary) {
-        (Some(_), _) => Vary { pattern: true, parameters: Vec::new() },
-        (None, None) => Vary::default(),
-        (None, Some(names)) => Vary {
+    let vary = match &request.vary {
+        None => Vary::default(),
+        Some(names) => Vary {
             pattern: names.iter().any(|name| name == PATTERN),
             parameters: names
                 .iter()

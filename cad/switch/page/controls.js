@@ -219,6 +219,7 @@ class Control {
 class Controls {
   constructor(host, facts, state, engine) {
     this.state = state;
+    this.templates = facts.templates;
     // Without an answer the slider has the range of its field.
     this.reachOf = (field) => engine.request({ command: 'reach', values: state.now.values, field }).then((answer) => answer.ends, () => null);
     this.controls = new Map();
@@ -256,7 +257,10 @@ class Controls {
   show() {
     for (const control of this.controls.values()) control.show();
     for (const { count, fields } of this.sections) {
-      const changed = fields.filter((f) => this.state.isChanged(f.path)).length;
+      // Not what the open template itself says.
+      const { values } = this.state.now;
+      const template = this.templates.find((t) => t.name === values['switch.name']);
+      const changed = fields.filter((f) => !sameValue(this.state.value(f.path), template?.values[f.path] ?? f.default)).length;
       count.textContent = changed ? TEXT.groupChanged(changed) : '';
     }
     this.filter();

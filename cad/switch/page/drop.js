@@ -39,7 +39,7 @@ class Drop {
     if (!kind) return this.refuse(TEXT.unknownType(file.name));
     if (file.size === 0) return this.refuse(TEXT.empty(file.name));
     if (kind === 'table' && file.size > this.maxTable_mb * MEGA) return this.refuse(TEXT.tooLarge(file.name, mega, this.maxTable_mb));
-    if (kind !== 'table' && file.size > (kind === 'toml' ? MAX_CONFIGURATION_BYTES : MAX_SESSION_BYTES)) return this.refuse(TEXT.tooLargeConfiguration(file.name, mega));
+    if (kind !== 'table' && file.size > (kind === 'toml' ? MAX_CONFIGURATION_BYTES : MAX_SESSION_BYTES)) return this.refuse(kind === 'toml' ? TEXT.tooLargeConfiguration(file.name, mega) : TEXT.notSession(file.name));
     let bytes;
     try { bytes = new Uint8Array(await file.arrayBuffer()); } catch { return this.refuse(TEXT.unreadable(file.name)); }
     const isUtf16 = (bytes[0] === 0xff && bytes[1] === 0xfe) || (bytes[0] === 0xfe && bytes[1] === 0xff);

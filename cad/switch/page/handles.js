@@ -24,8 +24,18 @@ class Handles {
     // A swipe over a mark that scrolls the page sets no target.
     let before;
     draggable(element, {
-      start: (e) => { e.stopPropagation(); element.focus(); before = this.state.now.targets; return true; }, move: drag,
-      end: (e, cancelled) => { if (cancelled) this.state.change({ targets: before }); },
+      start: (e) => {
+        e.stopPropagation();
+        element.focus();
+        before = { targets: this.state.now.targets, x: e.clientX, y: e.clientY, isTarget: element.classList.contains('target') };
+        return true;
+      },
+      move: drag,
+      // Of a finger, what is steeper than 45 degrees was a swipe, but for a target friction, which has both directions.
+      end: (e, cancelled) => {
+        const isSteep = e.pointerType === 'touch' && Math.abs(e.clientY - before.y) > Math.abs(e.clientX - before.x);
+        if (cancelled || (isSteep && !(kind === 'diamond' && before.isTarget))) this.set(before.targets, kind === 'diamond' ? undefined : 'target.threshold');
+      },
     });
     element.addEventListener('keydown', (event) => {
       const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], PageUp: [0, 10], PageDown: [0, -10] }[event.key];

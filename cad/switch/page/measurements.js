@@ -136,8 +136,10 @@ class Measurements {
     const box = byId('next-plan');
     const { value: minutes, problem: wrong } = readQuantity(byId('next-minutes').value, 'min');
     if (wrong) { box.replaceChildren(make('p', wrong, { class: 'error' })); return; }
+    // The button stays enabled, so that it keeps the focus.
+    if (this.isPlanning) return;
+    this.isPlanning = true;
     const endReports = reportElapsed((seconds) => box.replaceChildren(make('p', TEXT.planning(seconds))));
-    byId('plan-runs').disabled = true;
     try {
       const plan = await this.engine.request({ command: 'experiment', csv: fit.csv, file: fit.file, minutes }).finally(endReports);
       if (fit !== this.state.now.fit) return;
@@ -155,7 +157,7 @@ class Measurements {
       if (!(problem instanceof EngineError)) throw problem;
       box.replaceChildren(make('p', problem.message, { class: 'error' }));
     } finally {
-      byId('plan-runs').disabled = false;
+      this.isPlanning = false;
     }
   }
 
@@ -183,7 +185,15 @@ class Measurements {
     if (probabilities.length) box.append(this.bars(probabilities));
     if (sizes.length) box.append(table(TEXT.sizeColumns, sizes.map((s) => [TEXT.effectNames[s.id] ?? s.id, `${s.name} = ${formatNumber(s.value, 4)} ${s.unit}`.trim(), `${formatNumber(s.ci95[0], 4)} … ${formatNumber(s.ci95[1], 4)}`])));
     if (residuals.length) box.append(this.residualPlot(residuals));
-    box.append(make('p', TEXT.pointsOf(points.length, this.curve.ownPoints.length), { class: 'dim' }));
+    this.pointsLine = make('p', undefined, { class: 'dim' });
+    box.append(this.pointsLine);
+    this.sayPoints();
+  }
+
+  // Says how many of the points are on the curve of the shown design.
+  sayPoints() {
+    const { fit } = this.state.now;
+    if (fit) this.pointsLine.textContent = TEXT.pointsOf(fit.points.length, this.curve.ownPoints.length);
   }
 
   // Probabilities of effects as bars.
@@ -239,8 +249,9 @@ class Measurements {
   async useModel() {
     const model = await this.packed(this.fitted);
     if (!model) return;
-    this.applied?.();
+    const before = this.state.now;
     this.state.change({ model });
+    if (this.state.now !== before) this.applied?.();
   }
 
   // A model for the address, or null.

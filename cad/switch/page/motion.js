@@ -6,7 +6,7 @@ const MOTION_MS = 2500;
 class Motion {
   // `set` gets a share of the range, `now` returns the present one.
   constructor(control, set, now) {
-    Object.assign(this, { control, set, now });
+    Object.assign(this, { control, set, now, label: control.textContent });
     this.still = matchMedia('(prefers-reduced-motion: reduce)');
     control.addEventListener('click', () => (this.isOn ? this.stop() : this.start()));
     this.still.addEventListener('change', () => this.offer());
@@ -45,5 +45,8 @@ class Motion {
     this.show();
   }
 
-  show() { this.control.setAttribute('aria-pressed', String(this.isOn)); }
+  show() {
+    this.control.setAttribute('aria-pressed', String(this.isOn));
+    this.control.textContent = this.isOn ? TEXT.stopMotion : this.label;
+  }
 }

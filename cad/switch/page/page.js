@@ -29,10 +29,14 @@ function showNotice(text, ...actions) {
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': TEXT.close }));
 }
 
-// While the picture is out of view, messages float over the page.
+// Messages are over the picture; where it has no room for them below the header, they float over the page.
+const HEADER_PX = 66;
 function floatNotice() {
-  const update = ([{ isIntersecting }]) => document.querySelector('.banners').classList.toggle('floating-banners', !isIntersecting);
-  new IntersectionObserver(update, { rootMargin: '-60px 0px 0px 0px' }).observe(document.querySelector('.picture'));
+  const [picture, banners] = [document.querySelector('.picture'), document.querySelector('.banners')];
+  const update = () => banners.classList.toggle('floating-banners', picture.getBoundingClientRect().bottom < HEADER_PX + banners.scrollHeight);
+  addEventListener('scroll', update, { passive: true });
+  new ResizeObserver(update).observe(banners);
+  new ResizeObserver(update).observe(picture);
 }
 
 // Shows a notice about a topic; `clearNoticeAbout` removes it, and no other.
@@ -234,6 +238,7 @@ class Page {
     this.view.show(data);
     this.pins.show(data, values);
     this.curve.show(data, values, model?.name ?? null);
+    this.measurements.sayPoints();
     this.sayChange(data.manifest.friction);
     this.strip.update();
     showChecks(data);
@@ -324,7 +329,12 @@ class Page {
     this.state.change({ values: { ...kept, ...template.values } });
     const { model, targets } = this.state.now;
     const others = [...(printer ? [printer.name] : []), ...(model ? [TEXT.modelName(model.name)] : []), ...(targets.threshold_n !== null || targets.friction.length ? [TEXT.yourTargets] : [])];
-    showToast(TEXT.templateApplied(template.name, lost, others));
+    const text = TEXT.templateApplied(template.name, lost, others);
+    if (!model && others.length === (printer ? 1 : 0)) { showToast(text); return; }
+    showNoticeAbout('template', text, button(TEXT.asPublished, () => {
+      this.state.change({ model: null, targets: { threshold_n: null, friction: [] } });
+      clearNoticeAbout('template');
+    }));
   }
 
   // The printer whose values the design has; undefined without one.
@@ -352,6 +362,7 @@ class Page {
     byId('undo').addEventListener('click', () => state.undo());
     byId('redo').addEventListener('click', () => state.redo());
     byId('share').addEventListener('click', () => this.share());
+    byId('download-here').addEventListener('click', () => this.downloads.open());
     byId('parameters').addEventListener('click', () => this.sheet(true));
     byId('sheet-close').addEventListener('click', () => this.sheet(false));
     byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.describe());

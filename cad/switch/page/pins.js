@@ -200,8 +200,10 @@ class Pins {
       end: (event, cancelled) => {
         this.draggedPin.setAttribute('visibility', 'hidden');
         this.marks[from - 1]?.classList.remove('dragging');
-        if (cancelled) return;
-        const { groove } = this.nearest(drawing, event);
+        const { groove, offset } = this.nearest(drawing, event);
+        // A finger that leaves the grooves was a swipe.
+        const isAway = Math.abs(offset) > 4 * this.s.pin + 2 * this.s.rope;
+        if (cancelled || (event.pointerType === 'touch' && isAway)) return;
         this.focused = groove;
         if (!moved) this.toggle(groove); else this.move(from, groove);
       },

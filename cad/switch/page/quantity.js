@@ -142,6 +142,7 @@ let touch = null;
 addEventListener('pointermove', (event) => {
   if (!touch || touch.isSwipe) return;
   const [dx, dy] = [Math.abs(event.clientX - touch.x), Math.abs(event.clientY - touch.y)];
+  Object.assign(touch, { dx, dy });
   touch.isDrag ||= dx > LEAST_DRAG_PX && dx > 2 * dy;
   touch.isSwipe = dy > SNAP_BACK_PX;
   if (!touch.isSwipe) return;
@@ -151,6 +152,11 @@ addEventListener('pointermove', (event) => {
 for (const name of ['pointerup', 'pointercancel']) {
   addEventListener(name, () => {
     const ended = touch;
+    // Steeper than 45 degrees.
+    if (ended && !ended.isSwipe && ended.dy > ended.dx) {
+      ended.isSwipe = true;
+      if (ended.isDrag) ended.revert();
+    }
     // After the last event of the slider itself.
     setTimeout(() => {
       if (ended && (!ended.isDrag || ended.isSwipe)) ended.slider.value = ended.value;
@@ -162,7 +168,7 @@ for (const name of ['pointerup', 'pointercancel']) {
 // Calls `apply` for changes of a slider, and `revert`, which `begin` returns, where a drag turns out to be a swipe.
 function listenToSlider(slider, apply, begin) {
   slider.addEventListener('pointerdown', (event) => {
-    touch = event.pointerType === 'touch' ? { slider, x: event.clientX, y: event.clientY, value: slider.value, isDrag: false, isSwipe: false, revert: begin() } : null;
+    touch = event.pointerType === 'touch' ? { slider, x: event.clientX, y: event.clientY, value: slider.value, isDrag: false, isSwipe: false, dx: 0, dy: 0, revert: begin() } : null;
   });
   slider.addEventListener('input', () => {
     if (touch?.slider === slider && (!touch.isDrag || touch.isSwipe)) { slider.value = touch.value; return; }

@@ -237,7 +237,8 @@ function remembered() {
 
 const SESSION = 'pinswitch.session/1';
 const isText = (value) => typeof value === 'string';
-const areNumbers = (...values) => values.every(Number.isFinite);
+// None that a plot cannot draw.
+const areNumbers = (...values) => values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9);
 
 // A fit that was kept or that a file contains; null if it is none, since people edit files.
 function readFit(fit) {
@@ -261,10 +262,14 @@ async function readSession(text, fields) {
     const { schema, values, targets, model, fit } = JSON.parse(text);
     if (schema !== SESSION) return null;
     const known = Object.fromEntries(Object.entries(values).filter(([path]) => fields.has(path)));
+    // As in an address, and of the kind of the field.
+    const isOfKind = ([path, value]) => sameValue(readValue(fields.get(path), Array.isArray(value) ? value.join(',') : String(value)), value);
+    if (!Object.entries(known).every(isOfKind)) return null;
     const isThreshold = targets.threshold_n === null || isTarget(targets.threshold_n);
     const areFrictions = targets.friction.every((f) => isTarget(f.load_n) && isTarget(f.friction_n)) && targets.friction.length <= MAX_FRICTIONS;
     if (!isThreshold || !areFrictions) return null;
     const packed = model && isText(model.name) && isText(model.toml) ? await packModel(model.name, model.toml) : null;
+    if (packed?.packed.length > MAX_MODEL_LENGTH) return null;
     return { values: known, targets: { threshold_n: targets.threshold_n, friction: targets.friction }, model: packed, fit: readFit(fit) };
   } catch {
     return null;

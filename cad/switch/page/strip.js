@@ -31,9 +31,9 @@ class Strip {
     if (f.threshold_n !== null) mark(f.threshold_n, 'now');
     if (wanted !== null) mark(wanted, 'wanted');
     const text = make('span');
-    text.append(make('b', TEXT.switchesAt(f.threshold_n)), make('span', `${TEXT.newtons(f.friction_n, 2)} ${TEXT.frictionAt(TEXT.newtons(f.load_n))}`));
+    text.append(make('b', TEXT.switchesAt(f.threshold_n)), make('span', TEXT.stripFriction(TEXT.newtons(f.friction_n, 2), TEXT.newtons(f.load_n))));
     const { friction: frictions } = this.state.now.targets;
-    const targets = [...(wanted === null ? [] : [TEXT.newtons(wanted)]), ...frictions.map((t) => `${TEXT.newtons(t.friction_n)} ${TEXT.frictionAt(TEXT.newtons(t.load_n))}`)];
+    const targets = [...(wanted === null ? [] : [TEXT.newtons(wanted)]), ...frictions.map((t) => TEXT.stripFriction(TEXT.newtons(t.friction_n), TEXT.newtons(t.load_n)))];
     if (targets.length) text.append(make('span', TEXT.target(targets.join(', '))));
     this.host.replaceChildren(drawing, text);
   }

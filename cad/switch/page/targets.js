@@ -124,9 +124,13 @@ class Targets {
     try {
       const answer = await this.engine.request({ command: 'search', values, threshold_n: targets.threshold_n, friction: targets.friction, vary: this.vary, most: 6, model: model?.toml ?? null });
       this.lastSearch = { summary: answer.summary + (model ? TEXT.searchModel(model.name) : ''), varied: answer.varied, input: this.searchInput(targets, values, model, answer.varied) };
-      byId('probability-note').textContent = TEXT.probabilityNote(answer.tolerance);
       this.showBlocked(answer.blocked);
-      this.showDesigns(answer.designs, answer.varied);
+      // Those that print without a review come first; within both groups, the most probable.
+      const hasProblems = ({ problems }) => problems.length > 0;
+      const designs = [...answer.designs.filter((design) => !hasProblems(design)), ...answer.designs.filter(hasProblems)];
+      const printable = designs.filter((design) => !hasProblems(design)).length;
+      byId('probability-note').textContent = `${TEXT.probabilityNote(answer.tolerance)} ${TEXT.printable(printable, designs.length)}`;
+      this.showDesigns(designs, answer.varied);
       if (byId('results').getBoundingClientRect().top > innerHeight - LEAST_SEEN_PX) byId('results').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     } catch (problem) {
       byId('search-status').textContent = problem instanceof Superseded ? TEXT.stopped : problem.message;
@@ -150,6 +154,7 @@ class Targets {
     const { targets, values, model } = this.state.now;
     const isOutdated = this.lastSearch.input !== this.searchInput(targets, values, model, this.lastSearch.varied);
     byId('results').classList.toggle('outdated', isOutdated);
+    if (isOutdated && this.curve.proposals.length) this.curve.setExtra('proposals', []);
     byId('search-status').textContent = isOutdated ? TEXT.searchOutdated : this.lastSearch.summary;
   }
 
@@ -185,8 +190,9 @@ class Targets {
       // Everything that the search does not vary stays unchanged.
       const values = { ...this.state.now.values };
       for (const path of varied) { if (path in design.values) values[path] = design.values[path]; else delete values[path]; }
-      this.applied?.();
+      const before = this.state.now;
       this.state.change({ values });
+      if (this.state.now !== before) this.applied?.();
     }, { class: 'btn', 'aria-label': `${TEXT.useDesign}: ${TEXT.designName(i + 1)}` });
     const changes = this.changes(design.values, varied);
     const sources = design.uncertainty.filter((s) => s.share >= 0.01).map((s) => TEXT.sourceShare(s.source, Math.round(100 * s.share)));
@@ -198,7 +204,11 @@ class Targets {
     if (sources.length) more.append(make('p', TEXT.uncertain(sources), { class: 'dim' }));
     const gains = design.gains.map((gain) => ({ ...gain, field: this.state.fields.get(gain.field) })).filter((gain) => gain.field);
     if (gains.length) {
-      more.append(table(TEXT.gainColumns, gains.map(({ field, threshold_n: threshold, friction_n: friction }) => [`${fieldName(field)} +1 ${unitName(field)}`.trim(), signed(threshold), signed(friction)])));
+      more.append(table(TEXT.gainColumns, gains.map(({ field, threshold_n: threshold, friction_n: friction }) => {
+        // A change that a part can have: the slopes hold near the design.
+        const by = field.unit === 'mm' ? 0.1 : 1;
+        return [`${fieldName(field)} +${by} ${unitName(field)}`.trim(), signed(by * threshold), signed(by * friction)];
+      })));
     }
     card.append(more);
     card.append(use);

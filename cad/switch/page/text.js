@@ -13,7 +13,7 @@ const TEXT = {
   stripName: 'Summary of the design: show the curve', clipboard: 'the clipboard', noField: 'No matching parameter.',
   intro: 'A friction switch is a pulley that lets the tendon of a robot or a machine slip at light loads and holds it at heavy ones: as the load grows, its steel pins sink, and the tendon meets the silicone between them.',
   steps: { parameters: 'What should it do?', curve: 'Does it do it?', download: 'Make it' }, stepsName: 'Three steps',
-  playLoad: '▶ Play the load', pinsScale: (load, scale) => `At ${load} N of load; heights are ${scale} times as large. Blue: here the tendon lies on the silicone.`,
+  playLoad: '▶ Play the load', stopMotion: '■ Stop', stripFriction: (n, load) => `${n} at ${load}`, pinsScale: (load, scale) => `At ${load} N of load; heights are ${scale} times as large. Blue: here the tendon lies on the silicone.`,
   explode: 'Explode', section: 'Section', sectionPosition: 'Position of the section', turn: 'Rotate', tilt: 'Tilt', show: 'Show', viewMenu: 'View',
   flexion: 'Flexion', flex: 'Play', flexionText: (flexion, wrap) => `${flexion}°, wrap ${wrap}°`,
   assemblyName: 'The assembly in 3D. Drag to rotate, use the wheel or pinch to zoom; the sliders under View rotate and cut it from the keyboard.',
@@ -24,10 +24,10 @@ const TEXT = {
   checks: 'Checks', materials: 'Bill of materials', parts: 'Printed parts', bed: 'Print bed',
   targets: 'What should it do?', mayChange: 'The search may change', details: 'Details', printer: 'Printer', ownPrinter: 'my own, under Parameters', curveStep: 'Does it do it?', materialsStep: 'Make it: ',
   varied: { pattern: 'pins', pitch_deg: 'pitch', layer_mm: 'thickness of the silicone', hardness_shore_a: 'hardness', pin_diameter_mm: 'diameter of the pins', radius_mm: 'radius', width_mm: 'width', wrap_deg: 'wrap angle' },
-  gainColumns: ['change', 'threshold', 'friction at the heaviest load'], designProblems: (problems) => `To review before printing: ${problems.join('; ')}.`,
+  gainColumns: ['change', 'threshold', 'friction at the heaviest load'], printable: (n, all) => (n === all ? 'All pass the print checks.' : `${n} of ${all} pass the print checks${n ? '; they are first' : ''}.`), designProblems: (problems) => `To review before printing: ${problems.join('; ')}.`,
   changeOf: (a, b) => `${TEXT.switchesAt(a.threshold_n) === TEXT.switchesAt(b.threshold_n) ? '' : `before: ${TEXT.switchesAt(a.threshold_n)}; now ${TEXT.switchesAt(b.threshold_n)}. `}Friction at ${TEXT.newtons(b.load_n)}: ${TEXT.newtons(a.friction_n, 2)}, now ${TEXT.newtons(b.friction_n, 2)}. Undo to revert.`,
   proposedCurves: (n) => `proposed designs (${n})`, lawNames: { paper: 'law of the paper', layout: 'law of layouts', physics: 'equilibrium of the tendon' },
-  targetUnchanged: (value) => (value === null ? 'No target is set.' : `The target is still ${value} N.`), yourTargets: 'your targets',
+  targetUnchanged: (value) => (value === null ? 'No target is set.' : `The target is still ${value} N.`), yourTargets: 'your targets', asPublished: 'Show it as in the paper', downloadHere: 'Download the files',
  results: 'Proposed designs', targetsHelp: 'Drag the marks on the curve, or enter the load at which it should switch and the friction it should have.',
   targetThreshold: 'Switches at', targetFriction: 'Friction of', targetLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', useDesign: 'Use this design',
   isReport: 'This page shows a set that is made. To change it, open assembly.3mf or its TOML file with `pinswitch view`.', filesBeside: 'Linked files are in the folder of this page.',
@@ -196,7 +196,7 @@ function inWords(text) {
     const field = FIELDS.get(path);
     return field ? `“${TEXT.groups[field.section] ?? field.section}: ${fieldName(field)}”` : path;
   });
-  return named.replace(/\b[a-z]+_(deg|mm|a)\b/g, (name) => TEXT.varied[name] ?? name).replaceAll(', because it is not in vary', ', which the search does not change');
+  return named.replace(/\b[a-z]+(_[a-z]+)*_(deg|mm|a)\b/g, (name) => TEXT.varied[name] ?? name).replaceAll(', because it is not in vary', ', which the search does not change');
 }
 
 // An effect in words, with its id in the catalogue and the reports.

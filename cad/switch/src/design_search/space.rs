@@ -35,7 +35,10 @@ impl Space {
         }
         let grooves = base.segment.grooves;
         let pins = request.limits.pins.map_or((1, grooves), |(fewest, most)| (fewest, most.min(grooves)));
-        Self { materials, varied: request.vary.parameters.clone(), pins, vary_pattern: request.vary.pattern }
+        // The same request finds the same designs, in whatever order it names its parameters.
+        let mut varied = request.vary.parameters.clone();
+        varied.sort_by_key(|v| v.parameter);
+        Self { materials, varied, pins, vary_pattern: request.vary.pattern }
     }
 
     /// Returns the position of the base, each parameter scaled from 0 to 1 over its range.

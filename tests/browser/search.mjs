@@ -68,7 +68,7 @@ export async function search(visit, site) {
   await visit.click('#search');
   await visit.page.waitForFunction(() => document.querySelector('#stop').hidden && /hardness/.test(document.querySelector('.design').textContent), { timeout: SLOW_MS });
   visit.findings.check('only the chosen parameter changes', await visit.page.$$eval('.design', (all) => all.every((card) => /pins \[/.test(card.textContent) && !/span [\d.]+ °/.test(card.querySelector('details').previousSibling.textContent))));
-  // A text that is no target leaves the one before.
+  // A refused text leaves the target before.
   await visit.type('#target-threshold', '1.234,5');
   await visit.page.keyboard.press('Tab');
   await visit.check('a refused target leaves the one before', () => document.querySelector('#target-threshold').value === '24' && /still 24 N/.test(document.querySelector('#toast').textContent));

@@ -29,7 +29,7 @@ export async function sessions(_, site, { table, findings, scratch }) {
   await visit.type('#target-threshold', '24');
   await visit.settled();
   const friction = await visit.text('#friction-text');
-  // A file that is no table takes nothing away.
+  // A refused file takes nothing away.
   await visit.drop('junk.csv', 'hello,world\n');
   await visit.page.waitForSelector('#verdict .error');
   findings.check('another file keeps the fit', /^mine\.csv: /.test(await verdictOf(visit)) && await visit.shown('#fit'), await visit.text('#verdict'));

@@ -46,7 +46,7 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.settled();
 }
 
-// Without a table of one's own: an example, its verdict, and what to measure next.
+// Without a table: an example, its verdict, and what to measure next.
 export async function exampleAndNextRuns(visit, site) {
   await visit.open(site.address + START);
   await visit.click('#sample-table');
@@ -73,7 +73,7 @@ export async function exampleAndNextRuns(visit, site) {
   visit.findings.check('without the table there is no such plan', !await visit.shown('#next'));
 }
 
-// A model says nothing about what its tendon never touched, so it is not offered for such a switch.
+// A model knows nothing about what its tendon never touched, so it is not offered for such a switch.
 export async function modelOfAnotherMaterial(visit, site, { table }) {
   await visit.open(site.address + START);
   await visit.drop('abs.csv', table.split('\n').filter((line) => !line.includes(',silicone,')).join('\n'));

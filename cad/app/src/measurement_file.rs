@@ -54,7 +54,7 @@ fn preview(data: &str, file: &str, set: &[String]) -> Result<Preview, Diagnostic
         (Ok(import), _) => import,
         // A table of plateaus with an error, which its calibration reports by line and column.
         (Err(_), Some(text)) if set.is_empty() => return Ok(as_plateaus(text)),
-        (Err(error), _) => return Err(error.into()),
+        (Err(error), _) => return Err(error),
     };
     Ok(Preview {
         understood: understanding.to_string(),

@@ -39,7 +39,7 @@ export async function reportIsReadOnly(visit, site, shared) {
   await visit.open(address);
   visit.findings.check('its title is the name of the set', await visit.page.title() === 'three-double: friction switch');
   const shown = await visit.page.evaluate(() => [...document.querySelectorAll('input, select, button, [tabindex="0"], [role=slider]')].filter((e) => e.checkVisibility() && !e.closest('[inert]')).map((e) => e.id || e.className));
-  const expected = ['download', 'explode', 'section', 'trust', 'load', 'other-laws', 'parts'];
+  const expected = ['download', 'explode', 'section', 'trust', 'load', 'other-laws', 'download-here', 'parts'];
   visit.findings.check('nothing can be changed', JSON.stringify(shown) === JSON.stringify(expected), shown.join(' '));
   const friction = await visit.text('#friction-text');
   await visit.page.evaluate(() => { location.hash = '#v=1&layout.pins=2,14'; });

@@ -64,7 +64,7 @@ export async function search(visit, site) {
   visit.findings.check('a card has each target, and the other properties once', /switches at [\d.]+ N; target: 24 N/.test(card) && /[\d.]+ N at 40 N of load; target: 8\.5 N/.test(card) && card.split('heaviest').length === 2, card);
   // What the search may change is chosen.
   await visit.page.$eval('#vary', (e) => { e.closest('details').open = true; });
-  await visit.page.$$eval('#vary input', (all) => all.forEach((box) => { box.checked = box.value === 'hardness_shore_a'; }));
+  await visit.page.$$eval('#vary input', (all) => all.forEach((box) => { if (box.checked !== (box.value === 'hardness_shore_a')) box.click(); }));
   await visit.click('#search');
   await visit.page.waitForFunction(() => document.querySelector('#stop').hidden && /hardness/.test(document.querySelector('.design').textContent), { timeout: SLOW_MS });
   visit.findings.check('only the chosen parameter changes', await visit.page.$$eval('.design', (all) => all.every((card) => /pins \[/.test(card.textContent) && !/span [\d.]+ °/.test(card.querySelector('details').previousSibling.textContent))));

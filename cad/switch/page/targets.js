@@ -24,7 +24,15 @@ class Targets {
       label.append(box, TEXT.varied[name]);
       byId('vary').append(label);
     }
+    byId('vary').addEventListener('change', () => { this.hasChosen = true; });
     this.show();
+  }
+
+  // With a calibrated model a curve takes so long that the search changes pins only, unless a person chooses more.
+  suggest() {
+    const { model } = this.state.now;
+    if (this.hasChosen) return;
+    for (const box of byId('vary').querySelectorAll('input')) box.checked = VARIED.some(([name, isOn]) => name === box.value && isOn && (!model || name === 'pattern'));
   }
 
   // Parameters that the search may change.
@@ -81,6 +89,7 @@ class Targets {
   }
 
   show() {
+    this.suggest();
     this.markOutdated();
     const { threshold_n, friction } = this.state.now.targets;
     this.fill(byId('target-threshold'), threshold_n);

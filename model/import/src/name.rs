@@ -122,9 +122,6 @@ fn has_factor(stem: &str) -> bool {
 /// Combines the words of a stem with a unit; `None` if they contradict each other.
 fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
     let words = words(stem);
-    if is_friction(&words) {
-        return Some(NameReading { unit, ..NameReading::default() });
-    }
     let fits = |quantity: &Quantity| unit.is_none_or(|unit| quantity.dimensions().contains(&unit.dimension));
     let direction = match stem.trim_end().chars().next_back() {
         Some('+') => Some(Direction::Concentric),
@@ -167,6 +164,7 @@ fn combine(stem: &str, unit: Option<&'static Unit>) -> Option<NameReading> {
         Some(Quantity::Repetition | Quantity::Series) if unit.is_some_and(is_force) => Some(Quantity::Force),
         other => other,
     };
+    let quantity = quantity.filter(|quantity| *quantity != Quantity::Force || !is_friction(&words));
     let is_wide = quantity == Some(Quantity::Force);
     Some(NameReading {
         quantity,
@@ -299,7 +297,10 @@ mod tests {
         assert_eq!(read("F- (N)", None).direction, Some(Direction::Eccentric));
         assert_eq!(read("Fup", None).direction, Some(Direction::Concentric));
         // Friction may be the pull or the pull minus the load.
-        assert_eq!(["friction (N)", "Reibkraft [N]"].map(|name| read(name, None).quantity), [None, None]);
+        let quantities = |names: [&str; 2]| names.map(|name| read(name, None).quantity);
+        assert_eq!(quantities(["friction (N)", "Reibkraft up [N]"]), [None, None]);
+        let others = ["Friction test load [N]", "friction test time [s]"];
+        assert_eq!(quantities(others), [Some(Quantity::Load), Some(Quantity::Time)]);
         // Forces at both ends of the tendon.
         assert_eq!((read("F_in [N]", None).direction, read("F_out [N]", None).direction), (None, None));
     }

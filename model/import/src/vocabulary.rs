@@ -261,7 +261,7 @@ const COMPOUNDS: [(&str, Quantity); 10] = [
 
 /// Returns whether a name is that of friction: the pull minus the load in the one laboratory, the pull itself in another.
 pub(crate) fn is_friction(words: &[String]) -> bool {
-    const FRICTION: [&str; 6] = ["friction", "frottement", "attrito", "friccion", "rozamiento", "reibung"];
+    const FRICTION: [&str; 5] = ["friction", "frottement", "attrito", "friccion", "rozamiento"];
     let is_word = |word: &String| FRICTION.contains(&word.as_str()) || word.starts_with("reib");
     words.iter().any(is_word)
 }

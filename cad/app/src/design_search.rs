@@ -32,6 +32,7 @@ const PATTERN: &str = "pattern";
 const MAX_SOURCES: usize = 3;
 /// Most designs that are returned, whatever the request.
 const MAX_DESIGNS: usize = 12;
+
 /// One proposed design.
 #[derive(Debug, Serialize)]
 struct ProposedDesign {
@@ -190,6 +191,7 @@ fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesi
             .map(|s| UncertaintySource { source: s.source.to_string(), share: s.share })
             .collect(),
         gains: proposal.sensitivity.iter().map(|s| gain(s, &proposal.configuration)).collect(),
+        // The widest bridge is known from meshes only; none is assumed here.
         problems: checklist(&design, 0.0)
             .into_iter()
             .filter(|check| !check.is_satisfied)
@@ -249,7 +251,7 @@ mod tests {
         }
     }
 
-    /// The search varies what is asked for, and proposes what the command line proposes.
+    /// The search varies the named parameters only, and refuses unknown names.
     #[test]
     fn varied_parameters_are_those_of_the_request() {
         let found =

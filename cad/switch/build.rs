@@ -7,11 +7,12 @@ use std::path::Path;
 mod minified;
 
 /// Scripts of the page, in the order in which they are joined; see page/README.md.
-const SCRIPTS: [&str; 27] = [
+const SCRIPTS: [&str; 28] = [
     "text",
     "dom",
     "focus",
     "state",
+    "session",
     "recorded",
     "engine",
     "quantity",

@@ -54,11 +54,20 @@ export async function sessions(_, site, { table, findings, scratch }) {
   findings.check('with residuals and points', await other.shown('.residuals') && /your readings/.test(await other.text('#legend')));
   await other.click('#undo');
   await other.check('one step undoes it', () => document.querySelector('#fit').hidden && document.querySelector('#target-threshold').value === '');
-  for (const [name, content] of [['other.json', '{"schema": "other"}'], ['cut.json', text.slice(0, 200)], ['list.json', JSON.stringify({ ...JSON.parse(text), values: { 'layout.pins': '5,8,11' } })], ['wrong.json', JSON.stringify({ ...JSON.parse(text), targets: { threshold_n: -1, friction: [] } })]]) {
+  for (const [name, content] of [['other.json', '{"schema": "other"}'], ['cut.json', text.slice(0, 200)], ['fit.json', JSON.stringify({ ...JSON.parse(text), fit: { file: 'x' } })], ['list.json', JSON.stringify({ ...JSON.parse(text), values: { 'layout.pins': '5,8,11' } })], ['wrong.json', JSON.stringify({ ...JSON.parse(text), targets: { threshold_n: -1, friction: [] } })]]) {
     await other.drop(name, content);
     await other.check(`${name} is refused`, (wanted) => document.querySelector('#notice').textContent.includes(`${wanted} was not saved by this page`), name);
   }
   await other.end();
+}
+
+// An interval without an upper end is kept for the next visit.
+export async function unboundedInterval(_, site, { findings }) {
+  const fit = { file: 'mine.csv', csv: null, model: 'm', head: 'mine.csv: a fit', lines: [], probabilities: [], sizes: [{ id: 'a', name: 'b', unit: 'N', value: 1, ci95: [0.5, null] }], points: [], residuals: [] };
+  const visit = await Visit.begin(_.browser, { findings, before: `localStorage.setItem('pinswitch.configurator.1', JSON.stringify({ fit: ${JSON.stringify(fit)} }))`, showsAll: false });
+  await visit.open(site.address + START);
+  findings.check('a fit with an open interval stays', /0\.5 … ∞/.test(await visit.text('#fit')), await visit.text('#fit'));
+  await visit.end();
 }
 
 // What was kept by hand or by another version does not stop the page.

@@ -257,7 +257,7 @@ class Controls {
   show() {
     for (const control of this.controls.values()) control.show();
     for (const { count, fields } of this.sections) {
-      // Not what the open template itself says.
+      // Values of the open template do not count.
       const { values } = this.state.now;
       const template = this.templates.find((t) => t.name === values['switch.name']);
       const changed = fields.filter((f) => !sameValue(this.state.value(f.path), template?.values[f.path] ?? f.default)).length;

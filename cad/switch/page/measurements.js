@@ -119,8 +119,6 @@ class Measurements {
       const fit = { file, csv, model: answer.model, head: TEXT.verdictOf(file, TEXT.verdicts[answer.verdict] ?? answer.verdict), lines: [...friction, ...detected, ...open, ...errors], probabilities, sizes, points, residuals };
       this.opened = null;
       this.state.change({ fit });
-      // Another table with the same result.
-      if (this.state.now.fit !== fit) this.showFit(this.state.now.fit);
     } catch (problem) {
       if (number !== this.fitNumber) return;
       this.report([problem instanceof Superseded ? TEXT.stopped : problem.message], undefined, !(problem instanceof Superseded));
@@ -161,7 +159,7 @@ class Measurements {
     }
   }
 
-  // Keeps a fit for the next visit, or says that it is lost then.
+  // Keeps a fit for the next visit, or reports that it is lost then.
   keep(fit) {
     if (sameValue(remembered().fit ?? null, fit)) return;
     const isShort = JSON.stringify(fit).length <= MAX_KEPT_FIT;
@@ -183,15 +181,15 @@ class Measurements {
     const box = byId('fit');
     box.replaceChildren();
     if (probabilities.length) box.append(this.bars(probabilities));
-    if (sizes.length) box.append(table(TEXT.sizeColumns, sizes.map((s) => [TEXT.effectNames[s.id] ?? s.id, `${s.name} = ${formatNumber(s.value, 4)} ${s.unit}`.trim(), `${formatNumber(s.ci95[0], 4)} … ${formatNumber(s.ci95[1], 4)}`])));
+    if (sizes.length) box.append(table(TEXT.sizeColumns, sizes.map((s) => [TEXT.effectNames[s.id] ?? s.id, `${s.name} = ${formatNumber(s.value, 4)} ${s.unit}`.trim(), s.ci95.map((end, i) => (end === null ? ['−∞', '∞'][i] : formatNumber(end, 4))).join(' … ')])));
     if (residuals.length) box.append(this.residualPlot(residuals));
     this.pointsLine = make('p', undefined, { class: 'dim' });
     box.append(this.pointsLine);
-    this.sayPoints();
+    this.countPoints();
   }
 
-  // Says how many of the points are on the curve of the shown design.
-  sayPoints() {
+  // Shows how many of the points are on the curve of the shown design.
+  countPoints() {
     const { fit } = this.state.now;
     if (fit) this.pointsLine.textContent = TEXT.pointsOf(fit.points.length, this.curve.ownPoints.length);
   }
@@ -285,7 +283,7 @@ class Measurements {
   report(lines, head, isError = false) {
     const { fit } = this.state.now;
     byId('measurements-help').hidden = Boolean(head || lines.length || fit);
-    // The last fit stays below what is said about another file.
+    // The last fit stays, below a message about another file.
     const earlier = fit && !head ? [make('b', fit.head), ...fit.lines.map((line) => make('p', line))] : [];
     byId('verdict').replaceChildren(...(head ? [make('b', head)] : []), ...lines.map((line) => make('p', line, { class: isError ? 'error' : undefined })), ...earlier);
   }

@@ -29,7 +29,7 @@ function showNotice(text, ...actions) {
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': TEXT.close }));
 }
 
-// Messages are over the picture; where it has no room for them below the header, they float over the page.
+// Messages are over the picture; without room for them below the header, they float over the page.
 const HEADER_PX = 66;
 function floatNotice() {
   const [picture, banners] = [document.querySelector('.picture'), document.querySelector('.banners')];
@@ -48,7 +48,7 @@ function clearNoticeAbout(about) { if (byId('notice').dataset.about === about) s
 
 function fillTexts() {
   if (!IS_REPORT) document.title = TEXT.title;
-  // A report asks nothing.
+  // The heading of a report is the name of the plot.
   if (IS_REPORT) byId('curve-title').textContent = TEXT.curve;
   // The steps, each a button that shows where it is taken.
   const places = { parameters: 'targets-title', curve: 'curve-title', download: 'materials-title' };
@@ -238,8 +238,8 @@ class Page {
     this.view.show(data);
     this.pins.show(data, values);
     this.curve.show(data, values, model?.name ?? null);
-    this.measurements.sayPoints();
-    this.sayChange(data.manifest.friction);
+    this.measurements.countPoints();
+    this.reportChange(data.manifest.friction);
     this.strip.update();
     showChecks(data);
     showMaterials(data);
@@ -253,8 +253,8 @@ class Page {
     this.view.showPicture(this.engine, { values, model: model?.toml ?? null });
   }
 
-  // Says what an applied design or model changed.
-  sayChange(friction) {
+  // Reports what an applied design or model changed.
+  reportChange(friction) {
     const { from } = this;
     this.from = null;
     if (from) showToast(TEXT.changeOf(from, friction));

@@ -38,6 +38,7 @@ export async function reportIsReadOnly(visit, site, shared) {
   const { address } = await made(shared, 'read-only');
   await visit.open(address);
   visit.findings.check('its title is the name of the set', await visit.page.title() === 'three-double: friction switch');
+  visit.findings.check('the heading of the curve is its name', await visit.text('#curve-title') === 'Friction over load', await visit.text('#curve-title'));
   const shown = await visit.page.evaluate(() => [...document.querySelectorAll('input, select, button, [tabindex="0"], [role=slider]')].filter((e) => e.checkVisibility() && !e.closest('[inert]')).map((e) => e.id || e.className));
   const expected = ['download', 'explode', 'section', 'trust', 'load', 'other-laws', 'download-here', 'parts'];
   visit.findings.check('nothing can be changed', JSON.stringify(shown) === JSON.stringify(expected), shown.join(' '));

@@ -48,8 +48,6 @@ function clearNoticeAbout(about) { if (byId('notice').dataset.about === about) s
 
 function fillTexts() {
   if (!IS_REPORT) document.title = TEXT.title;
-  // The heading of a report is the name of the plot.
-  if (IS_REPORT) byId('curve-title').textContent = TEXT.curve;
   // The steps, each a button that shows where it is taken.
   const places = { parameters: 'targets-title', curve: 'curve-title', download: 'materials-title' };
   byId('steps').append(...Object.entries(TEXT.steps).map(([step, text]) => {
@@ -57,6 +55,8 @@ function fillTexts() {
     item.append(button(text, () => byId(places[step]).scrollIntoView({ block: 'start', behavior: 'smooth' }), { class: 'link' }));
     return item;
   }));
+  // The heading of a report is the name of the plot.
+  if (IS_REPORT) byId('curve-title').dataset.text = 'curve';
   for (const element of document.querySelectorAll('[data-text]')) element.prepend(TEXT[element.dataset.text]);
   for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', TEXT[element.dataset.name]);
   for (const element of document.querySelectorAll('[data-placeholder]')) element.placeholder = TEXT[element.dataset.placeholder];

@@ -21,7 +21,7 @@ use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
-use pinswitch_switch::parts::{PRINTED_PARTS, Part, PrintedPart, fit_on_bed, printed};
+use pinswitch_switch::parts::{PRINTED_PARTS, Part, PrintedPart, fit_on_bed, printed_of};
 use pinswitch_switch::prediction::Prediction;
 
 /// File of a variant's curve.
@@ -145,8 +145,7 @@ pub(super) fn accept(
     if let Some(violation) = violation {
         return Err(Refusal::Constraint(violation));
     }
-    let mut parts = printed(&design)?;
-    parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
+    let parts = printed_of(&design, |name| variants.sweep().parts.contains(&name))?;
     fit_on_bed(&parts, &design)?;
     Ok(AcceptedVariant { design, prediction, parts })
 }

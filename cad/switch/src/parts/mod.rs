@@ -138,8 +138,19 @@ fn has_tray(c: &Configuration) -> bool {
 /// # Errors
 /// A diagnostic of the field whose chamfer, draft or offset leaves nothing of an edge; without help, as [`Design::new`].
 pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
+    printed_of(design, |_| true)
+}
+
+/// Builds the printed parts of `design` whose name is chosen.
+///
+/// # Errors
+/// As [`printed`], of the chosen parts only.
+pub fn printed_of(
+    design: &Design,
+    is_chosen: impl Fn(&'static str) -> bool,
+) -> Result<Vec<Part>, ConfigError> {
     let c = design.configuration();
-    let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(c));
+    let wanted = PRINTED_PARTS.iter().filter(|p| is_chosen(p.name) && (p.is_wanted)(c));
     wanted.map(|p| (p.build)(design).map_err(|error| with_value(error, c))).collect()
 }
 

@@ -4,6 +4,7 @@
 //! So edges and facets are counted without a table of all edges, and vertices are independent of
 //! each other.
 
+use super::closed_fan::is_closed_fan;
 use super::edge_manifold::EdgeFaults;
 use super::facets::RepeatedFacets;
 use super::fault::Fault;
@@ -51,6 +52,9 @@ pub(super) fn check(mesh: &Mesh) -> Connectivity {
         let mut half_edges = Vec::new();
         for v in vertices {
             let (centre, facets) = (v as u32, around.of(v));
+            if is_closed_fan(mesh, centre, facets) {
+                continue;
+            }
             collect_half_edges(&mut half_edges, mesh, centre, facets);
             let ring = OneRing { centre, facets, half_edges: &half_edges };
             part.edges.check(&ring);

@@ -5,6 +5,7 @@
 
 mod budget;
 mod bvh;
+mod closed_fan;
 mod components;
 mod connectivity;
 mod cracks;

@@ -42,6 +42,23 @@ struct Face {
     to_mm: f64,
 }
 
+/// What most pairs of faces are told apart by, without the rest of a face.
+struct Span {
+    low: Point2,
+    high_y_mm: f64,
+    from_mm: f64,
+    to_mm: f64,
+}
+
+impl Span {
+    /// Whether the two are closer than `under_mm` in y, and have heights in common.
+    fn meets(&self, other: &Self, under_mm: f64) -> bool {
+        other.low.y <= self.high_y_mm + under_mm
+            && self.low.y <= other.high_y_mm + under_mm
+            && self.to_mm.min(other.to_mm) > self.from_mm.max(other.from_mm) + SAME_MM
+    }
+}
+
 /// An edge at one height, with the tangents of its neighbours.
 #[derive(Clone)]
 struct Section {
@@ -60,12 +77,16 @@ impl Solid {
     pub fn thin_places(&self, under_mm: f64) -> Vec<ThinPlace> {
         let mut faces = self.faces();
         faces.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
+        let spans: Vec<Span> = faces.iter().map(Face::span).collect();
         let mut places = Vec::new();
         for (i, a) in faces.iter().enumerate() {
-            let near = faces[i + 1..].iter().take_while(|b| b.low.x < a.high.x + under_mm);
-            for b in near.filter(|b| !a.is_apart(b, under_mm)) {
+            let near = spans[i + 1..].iter().take_while(|b| b.low.x < a.high.x + under_mm);
+            for (b, _) in faces[i + 1..].iter().zip(near).filter(|(_, span)| spans[i].meets(span, under_mm)) {
                 let (from_mm, to_mm) = (a.from_mm.max(b.from_mm), a.to_mm.min(b.to_mm));
-                if to_mm > from_mm + SAME_MM {
+                // An upright wall is as thick at every height, and no step only if that is less than its height.
+                let is_upright = a.upright.is_some() && b.upright.is_some();
+                let under_mm = if is_upright { under_mm.min(to_mm - from_mm) } else { under_mm };
+                if !a.is_apart(b, under_mm) {
                     places.extend(self.between(a, b, from_mm, to_mm, under_mm));
                 }
             }
@@ -206,6 +227,10 @@ impl Candidate {
 }
 
 impl Face {
+    fn span(&self) -> Span {
+        Span { low: self.low, high_y_mm: self.high.y, from_mm: self.from_mm, to_mm: self.to_mm }
+    }
+
     /// Whether no wall is between this face and another one: it is further away than `under_mm` at every height, by its box or
     /// the disc around that, or the two do not face each other.
     fn is_apart(&self, other: &Self, under_mm: f64) -> bool {
@@ -219,7 +244,7 @@ impl Face {
     /// Whether no direction through material from this face is one to the other.
     fn is_averted(&self, other: &Self) -> bool {
         match (&self.upright, &other.upright) {
-            (Some((_, a)), Some((_, b))) => a.are_averted(*b),
+            (Some((_, a)), Some((_, b))) => a.are_averted(b),
             _ => false,
         }
     }
@@ -234,17 +259,28 @@ impl Face {
     }
 }
 
-/// Directions in which a wall may be behind an edge: all within `half_rad` of `middle_rad`.
+/// Directions in which a wall may be behind an edge: all within an angle of `middle`, a unit vector.
 #[derive(Clone, Copy)]
 struct Directions {
-    middle_rad: f64,
+    middle: Vector2,
+    /// The angle, up to half a turn, with its cosine and sine.
     half_rad: f64,
+    cos: f64,
+    sin: f64,
 }
 
 impl Directions {
+    fn within(half_rad: f64, middle_rad: f64) -> Self {
+        let half_rad = half_rad.min(PI);
+        let middle = Vector2::new(libm::cos(middle_rad), libm::sin(middle_rad));
+        Self { middle, half_rad, cos: libm::cos(half_rad), sin: libm::sin(half_rad) }
+    }
+
     /// Whether none of these is opposite to one of the others.
-    fn are_averted(self, other: Self) -> bool {
-        angle_between(self.middle_rad, other.middle_rad + PI) > self.half_rad + other.half_rad + SAME_RAD
+    fn are_averted(&self, other: &Self) -> bool {
+        // Cosines instead of angles: every pair of close edges asks for this.
+        self.half_rad + other.half_rad < PI
+            && -self.middle.dot(&other.middle) < self.cos * other.cos - self.sin * other.sin
     }
 }
 
@@ -274,7 +310,7 @@ impl Section {
         let half_rad = pointed
             .map(|(_, _, neighbour)| angle_between(inwards(neighbour), middle_rad))
             .fold(reach_rad + libm::acos(FACING), f64::max);
-        Directions { middle_rad, half_rad }
+        Directions::within(half_rad + SAME_RAD, middle_rad)
     }
 
     /// Distance of a point from the line or circle of this edge, mm.

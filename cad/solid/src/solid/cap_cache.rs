@@ -96,6 +96,12 @@ impl CapCache {
         Ok(made)
     }
 
+    /// Corners in the newer generation.
+    #[cfg(test)]
+    pub(super) fn corners(&self) -> usize {
+        self.locked(|generations| generations.corners)
+    }
+
     fn locked<T>(&self, work: impl FnOnce(&mut Generations) -> T) -> T {
         // No step leaves the maps inconsistent, so that a poisoned lock is safe.
         work(&mut self.generations.lock().unwrap_or_else(PoisonError::into_inner))

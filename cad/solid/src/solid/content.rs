@@ -5,7 +5,7 @@ use super::definition::{Facing, Solid};
 use crate::profile::{Contour, Edge, Point2};
 
 impl Solid {
-    /// Returns every ring, wall and cap as bytes: numbers as bits, lists after their lengths. For
+    /// Returns every ring, wall, cap and frame as bytes: numbers as bits, lists after their lengths. For
     /// cache keys, not for files: the format may change between versions.
     pub fn content_bytes(&self) -> Vec<u8> {
         let mut content = Content(Vec::new());
@@ -24,6 +24,12 @@ impl Solid {
             content.count(usize::from(cap.facing == Facing::Up));
             content.count(cap.rings.len());
             cap.rings.iter().for_each(|ring| content.count(ring.0));
+        }
+        content.count(self.frames.len());
+        for frame in &self.frames {
+            content.contour(&frame.polygon);
+            content.count(frame.holes.len());
+            frame.holes.iter().for_each(|hole| content.count(hole.0));
         }
         content.0
     }

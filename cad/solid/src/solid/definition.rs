@@ -1,5 +1,6 @@
 //! Rings, walls and caps: the definition of a solid, and the operations that build one.
 
+use super::frame::Frame;
 use crate::mesh::Point3;
 use crate::profile::{Contour, OffsetError};
 
@@ -42,6 +43,7 @@ pub struct Solid {
     pub(super) rings: Vec<Ring>,
     pub(super) walls: Vec<Wall>,
     pub(super) caps: Vec<Cap>,
+    pub(super) frames: Vec<Frame>,
 }
 
 impl Solid {
@@ -181,7 +183,13 @@ impl Solid {
     #[must_use]
     pub fn rotated(&self, angle_rad: f64) -> Self {
         let turned = |ring: &Ring| Ring { contour: ring.contour.rotated(angle_rad), ..*ring };
-        Self { rings: self.rings.iter().map(turned).collect(), ..self.clone() }
+        let turned_frame =
+            |frame: &Frame| Frame { polygon: frame.polygon.rotated(angle_rad), holes: frame.holes.clone() };
+        Self {
+            rings: self.rings.iter().map(turned).collect(),
+            frames: self.frames.iter().map(turned_frame).collect(),
+            ..self.clone()
+        }
     }
 
     /// Returns the lower and upper corner of the exact bounding box in mm; `None` without rings.

@@ -7,6 +7,7 @@ mod cap;
 mod cap_cache;
 mod content;
 mod definition;
+mod frame;
 mod tessellate;
 mod thin_places;
 mod volume;

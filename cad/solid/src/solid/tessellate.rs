@@ -3,13 +3,23 @@
 use super::cap::CapError;
 use super::cap_cache::CapCache;
 use super::definition::{Cap, Facing, RingId, Solid, Wall, larger};
+use super::frame::{Frame, Loop, Region, area_between_mm2};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
+
+/// Relative difference up to which areas of a cap are equal.
+const SAME_AREA: f64 = 1e-9;
 
 /// A flattened ring, and the index of its first vertex in the mesh.
 struct FlatRing {
     points: Vec<Point2>,
     first: usize,
+}
+
+impl FlatRing {
+    fn as_loop(&self) -> Loop<'_> {
+        (&self.points, self.first)
+    }
 }
 
 impl Solid {
@@ -47,11 +57,59 @@ impl Solid {
             strip(&rings[wall.lower.0], &rings[wall.upper.0], &positions, &mut triangles);
         }
         for cap in &self.caps {
-            let loops: Vec<&[Point2]> = cap.rings.iter().map(|r| rings[r.0].points.as_slice()).collect();
-            let cut = caps.triangles(&loops, self.rings[cap.rings[0].0].z_mm)?;
-            close(cap, &cut, &rings, &mut triangles);
+            let regions = match self.framed(cap, &rings, &mut positions, caps) {
+                Some(regions) => regions,
+                None => vec![self.whole(cap, &rings, caps)?],
+            };
+            regions.iter().for_each(|region| close(cap.facing, region, &mut triangles));
         }
         Ok(Mesh::new(positions, triangles))
+    }
+
+    /// Triangulates a cap between all its rings.
+    fn whole(&self, cap: &Cap, rings: &[FlatRing], caps: &CapCache) -> Result<Region, CapError> {
+        let loops: Vec<Loop<'_>> = cap.rings.iter().map(|ring| rings[ring.0].as_loop()).collect();
+        Region::between(&loops, self.rings[cap.rings[0].0].z_mm, caps)
+    }
+
+    /// Triangulates a cap in its frames and outside of them, and adds the corners of the frames to `positions`. `None` without
+    /// frames, or if one touches a contour or is around others than its holes.
+    fn framed(
+        &self,
+        cap: &Cap,
+        rings: &[FlatRing],
+        positions: &mut Vec<Point3>,
+        caps: &CapCache,
+    ) -> Option<Vec<Region>> {
+        let frames: Vec<&Frame> = self.frames_of(cap).collect();
+        if frames.is_empty() {
+            return None;
+        }
+        let z_mm = self.rings[cap.rings[0].0].z_mm;
+        let mut next = positions.len();
+        let is_framed = |ring: &RingId| frames.iter().any(|frame| frame.holes.contains(ring));
+        let outer = cap.rings.iter().filter(|ring| !is_framed(ring));
+        let mut outside: Vec<Loop<'_>> = outer.map(|ring| rings[ring.0].as_loop()).collect();
+        let mut regions = Vec::with_capacity(frames.len() + 1);
+        for frame in frames.iter().copied() {
+            let corners = frame.polygon.corners();
+            let holes = frame.holes.iter().map(|hole| rings[hole.0].as_loop());
+            let loops: Vec<Loop<'_>> = std::iter::once((corners, next)).chain(holes).collect();
+            regions.push(Region::between(&loops, z_mm, caps).ok()?);
+            outside.push((corners, next));
+            next += corners.len();
+        }
+        regions.push(Region::between(&outside, z_mm, caps).ok()?);
+        let count = positions.len();
+        let corners = frames.iter().flat_map(|frame| frame.polygon.corners());
+        positions.extend(corners.map(|p| Point3::new(p.x, p.y, z_mm)));
+        let area_mm2: f64 = regions.iter().map(|region| region.area_mm2(positions)).sum();
+        let exact_mm2 = area_between_mm2(cap.rings.iter().map(|ring| rings[ring.0].as_loop()));
+        if (area_mm2 - exact_mm2).abs() > SAME_AREA * exact_mm2 {
+            positions.truncate(count);
+            return None;
+        }
+        Some(regions)
     }
 }
 
@@ -68,19 +126,11 @@ impl Solid {
     }
 }
 
-/// Appends the triangles of a cap; `cut` has indices into the concatenated corners of its rings.
-fn close(cap: &Cap, cut: &[[u32; 3]], rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) {
-    let vertices: Vec<u32> = cap
-        .rings
-        .iter()
-        .flat_map(|r| {
-            let ring = &rings[r.0];
-            (ring.first..ring.first + ring.points.len()).map(index)
-        })
-        .collect();
-    triangles.extend(cut.iter().map(|corners| {
-        let [a, b, c] = corners.map(|i| vertices[i as usize]);
-        match cap.facing {
+/// Appends the triangles of a region of a cap.
+fn close(facing: Facing, region: &Region, triangles: &mut Vec<[u32; 3]>) {
+    triangles.extend(region.triangles.iter().map(|corners| {
+        let [a, b, c] = corners.map(|i| index(region.vertices[i as usize]));
+        match facing {
             Facing::Up => [a, b, c],
             Facing::Down => [a, c, b],
         }

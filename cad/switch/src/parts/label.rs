@@ -1,30 +1,24 @@
 //! Engraved labels: letters as pockets along an arc or a line.
 
-use i_overlay::mesh::float::stroke::offset::StrokeOffset;
-use i_overlay::mesh::float::style::{LineCap, LineJoin, StrokeStyle};
-
 use pinswitch_friction::sort_by_number;
 
+use super::letter_shape::{ASPECT, letter_shapes};
 use super::omission::LeftOut;
-use super::stroke_font::{HEIGHT, WIDTH, strokes};
+use super::stroke_font::HEIGHT;
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Point2, Vector2, polar};
 use pinswitch_solid::solid::{RingId, Solid};
 
-/// Angle between the points of a round stroke end, radians.
-const ROUND_RAD: f64 = 0.5;
 /// Least height of letters that are legible in a print, mm.
 const MIN_HEIGHT_MM: f64 = 1.5;
 /// Step between heights of letters that are tried, mm.
 const STEP_MM: f64 = 0.1;
 /// Wall between a letter and the edge of its zone, mm.
 pub(super) const EDGE_MM: f64 = 0.5;
-/// Width of a letter over its height.
-const ASPECT: f64 = 0.58;
+/// Distance of the frame of a letter from it, as a share of the wall between letters: frames leave half of the wall.
+const FRAME_SHARE: f64 = 0.25;
 /// Heights that differ by less are equal, mm.
 pub(super) const SAME_MM: f64 = 1e-9;
-/// Points of the outline of a letter that are closer are merged, mm.
-const MERGE_MM: f64 = 0.02;
 
 /// A flat area for a label.
 #[derive(Clone, Copy, Debug)]
@@ -246,10 +240,13 @@ fn pockets(
     top_mm: f64,
 ) -> Vec<RingId> {
     let floor_mm = top_mm - design.configuration().label.depth_mm;
-    shapes(design, text, zone, size_mm)
-        .into_iter()
-        .map(|(outline, islands)| solid.pocket(&outline, &islands, floor_mm, top_mm))
-        .collect()
+    let mut cut = |Letter { shapes, frame }: Letter| {
+        let pocket = |(outline, islands): &Shape| solid.pocket(outline, islands, floor_mm, top_mm);
+        let rings: Vec<RingId> = shapes.iter().map(pocket).collect();
+        solid.frame(frame, &rings);
+        rings
+    };
+    letters(design, text, zone, size_mm).flat_map(|letter| cut(letter)).collect()
 }
 
 /// Engraves a text into the face on the bed, to read from below; returns its rings, which are holes in the cap.
@@ -261,13 +258,16 @@ pub(super) fn engrave_below(
     size_mm: f64,
 ) -> Vec<RingId> {
     let ceiling = design.configuration().label.depth_mm;
-    shapes(design, text, &zone.mirrored(), size_mm)
-        .into_iter()
-        .map(|(outline, islands)| {
+    let mut cut = |Letter { shapes, frame }: Letter| {
+        let recess = |(outline, islands): &Shape| {
             let islands: Vec<_> = islands.iter().map(Contour::mirrored).collect();
             solid.recess(&outline.mirrored(), &islands, 0.0, ceiling)
-        })
-        .collect()
+        };
+        let rings: Vec<RingId> = shapes.iter().map(recess).collect();
+        solid.frame(frame.mirrored(), &rings);
+        rings
+    };
+    letters(design, text, &zone.mirrored(), size_mm).flat_map(|letter| cut(letter)).collect()
 }
 
 /// Least height of letters with printable walls between their strokes, mm.
@@ -289,42 +289,40 @@ pub(super) fn largest_mm(design: &Design, text: &str, zone: &Zone) -> Option<f64
     (size >= least_height_mm(design) - SAME_MM).then_some(size)
 }
 
-/// Outlines of letters in a zone, clockwise, each with its islands, counter-clockwise.
-fn shapes(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> Vec<(Contour, Vec<Contour>)> {
-    let c = design.configuration();
-    let stroke = c.label.stroke_mm;
-    let letters = text.chars().count() as f64;
-    let advance = size_mm * ASPECT + stroke + c.print.least_wall_mm;
-    let mut all = Vec::new();
-    for (i, letter) in text.chars().enumerate() {
-        let middle = (i as f64 - (letters - 1.0) / 2.0) * advance;
-        for shape in letter_shapes(letter, size_mm, stroke) {
-            let mut contours = shape.iter().map(|points| {
-                Contour::polygon(points.iter().map(|p| zone.place(middle, size_mm + stroke, *p)).collect())
-            });
-            let Some(outline) = contours.next().map(|c| oriented(c, Orientation::Clockwise)) else {
-                continue;
-            };
-            all.push((outline, contours.map(|c| oriented(c, Orientation::CounterClockwise)).collect()));
-        }
-    }
-    all
+/// Outline of a pocket, clockwise, and its islands, counter-clockwise.
+type Shape = (Contour, Vec<Contour>);
+
+/// A letter in its place.
+struct Letter {
+    shapes: Vec<Shape>,
+    /// A rectangle around it, apart from those of its neighbours.
+    frame: Contour,
 }
 
-/// The union of the strokes of a letter, in mm about its centre. A shape is its outline, then its islands.
-fn letter_shapes(letter: char, height_mm: f64, stroke_mm: f64) -> Vec<Vec<Vec<[f64; 2]>>> {
-    let (along, up) = (height_mm * ASPECT / WIDTH, height_mm / HEIGHT);
-    let paths: Vec<Vec<[f64; 2]>> = strokes(letter)
-        .unwrap_or_default()
-        .iter()
-        .map(|run| run.iter().map(|[x, y]| [(x - WIDTH / 2.0) * along, (y - HEIGHT / 2.0) * up]).collect())
-        .collect();
-    let style = StrokeStyle::new(stroke_mm)
-        .line_join(LineJoin::Round(ROUND_RAD))
-        .start_cap(LineCap::Round(ROUND_RAD))
-        .end_cap(LineCap::Round(ROUND_RAD));
-    let shapes: Vec<Vec<Vec<[f64; 2]>>> = paths.stroke(style, false);
-    shapes.into_iter().map(|shape| shape.into_iter().map(|c| without_near_duplicates(&c)).collect()).collect()
+/// The letters of a text in a zone.
+fn letters(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> impl Iterator<Item = Letter> {
+    let c = design.configuration();
+    let (stroke_mm, wall_mm) = (c.label.stroke_mm, c.print.least_wall_mm);
+    let count = text.chars().count() as f64;
+    let advance = size_mm * ASPECT + stroke_mm + wall_mm;
+    let around = wall_mm * FRAME_SHARE + 0.5 * stroke_mm;
+    let half = [0.5 * size_mm * ASPECT + around, 0.5 * size_mm + around];
+    text.chars().enumerate().map(move |(i, letter)| {
+        let middle = (i as f64 - (count - 1.0) / 2.0) * advance;
+        let placed = |points: &[[f64; 2]]| {
+            Contour::polygon(points.iter().map(|p| zone.place(middle, size_mm + stroke_mm, *p)).collect())
+        };
+        let shape = |contours: &Vec<Vec<[f64; 2]>>| {
+            let (outline, islands) = contours.split_first()?;
+            let islands = islands.iter().map(|c| oriented(placed(c), Orientation::CounterClockwise));
+            Some((oriented(placed(outline), Orientation::Clockwise), islands.collect()))
+        };
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        Letter {
+            shapes: letter_shapes(letter, size_mm, stroke_mm).iter().filter_map(shape).collect(),
+            frame: placed(&corners.map(|[x, y]| [x * half[0], y * half[1]])),
+        }
+    })
 }
 
 /// Orientation of a contour.
@@ -340,41 +338,14 @@ fn oriented(contour: Contour, sense: Orientation) -> Contour {
     if is == sense { contour } else { contour.reversed() }
 }
 
-/// Merges points that are close to their neighbour.
-fn without_near_duplicates(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let near = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) < MERGE_MM;
-    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
-    for p in points {
-        if kept.last().is_none_or(|last| !near(*last, *p)) {
-            kept.push(*p);
-        }
-    }
-    while kept.len() > 3 && near(kept[0], kept[kept.len() - 1]) {
-        kept.pop();
-    }
-    kept
-}
 #[cfg(test)]
 mod tests {
+    use super::super::stroke_font::strokes;
     use super::*;
     use crate::config::Configuration;
     use pinswitch_solid::solid::Facing;
     use pinswitch_solid::validity::{Expectation, examine};
 
-    #[test]
-    fn letters_have_no_nested_islands() {
-        for letter in (' '..='~').filter(|l| strokes(*l).is_some()) {
-            let shapes = letter_shapes(letter, 3.0, 0.5);
-            let area = |points: &Vec<[f64; 2]>| {
-                Contour::polygon(points.iter().map(|[x, y]| Point2::new(*x, *y)).collect()).area_mm2().abs()
-            };
-            for shape in &shapes {
-                assert!(shape.iter().skip(1).all(|island| area(island) < area(&shape[0])), "{letter}");
-            }
-            // Only the colon and the equals sign have two shapes.
-            assert!(shapes.len() <= 1 || ":=".contains(letter), "{letter}: {}", shapes.len());
-        }
-    }
     #[test]
     fn texts_break_between_letters() {
         let design = Design::new(Configuration::default()).unwrap();

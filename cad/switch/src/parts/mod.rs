@@ -9,6 +9,7 @@ mod guide_pulley;
 mod joint;
 mod label;
 mod layer;
+mod letter_shape;
 mod marks;
 mod mould;
 mod mount;

@@ -50,7 +50,7 @@ mod tests {
     fn is_fan(facets: &[[u32; 2]]) -> bool {
         let triangles: Vec<[u32; 3]> = facets.iter().map(|[a, b]| [0, *a, *b]).collect();
         let mesh = Mesh::new(vec![Point3::origin(); 10], triangles);
-        is_closed_fan(&mesh, 0, &(0..facets.len() as u32).collect::<Vec<_>>())
+        is_closed_fan(&mesh, 0, &(0..).take(facets.len()).collect::<Vec<_>>())
     }
 
     #[test]

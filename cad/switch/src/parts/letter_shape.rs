@@ -86,7 +86,7 @@ mod tests {
             let area = |points: &Vec<[f64; 2]>| {
                 Contour::polygon(points.iter().map(|[x, y]| Point2::new(*x, *y)).collect()).area_mm2().abs()
             };
-            for shape in &shapes {
+            for shape in shapes.iter() {
                 assert!(shape.iter().skip(1).all(|island| area(island) < area(&shape[0])), "{letter}");
             }
             // Only the colon and the equals sign have two shapes.

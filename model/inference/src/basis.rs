@@ -34,6 +34,11 @@ impl Basis {
         &self.values[row * self.columns..(row + 1) * self.columns]
     }
 
+    /// Returns whether another basis of the same readings is a clone of this one.
+    pub(crate) fn is_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.values, &other.values)
+    }
+
     /// Returns the readings where it is not zero.
     pub(crate) fn support(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.readings()).filter(|reading| self.at(*reading).iter().any(|x| *x != 0.0))

@@ -17,6 +17,8 @@ use crate::marginal::Marginal;
 const LEAST_ENTRY: f64 = 1e-9;
 /// Columns that are whitened together, so that each series' factor is read once for all of them.
 const BLOCK_COLUMNS: usize = 64;
+/// Columns up to which a sum over cells is faster than a product of matrices that are copied for it.
+const FEW_COLUMNS: usize = 2;
 
 /// Products of the columns `x` of an element.
 pub(crate) struct Candidate {
@@ -67,24 +69,27 @@ impl<'a> Candidates<'a> {
         self.waits(element, relevance, 1);
     }
 
-    /// Adds a kernel that acts through a channel, unless it changes no reading.
-    pub(crate) fn add_kernel(&mut self, element: Element, basis: &Basis, channel: usize) {
-        let sensitivity = &self.channels[channel];
-        if let Some(rows) = basis.of_cells(&self.marginal.whitening.ranges, self.is_second) {
+    /// Adds kernels of one basis, each with its channel, unless they change no reading.
+    pub(crate) fn add_kernels(&mut self, kernels: impl Iterator<Item = (Element, usize)>, basis: &Basis) {
+        let cells = basis.of_cells(&self.marginal.whitening.ranges, self.is_second).map(Cells::new);
+        for (element, channel) in kernels {
+            let sensitivity = &self.channels[channel];
+            let Some(cells) = &cells else {
+                let columns = basis.times(sensitivity);
+                if columns.amax() > LEAST_ENTRY {
+                    self.columns.extend_from_slice(columns.as_slice());
+                    self.waits(element, 0.0, columns.ncols());
+                }
+                continue;
+            };
             let (marginal, is_second) = (self.marginal, self.is_second);
             let products = self
                 .of_cells
                 .entry(channel)
                 .or_insert_with(|| CellProducts::new(marginal, sensitivity, is_second));
-            if let Some((candidate, cross)) = products.candidate(element, &rows) {
+            if let Some((candidate, cross)) = products.candidate(element, cells) {
                 self.is_done(candidate, &cross);
             }
-            return;
-        }
-        let columns = basis.times(sensitivity);
-        if columns.amax() > LEAST_ENTRY {
-            self.columns.extend_from_slice(columns.as_slice());
-            self.waits(element, 0.0, columns.ncols());
         }
     }
 
@@ -124,6 +129,20 @@ impl<'a> Candidates<'a> {
         self.whiten();
         let count = self.done.last().map_or(0, |last| last.columns.end);
         (self.done, DMatrix::from_vec(self.marginal.gram.nrows(), count, self.cross))
+    }
+}
+
+/// A basis with one row per cell.
+struct Cells {
+    rows: DMatrix<f64>,
+    /// Largest entry of each row.
+    largest: Vec<f64>,
+}
+
+impl Cells {
+    fn new(rows: DMatrix<f64>) -> Self {
+        let largest = rows.row_iter().map(|row| row.amax()).collect();
+        Self { rows, largest }
     }
 }
 
@@ -175,21 +194,34 @@ impl CellProducts {
     }
 
     /// Returns the candidate of a basis with one row per cell, and its `A'V^-1 x`; `None` if it changes no reading.
-    fn candidate(&self, element: Element, rows: &DMatrix<f64>) -> Option<(Candidate, DMatrix<f64>)> {
+    fn candidate(&self, element: Element, cells: &Cells) -> Option<(Candidate, DMatrix<f64>)> {
+        let Cells { rows, largest } = cells;
         let (cells, count) = (rows.nrows(), self.between.len());
-        let largest = |cell: usize| self.largest[cell] * rows.row(cell).amax();
+        let changes = |cell: usize| self.largest[cell] * largest[cell];
         // Most cells of a basis with many columns are in few of them, and a gross error is in one series.
-        let own: Vec<usize> = (0..cells).filter(|cell| largest(*cell) > 0.0).collect();
-        own.iter().any(|cell| largest(*cell) > LEAST_ENTRY).then(|| {
+        let own: Vec<usize> = (0..cells).filter(|cell| changes(*cell) > 0.0).collect();
+        own.iter().any(|cell| changes(*cell) > LEAST_ENTRY).then(|| {
             let precise = DMatrix::from_fn(own.len(), rows.ncols(), |i, j| {
                 let (cell, other) = (own[i], (own[i] + count) % cells);
                 self.gram[cell] * rows[(cell, j)] + self.between[cell % count] * rows[(other, j)]
             });
+            let cross = self.cross_of(&own, rows);
             let rows = rows.select_rows(&own);
-            let cross = self.cross.select_columns(&own) * &rows;
             let (gram, moment) = (rows.tr_mul(&precise), rows.tr_mul(&self.moment.select_rows(&own)));
             (Candidate { element, gram, moment, relevance: 0.0, columns: 0..0 }, cross)
         })
+    }
+
+    /// Returns `A'V^-1 x` of a basis that is not zero in its `own` cells only.
+    fn cross_of(&self, own: &[usize], rows: &DMatrix<f64>) -> DMatrix<f64> {
+        if rows.ncols() > FEW_COLUMNS {
+            return self.cross.select_columns(own) * rows.select_rows(own);
+        }
+        let mut cross = DMatrix::zeros(self.cross.nrows(), rows.ncols());
+        for (j, mut column) in cross.column_iter_mut().enumerate() {
+            own.iter().for_each(|cell| column.axpy(rows[(*cell, j)], &self.cross.column(*cell), 1.0));
+        }
+        cross
     }
 }
 
@@ -212,13 +244,14 @@ mod tests {
         let basis = Basis::from(rows);
         let element = Element { member: Member::Kernel(0), form: 0 };
         let mut candidates = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
-        candidates.add_kernel(element, &basis, 1);
+        let kernels = || std::iter::once((element, 1));
+        candidates.add_kernels(kernels(), &basis);
         let columns = basis.times(&design.channels[1]);
         for column in columns.column_iter() {
             candidates.add_effect(element, 0.0, &column.into_owned());
         }
         let zero = Basis::from(DMatrix::zeros(problem.len(), 2));
-        candidates.add_kernel(element, &zero, 1);
+        candidates.add_kernels(kernels(), &zero);
         let (found, cross) = candidates.finish();
         assert_eq!(found.len(), 1 + 3);
         for (j, single) in found[1..].iter().enumerate() {

@@ -124,11 +124,19 @@ impl<'a> Scores<'a> {
                 }
             }
         }
-        let kernels = space.kernels.iter().enumerate();
-        for (index, kernel) in kernels.filter(|(index, _)| is_candidate(Member::Kernel(*index))) {
-            for form in 0..kernel.variants.len() {
-                let element = Element { member: Member::Kernel(index), form };
-                collected.add_kernel(element, &problem.rows.bases[index][form], kernel.channel);
+        let bases = &problem.rows.bases;
+        let is_shared = |a: &usize, b: &usize| match (bases[*a].first(), bases[*b].first()) {
+            (Some(a), Some(b)) => a.is_shared_with(b),
+            _ => false,
+        };
+        let kernels: Vec<usize> =
+            (0..space.kernels.len()).filter(|index| is_candidate(Member::Kernel(*index))).collect();
+        for sharing in kernels.chunk_by(is_shared) {
+            for (form, basis) in bases[sharing[0]].iter().enumerate() {
+                let element = |kernel: &usize| {
+                    (Element { member: Member::Kernel(*kernel), form }, space.kernels[*kernel].channel)
+                };
+                collected.add_kernels(sharing.iter().map(element), basis);
             }
         }
         let (candidates, cross) = collected.finish();

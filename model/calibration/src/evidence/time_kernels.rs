@@ -1,5 +1,7 @@
 //! Kernels over the time of a session, and over its series in the order of time.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 use pinswitch_inference::kernel;
 
@@ -21,8 +23,12 @@ const MOST_CYCLES: f64 = 40.0;
 /// Series of a cycle, below which a wave is finer than the sampling (Nyquist's limit); one of a series is
 /// its schedule.
 const SERIES_OF_CYCLE: f64 = 2.0;
-/// Series up to which every interval is a variant; in a longer table, only those up to its end.
+/// Series up to which every interval is a variant.
 const MOST_INTERVAL_SERIES: usize = 24;
+/// Halvings of a longer table down to the shortest interval that does not last until its end.
+const LENGTH_HALVINGS: u32 = 4;
+/// Steps of the ends of intervals in the least length of each halving.
+const GRID_SHARE: usize = 4;
 /// Series up to which a gross error of each is a hypothesis. Errors of `k` among `n` series are at most `sqrt(n / k)` standard
 /// deviations of the scatter that they make: a few among more are listed in any case.
 const MOST_HIDING_SERIES: usize = 300;
@@ -123,20 +129,60 @@ fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
 /// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
 /// lasts for a while. Brownian motion prices one large step as many small ones.
 fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
-    let is_long = count > MOST_INTERVAL_SERIES;
-    let mut bases: Vec<BasisOfRows> = Vec::new();
-    for from in 0..count {
-        for until in (if is_long { count } else { from + 1 })..=count {
-            // One series that differs from all others is a gross error of it.
-            let inside = until - from;
-            if inside.min(count - inside) > 1 {
-                bases.push(Box::new(move |rows| {
-                    let is_in = |sequence: &usize| f64::from(u8::from((from..until).contains(sequence)));
-                    kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
-                }));
+    let intervals = intervals(count);
+    let probability = probability / intervals.len().max(1) as f64;
+    let variant = |interval: Range<usize>| -> Variant {
+        let basis: BasisOfRows = Box::new(move |rows| {
+            let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
+            kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+        });
+        Variant { basis, factor: 1.0, probability }
+    };
+    intervals.into_iter().map(variant).collect()
+}
+
+/// Returns intervals of a number of series, of two or more with two or more outside: one series that differs from all others
+/// is a gross error of it. In a long table they are all that last until its end, and an approximating set of the others (Rivera
+/// and Walther 2013): lengths from `m` to `2m` have their ends on a grid of `m / 4`, so that the ends of some interval of the
+/// set are within an eighth of the length of those of any.
+fn intervals(count: usize) -> Vec<Range<usize>> {
+    if count <= MOST_INTERVAL_SERIES {
+        let of = |from: usize| (from + 1..=count).map(move |until| from..until);
+        let is_apart = |interval: &Range<usize>| interval.len().min(count - interval.len()) > 1;
+        return (0..count).flat_map(of).filter(is_apart).collect();
+    }
+    let mut intervals: Vec<Range<usize>> = (2..count - 1).map(|from| from..count).collect();
+    for halvings in 1..=LENGTH_HALVINGS {
+        let least = count >> halvings;
+        let step = (least / GRID_SHARE).max(1);
+        for from in (step..count).step_by(step) {
+            let lengths = (least.max(2)..2 * least).step_by(step);
+            intervals.extend(lengths.map(|length| from..from + length).filter(|i| i.end < count));
+        }
+    }
+    intervals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_interval_of_a_long_table_is_near_one_of_the_set() {
+        for count in [25, 61, 530] {
+            let intervals = intervals(count);
+            let distinct: std::collections::HashSet<&Range<usize>> = intervals.iter().collect();
+            assert_eq!(distinct.len(), intervals.len());
+            assert!(intervals.iter().all(|i| i.len() > 1 && count - i.len() > 1 && i.end <= count));
+            let shortest = (count >> LENGTH_HALVINGS).max(2);
+            for from in 1..count - shortest {
+                for until in (from + shortest..count).filter(|until| until - from < count / 2) {
+                    let length = until - from;
+                    let off = |i: &Range<usize>| i.start.abs_diff(from).max(i.end.abs_diff(until));
+                    let nearest = intervals.iter().map(off).min().unwrap();
+                    assert!(nearest <= (length / 4).max(1), "{from}..{until} of {count}: {nearest}");
+                }
             }
         }
     }
-    let probability = probability / bases.len().max(1) as f64;
-    bases.into_iter().map(|basis| Variant { basis, factor: 1.0, probability }).collect()
 }

@@ -11,6 +11,7 @@ mod frame;
 mod tessellate;
 mod thin_places;
 mod volume;
+mod wall_section;
 
 pub use cap::CapError;
 pub use cap_cache::CapCache;

@@ -1,0 +1,216 @@
+//! An edge of a wall at one height, and the shortest segment through material between two of them.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::profile::{Arc, Point2, Vector2};
+
+/// Two faces bound a wall if the segment between them is within this angle of both normals (cosine
+/// of 35 degrees). The two sides of a rounded corner, at 45 degrees, do not.
+const FACING: f64 = 0.82;
+/// Distance up to which points are equal, mm.
+pub(super) const SAME_MM: f64 = 1e-9;
+/// Angle up to which directions are equal, rad.
+const SAME_RAD: f64 = 1e-6;
+
+/// An edge at one height, with the tangents of its neighbours.
+#[derive(Clone)]
+pub(super) struct Section {
+    from: Point2,
+    to: Point2,
+    arc: Option<Arc>,
+    /// Tangent at the end of the edge before, and at the start of the edge after.
+    before: Vector2,
+    after: Vector2,
+}
+
+/// Ends and arc of an edge.
+pub(super) type PlainEdge = (Point2, Point2, Option<Arc>);
+
+/// Returns the tangent of an edge at a share of its length.
+pub(super) fn tangent((from, to, arc): &PlainEdge, share: f64) -> Vector2 {
+    match arc {
+        Some(arc) => arc.tangent_at(share),
+        None => (to - from).try_normalize(0.0).unwrap_or_else(Vector2::zeros),
+    }
+}
+
+/// The shortest segment through material between two edges, if shorter than `within_mm`: its length
+/// and its middle.
+pub(super) fn nearest(a: &Section, b: &Section, within_mm: f64) -> Option<(f64, Point2)> {
+    let mut best: Option<(f64, Point2)> = None;
+    // The slowest conditions come last.
+    let mut consider = |p: Candidate, q: Candidate| {
+        let length = (q.point - p.point).norm();
+        if length > SAME_MM
+            && length < best.map_or(within_mm, |(least, _)| least)
+            && a.contains(p)
+            && b.contains(q)
+            && a.faces(p.point, (q.point - p.point) / length)
+            && b.faces(q.point, (p.point - q.point) / length)
+        {
+            best = Some((length, nalgebra::center(&p.point, &q.point)));
+        }
+    };
+    for p in a.stations(b).into_iter().flatten() {
+        b.feet(p.point).into_iter().flatten().for_each(|q| consider(p, q));
+    }
+    for q in b.stations(a).into_iter().flatten() {
+        a.feet(q.point).into_iter().flatten().for_each(|p| consider(p, q));
+    }
+    best
+}
+
+/// A candidate point of an edge. One on the circle of an arc is on the edge only if the arc covers
+/// its direction.
+#[derive(Clone, Copy)]
+struct Candidate {
+    point: Point2,
+    radial: Option<Vector2>,
+}
+
+impl Candidate {
+    fn end(point: Point2) -> Self {
+        Self { point, radial: None }
+    }
+
+    fn on(arc: &Arc, radial: Vector2) -> Self {
+        Self { point: arc.centre + radial * arc.radius_mm, radial: Some(radial) }
+    }
+}
+
+/// Directions in which a wall may be behind an edge: all within an angle of `middle`, a unit vector.
+#[derive(Clone, Copy)]
+pub(super) struct Directions {
+    middle: Vector2,
+    /// The angle, up to half a turn, with its cosine and sine.
+    half_rad: f64,
+    cos: f64,
+    sin: f64,
+}
+
+impl Directions {
+    fn within(half_rad: f64, middle_rad: f64) -> Self {
+        let half_rad = half_rad.min(PI);
+        let middle = Vector2::new(libm::cos(middle_rad), libm::sin(middle_rad));
+        Self { middle, half_rad, cos: libm::cos(half_rad), sin: libm::sin(half_rad) }
+    }
+
+    /// Whether none of these is opposite to one of the others.
+    pub(super) fn are_averted(&self, other: &Self) -> bool {
+        // Cosines instead of angles: every pair of close edges asks for this.
+        self.half_rad + other.half_rad < PI
+            && -self.middle.dot(&other.middle) < self.cos * other.cos - self.sin * other.sin
+    }
+}
+
+/// Angle between two directions, 0 to a half turn.
+fn angle_between(a_rad: f64, b_rad: f64) -> f64 {
+    let turn = (a_rad - b_rad).rem_euclid(TAU);
+    turn.min(TAU - turn)
+}
+
+impl Section {
+    pub(super) fn new((from, to, arc): PlainEdge, before: Vector2, after: Vector2) -> Self {
+        Self { from, to, arc, before, after }
+    }
+
+    /// All directions that [`Section::faces`] accepts at any point: those close to a normal, and up to the normals of the
+    /// neighbours at corners that point into the material.
+    pub(super) fn directions(&self) -> Directions {
+        let angle = |direction: Vector2| libm::atan2(direction.y, direction.x);
+        let inwards = |t: Vector2| angle(Vector2::new(-t.y, t.x));
+        let (middle_rad, reach_rad) = match &self.arc {
+            Some(arc) => {
+                let towards_centre = if arc.sweep_rad > 0.0 { PI } else { 0.0 };
+                (arc.start_rad + 0.5 * arc.sweep_rad + towards_centre, 0.5 * arc.sweep_rad.abs())
+            }
+            None => (inwards(self.to - self.from), 0.0),
+        };
+        let here: PlainEdge = (self.from, self.to, self.arc);
+        let corners =
+            [(self.before, tangent(&here, 0.0), self.before), (tangent(&here, 1.0), self.after, self.after)];
+        let pointed = corners.into_iter().filter(|(first, second, _)| first.perp(second) < 0.0);
+        let half_rad = pointed
+            .map(|(_, _, neighbour)| angle_between(inwards(neighbour), middle_rad))
+            .fold(reach_rad + libm::acos(FACING), f64::max);
+        Directions::within(half_rad + SAME_RAD, middle_rad)
+    }
+
+    /// Distance of a point from the line or circle of this edge, mm.
+    pub(super) fn offset_mm(&self, point: Point2) -> f64 {
+        match &self.arc {
+            Some(arc) => ((point - arc.centre).norm() - arc.radius_mm).abs(),
+            None => {
+                let along = self.to - self.from;
+                along.perp(&(point - self.from)).abs() / along.norm()
+            }
+        }
+    }
+
+    /// Points where the shortest segment to `other` can start: the ends, and points of an arc that
+    /// are parallel to it.
+    fn stations(&self, other: &Self) -> [Option<Candidate>; 4] {
+        let mut all = [Some(Candidate::end(self.from)), Some(Candidate::end(self.to)), None, None];
+        if let Some(arc) = &self.arc {
+            let towards = match &other.arc {
+                Some(o) => (o.centre - arc.centre).try_normalize(SAME_MM),
+                None => (other.to - other.from).try_normalize(SAME_MM).map(|t| Vector2::new(-t.y, t.x)),
+            };
+            // Concentric arcs are parallel everywhere.
+            let towards = towards.unwrap_or_else(|| (arc.point_at(0.5, 1.0) - arc.centre).normalize());
+            all[2] = Some(Candidate::on(arc, towards));
+            all[3] = Some(Candidate::on(arc, -towards));
+        }
+        all
+    }
+
+    /// Points closest to `point`; on an arc also the furthest, across its inside.
+    fn feet(&self, point: Point2) -> [Option<Candidate>; 4] {
+        let mut feet = [Some(Candidate::end(self.from)), Some(Candidate::end(self.to)), None, None];
+        match &self.arc {
+            Some(arc) => {
+                if let Some(radial) = (point - arc.centre).try_normalize(SAME_MM) {
+                    feet[2] = Some(Candidate::on(arc, radial));
+                    feet[3] = Some(Candidate::on(arc, -radial));
+                }
+            }
+            None => {
+                let along = self.to - self.from;
+                let share = (point - self.from).dot(&along) / along.norm_squared();
+                feet[2] = (0.0..=1.0).contains(&share).then(|| Candidate::end(self.from + along * share));
+            }
+        }
+        feet
+    }
+
+    /// Whether a candidate point is on this edge.
+    fn contains(&self, candidate: Candidate) -> bool {
+        match (&self.arc, candidate.radial) {
+            (Some(arc), Some(radial)) => arc.covers(libm::atan2(radial.y, radial.x)),
+            _ => true,
+        }
+    }
+
+    /// Whether `direction` at `point` of this edge is into the material and close to the normal,
+    /// or, at a corner that points into the material, between the normals of its two sides.
+    fn faces(&self, point: Point2, direction: Vector2) -> bool {
+        let inwards = |t: Vector2| Vector2::new(-t.y, t.x);
+        let own = match &self.arc {
+            // The left of its direction: towards the centre for a counter-clockwise arc.
+            Some(arc) => (arc.centre - point) * (arc.sweep_rad.signum() / arc.radius_mm),
+            None => inwards((self.to - self.from).normalize()),
+        };
+        if own.dot(&direction) >= FACING {
+            return true;
+        }
+        let between = |first: Vector2, second: Vector2| {
+            let (first_in, second_in) = (inwards(first), inwards(second));
+            // A corner that points into the material is closest for every direction between the two
+            // normals.
+            first.perp(&second) < 0.0 && first_in.perp(&direction) <= 0.0 && direction.perp(&second_in) <= 0.0
+        };
+        let here: PlainEdge = (self.from, self.to, self.arc);
+        (point == self.from && between(self.before, tangent(&here, 0.0)))
+            || (point == self.to && between(tangent(&here, 1.0), self.after))
+    }
+}

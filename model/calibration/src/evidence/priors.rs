@@ -160,11 +160,15 @@ impl EffectPrior {
             return Vec::new();
         }
         match self.effect.id() {
-            "coating_stiffening" | "coating_ploughing" => vec![Covariate::Load, Covariate::Condition],
+            // What increases with load may follow the local tension, which is higher in the concentric direction.
+            "coating_stiffening" | "coating_ploughing" => {
+                vec![Covariate::Load, Covariate::Direction, Covariate::Condition]
+            }
             "polygon_bending" => vec![Covariate::Condition],
             "thermal_drift" => vec![Covariate::Time],
             "adhesion" | "switching_hysteresis" | "load_cell_nonlinearity" | LIMIT => Vec::new(),
-            _ if description.covariate == Covariate::Load => vec![Covariate::Load],
+            _ if description.covariate == Covariate::Load => vec![Covariate::Load, Covariate::Direction],
+            _ if description.covariate == Covariate::Direction => vec![Covariate::Load],
             _ => vec![Covariate::Load, description.covariate],
         }
     }

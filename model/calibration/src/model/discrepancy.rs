@@ -107,7 +107,8 @@ impl Largest {
             Covariate::Condition if devices > 1 => {
                 (0..devices).map(|device| DiscrepancyFactor::Device { device }).collect()
             }
-            Covariate::Condition | Covariate::Direction | Covariate::Sweep => Vec::new(),
+            Covariate::Direction => vec![DiscrepancyFactor::Direction],
+            Covariate::Condition | Covariate::Sweep => Vec::new(),
         }
     }
 }

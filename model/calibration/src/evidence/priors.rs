@@ -160,10 +160,10 @@ impl EffectPrior {
             return Vec::new();
         }
         match self.effect.id() {
-            // What increases with load may follow the local tension, which is higher in the concentric direction.
-            "coating_stiffening" | "coating_ploughing" => {
-                vec![Covariate::Load, Covariate::Direction, Covariate::Condition]
-            }
+            // What increases with load may follow the local tension, which is higher in the concentric direction. Ploughing
+            // increases with its root only.
+            "coating_stiffening" => vec![Covariate::Load, Covariate::Direction, Covariate::Condition],
+            "coating_ploughing" => vec![Covariate::Load, Covariate::Condition],
             "polygon_bending" => vec![Covariate::Condition],
             "thermal_drift" => vec![Covariate::Time],
             "adhesion" | "switching_hysteresis" | "load_cell_nonlinearity" | LIMIT => Vec::new(),

@@ -22,8 +22,8 @@ use pinswitch_switch::parts::Part;
 
 /// Parts in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
 const CACHED_PARTS: usize = 50_000;
-/// Corners of caps in the cache, 3 MB: adjacent variants of a sweep share most caps except those of
-/// labels.
+/// Corners of caps in the cache, 3 MB: adjacent variants of a sweep share most caps, and those with a label all but the
+/// letters that are new in their place.
 const CACHED_CORNERS: usize = 65_536;
 
 /// Makes the mesh file of a part: [`mesh_file`], or a function that fails in tests.

@@ -19,8 +19,8 @@ pub(super) struct Frame {
 }
 
 impl Solid {
-    /// Adds a frame, a `polygon` around `holes` of one cap. A cap is triangulated as a whole if its contours touch a frame, or if
-    /// a frame is around other holes.
+    /// Adds a frame, a `polygon` around `holes` of one cap. A cap is triangulated as a whole if a frame is within 0.01 mm of a
+    /// contour or of another frame, or around other holes.
     pub fn frame(&mut self, polygon: Contour, holes: &[RingId]) {
         self.frames.push(Frame { polygon, holes: holes.to_vec() });
     }
@@ -34,6 +34,41 @@ impl Solid {
 
 /// A loop of corners, with the index of its first vertex in the mesh.
 pub(super) type Loop<'a> = (&'a [Point2], usize);
+
+/// Least distance of a frame from contours and from other frames, mm: facets between closer ones may be too thin.
+const CLEARANCE_MM: f64 = 0.01;
+
+/// Returns whether a loop is closer to another one than frames may be. Loops that cross without a corner nearby are not found:
+/// they cannot be triangulated.
+pub(super) fn are_close(one: &[Point2], other: &[Point2]) -> bool {
+    let sides = |points: &[Point2]| -> Vec<[Point2; 2]> {
+        let next = points.iter().cycle().skip(1);
+        points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
+    };
+    let within = |[a, b]: [Point2; 2], [c, d]: [Point2; 2]| {
+        let (low, high) = (a.inf(&b), a.sup(&b));
+        let (from, to) = (c.inf(&d), c.sup(&d));
+        let is_near = (0..2).all(|i| from[i] <= high[i] + CLEARANCE_MM && low[i] <= to[i] + CLEARANCE_MM);
+        is_near
+            && [
+                distance_mm(a, [c, d]),
+                distance_mm(b, [c, d]),
+                distance_mm(c, [a, b]),
+                distance_mm(d, [a, b]),
+            ]
+            .iter()
+            .any(|distance| *distance < CLEARANCE_MM)
+    };
+    let others = sides(other);
+    sides(one).into_iter().any(|side| others.iter().any(|other| within(side, *other)))
+}
+
+/// Distance of a point from a segment, mm.
+fn distance_mm(point: Point2, [from, to]: [Point2; 2]) -> f64 {
+    let along = to - from;
+    let share = (point - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+    (from + along * share.clamp(0.0, 1.0) - point).norm()
+}
 
 /// Triangles of a part of a cap, of indices into `vertices`.
 pub(super) struct Region {
@@ -131,6 +166,25 @@ mod tests {
         mesh(1.5);
         // The other pocket has another floor, and another ring around it: 4 and 8 corners.
         assert_eq!(caps.corners(), known + 12);
+    }
+
+    /// Frames that share a part of a side, or are a rounding error or less than a facet's height apart.
+    #[test]
+    fn frames_that_nearly_touch_are_ignored() {
+        let exact = 20.0 * 20.0 * 4.0 - 2.0 * 4.0;
+        for gap_mm in [0.0, f64::EPSILON, -f64::EPSILON, 1e-15, 1e-9, 1e-6, 1e-5, 1e-3, 0.02] {
+            for aside_mm in [0.0, 0.3, 2.5] {
+                let mut solid = plate(2.0, 0.5);
+                let holes: Vec<_> = solid.frames.iter().map(|frame| frame.holes.clone()).collect();
+                solid.frames.clear();
+                solid.frame(square(4.0, 7.0, 4.0), &holes[0]);
+                solid.frame(square(8.0 + gap_mm, 7.0 - aside_mm, 4.0), &holes[1]);
+                for turn_rad in [0.0, 0.7] {
+                    let volume_mm3 = volume_mm3(&solid.rotated(turn_rad));
+                    assert!((volume_mm3 - exact).abs() < 1e-9, "{gap_mm} {aside_mm}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::cap::CapError;
 use super::cap_cache::CapCache;
 use super::definition::{Cap, Facing, RingId, Solid, Wall, larger};
-use super::frame::{Frame, Loop, Region, area_between_mm2};
+use super::frame::{Frame, Loop, Region, are_close, area_between_mm2};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
@@ -73,7 +73,7 @@ impl Solid {
     }
 
     /// Triangulates a cap in its frames and outside of them, and adds the corners of the frames to `positions`. `None` without
-    /// frames, or if one touches a contour or is around others than its holes.
+    /// frames, or if one is close to a contour or another frame, or around others than its holes.
     fn framed(
         &self,
         cap: &Cap,
@@ -90,6 +90,14 @@ impl Solid {
         let is_framed = |ring: &RingId| frames.iter().any(|frame| frame.holes.contains(ring));
         let outer = cap.rings.iter().filter(|ring| !is_framed(ring));
         let mut outside: Vec<Loop<'_>> = outer.map(|ring| rings[ring.0].as_loop()).collect();
+        let polygons: Vec<&[Point2]> = frames.iter().map(|frame| frame.polygon.corners()).collect();
+        let contours: Vec<&[Point2]> = cap.rings.iter().map(|ring| rings[ring.0].points.as_slice()).collect();
+        let is_crowded = |(i, polygon): (usize, &&[Point2])| {
+            polygons[i + 1..].iter().chain(&contours).any(|other| are_close(polygon, other))
+        };
+        if polygons.iter().enumerate().any(is_crowded) {
+            return None;
+        }
         let mut regions = Vec::with_capacity(frames.len() + 1);
         for frame in frames.iter().copied() {
             let corners = frame.polygon.corners();

@@ -240,13 +240,13 @@ fn pockets(
     top_mm: f64,
 ) -> Vec<RingId> {
     let floor_mm = top_mm - design.configuration().label.depth_mm;
-    let mut cut = |Letter { shapes, frame }: Letter| {
+    let cut = |Letter { shapes, frame }: Letter| {
         let pocket = |(outline, islands): &Shape| solid.pocket(outline, islands, floor_mm, top_mm);
         let rings: Vec<RingId> = shapes.iter().map(pocket).collect();
         solid.frame(frame, &rings);
         rings
     };
-    letters(design, text, zone, size_mm).flat_map(|letter| cut(letter)).collect()
+    letters(design, text, zone, size_mm).flat_map(cut).collect()
 }
 
 /// Engraves a text into the face on the bed, to read from below; returns its rings, which are holes in the cap.
@@ -258,7 +258,7 @@ pub(super) fn engrave_below(
     size_mm: f64,
 ) -> Vec<RingId> {
     let ceiling = design.configuration().label.depth_mm;
-    let mut cut = |Letter { shapes, frame }: Letter| {
+    let cut = |Letter { shapes, frame }: Letter| {
         let recess = |(outline, islands): &Shape| {
             let islands: Vec<_> = islands.iter().map(Contour::mirrored).collect();
             solid.recess(&outline.mirrored(), &islands, 0.0, ceiling)
@@ -267,7 +267,7 @@ pub(super) fn engrave_below(
         solid.frame(frame.mirrored(), &rings);
         rings
     };
-    letters(design, text, &zone.mirrored(), size_mm).flat_map(|letter| cut(letter)).collect()
+    letters(design, text, &zone.mirrored(), size_mm).flat_map(cut).collect()
 }
 
 /// Least height of letters with printable walls between their strokes, mm.

@@ -41,15 +41,16 @@ const CLEARANCE_MM: f64 = 0.01;
 /// Returns whether a loop is closer to another one than frames may be. Loops that cross without a corner nearby are not found:
 /// they cannot be triangulated.
 pub(super) fn are_close(one: &[Point2], other: &[Point2]) -> bool {
-    let sides = |points: &[Point2]| -> Vec<[Point2; 2]> {
-        let next = points.iter().cycle().skip(1);
-        points.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
+    let whole = |points: &[Point2]| {
+        points.iter().map(|p| (*p, *p)).reduce(|(low, high), (p, _)| (low.inf(&p), high.sup(&p)))
     };
-    let within = |[a, b]: [Point2; 2], [c, d]: [Point2; 2]| {
-        let (low, high) = (a.inf(&b), a.sup(&b));
-        let (from, to) = (c.inf(&d), c.sup(&d));
-        let is_near = (0..2).all(|i| from[i] <= high[i] + CLEARANCE_MM && low[i] <= to[i] + CLEARANCE_MM);
-        is_near
+    let Some(around) = whole(one) else { return false };
+    let are_apart = |(low, high): (Point2, Point2), (from, to): (Point2, Point2)| {
+        (0..2).any(|i| from[i] > high[i] + CLEARANCE_MM || low[i] > to[i] + CLEARANCE_MM)
+    };
+    let bounds = |[a, b]: [Point2; 2]| (a.inf(&b), a.sup(&b));
+    let is_within = |[a, b]: [Point2; 2], [c, d]: [Point2; 2]| {
+        !are_apart(bounds([a, b]), bounds([c, d]))
             && [
                 distance_mm(a, [c, d]),
                 distance_mm(b, [c, d]),
@@ -59,8 +60,14 @@ pub(super) fn are_close(one: &[Point2], other: &[Point2]) -> bool {
             .iter()
             .any(|distance| *distance < CLEARANCE_MM)
     };
-    let others = sides(other);
-    sides(one).into_iter().any(|side| others.iter().any(|other| within(side, *other)))
+    sides(other)
+        .filter(|side| !are_apart(bounds(*side), around))
+        .any(|side| sides(one).any(|own| is_within(own, side)))
+}
+
+/// The sides of a closed polygon.
+fn sides(points: &[Point2]) -> impl Iterator<Item = [Point2; 2]> {
+    points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| [*from, *to])
 }
 
 /// Distance of a point from a segment, mm.

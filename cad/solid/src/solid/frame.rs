@@ -3,12 +3,13 @@
 //! Around each letter of a label, the cap is the same whatever the other letters are, and outside of all frames it is the
 //! same for all labels of one length: a [`CapCache`] knows most of it. A frame adds vertices and no edge of the solid.
 
+use std::sync::Arc;
+
 use super::cap::{CapError, Triangles};
 use super::cap_cache::CapCache;
 use super::definition::{Cap, RingId, Solid};
 use crate::mesh::Point3;
 use crate::profile::{Contour, Point2};
-use std::sync::Arc;
 
 /// A polygon around holes of a cap.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,13 +39,13 @@ pub(super) type Loop<'a> = (&'a [Point2], usize);
 /// Least distance of a frame from contours and from other frames, mm: facets between closer ones may be too thin.
 const CLEARANCE_MM: f64 = 0.01;
 
-/// Returns whether a loop is closer to another one than frames may be. Loops that cross without a corner nearby are not found:
-/// they cannot be triangulated.
-pub(super) fn are_close(one: &[Point2], other: &[Point2]) -> bool {
+/// Returns whether a frame is closer to another loop than it may be. A loop that crosses it far from all corners is not found: the
+/// triangulation refuses it.
+pub(super) fn is_close(frame: &[Point2], other: &[Point2]) -> bool {
     let whole = |points: &[Point2]| {
         points.iter().map(|p| (*p, *p)).reduce(|(low, high), (p, _)| (low.inf(&p), high.sup(&p)))
     };
-    let Some(around) = whole(one) else { return false };
+    let Some(around) = whole(frame) else { return false };
     let are_apart = |(low, high): (Point2, Point2), (from, to): (Point2, Point2)| {
         (0..2).any(|i| from[i] > high[i] + CLEARANCE_MM || low[i] > to[i] + CLEARANCE_MM)
     };
@@ -62,7 +63,7 @@ pub(super) fn are_close(one: &[Point2], other: &[Point2]) -> bool {
     };
     sides(other)
         .filter(|side| !are_apart(bounds(*side), around))
-        .any(|side| sides(one).any(|own| is_within(own, side)))
+        .any(|side| sides(frame).any(|own| is_within(own, side)))
 }
 
 /// The sides of a closed polygon.

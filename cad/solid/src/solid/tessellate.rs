@@ -3,7 +3,7 @@
 use super::cap::CapError;
 use super::cap_cache::CapCache;
 use super::definition::{Cap, Facing, RingId, Solid, Wall, larger};
-use super::frame::{Frame, Loop, Region, are_close, area_between_mm2};
+use super::frame::{Frame, Loop, Region, area_between_mm2, is_close};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
@@ -93,7 +93,7 @@ impl Solid {
         let polygons: Vec<&[Point2]> = frames.iter().map(|frame| frame.polygon.corners()).collect();
         let contours: Vec<&[Point2]> = cap.rings.iter().map(|ring| rings[ring.0].points.as_slice()).collect();
         let is_crowded = |(i, polygon): (usize, &&[Point2])| {
-            polygons[i + 1..].iter().chain(&contours).any(|other| are_close(polygon, other))
+            polygons[i + 1..].iter().chain(&contours).any(|other| is_close(polygon, other))
         };
         if polygons.iter().enumerate().any(is_crowded) {
             return None;

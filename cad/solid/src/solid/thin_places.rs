@@ -34,7 +34,7 @@ struct Face {
     to_mm: f64,
 }
 
-/// What most pairs of faces are told apart by, without the rest of a face.
+/// Box of a face, which shows that most pairs of faces are not close.
 struct Span {
     low: Point2,
     high_y_mm: f64,

@@ -97,7 +97,7 @@ impl Directions {
 
     /// Whether none of these is opposite to one of the others.
     pub(super) fn are_averted(&self, other: &Self) -> bool {
-        // Cosines instead of angles: every pair of close edges asks for this.
+        // By cosines, since this is tested for every pair of close edges.
         self.half_rad + other.half_rad < PI
             && -self.middle.dot(&other.middle) < self.cos * other.cos - self.sin * other.sin
     }

@@ -6,8 +6,8 @@ use crate::mesh::Mesh;
 const MOST_FACETS: usize = 16;
 
 /// Returns whether the `facets` around `centre` are a single closed fan of three or more, in which every edge from the centre
-/// has one outgoing and one incoming half-edge. Such a one-ring has no fault, and no facet in it occurs twice. `false` also for
-/// a fan of many facets.
+/// has one outgoing and one incoming half-edge. Such a one-ring has no fault, and all its facets are different. `false` also
+/// for a fan of many facets.
 pub(super) fn is_closed_fan(mesh: &Mesh, centre: u32, facets: &[u32]) -> bool {
     let count = facets.len();
     if !(3..=MOST_FACETS).contains(&count) {

@@ -144,7 +144,7 @@ fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
 /// Returns intervals of a number of series, of two or more with two or more outside: one series that differs from all others
 /// is a gross error of it. In a long table they are all that last until its end, and an approximating set of the others (Rivera
 /// and Walther 2013): lengths from `m` to `2m` have their ends on a grid of `m / 4`, so that the ends of some interval of the
-/// set are within a quarter of the length of those of any.
+/// set are within a quarter of the length, or one series, of those of any that is not longer than half of the table.
 fn intervals(count: usize) -> Vec<Range<usize>> {
     if count <= MOST_INTERVAL_SERIES {
         let of = |from: usize| (from + 1..=count).map(move |until| from..until);

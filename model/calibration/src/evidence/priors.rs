@@ -160,8 +160,8 @@ impl EffectPrior {
             return Vec::new();
         }
         match self.effect.id() {
-            // What increases with load may follow the local tension, which is higher in the concentric direction. Ploughing
-            // increases with its root only.
+            // What happens at contacts may follow their force, which is higher in the concentric direction. Ploughing increases
+            // with its root only.
             "coating_stiffening" => vec![Covariate::Load, Covariate::Direction, Covariate::Condition],
             "coating_ploughing" => vec![Covariate::Load, Covariate::Condition],
             "polygon_bending" => vec![Covariate::Condition],
@@ -169,7 +169,7 @@ impl EffectPrior {
             "adhesion" | "switching_hysteresis" | "load_cell_nonlinearity" | LIMIT => Vec::new(),
             _ if description.covariate == Covariate::Load => vec![Covariate::Load, Covariate::Direction],
             _ if description.covariate == Covariate::Direction => vec![Covariate::Load],
-            _ => vec![Covariate::Load, description.covariate],
+            _ => vec![Covariate::Load, description.covariate, Covariate::Direction],
         }
     }
 }

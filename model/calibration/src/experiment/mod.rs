@@ -484,15 +484,33 @@ mod tests {
     #[test]
     fn planned_runs_show_an_effect_of_speed() {
         let truth = Term::named(effect_named("rate_dependence").unwrap());
-        let loads_g = RigLimits::default().loads_g.into_iter().step_by(2).collect();
-        let few_loads = RigLimits { loads_g, ..RigLimits::default() };
-        let first = recorded(&[], &paper_runs(&few_loads, f64::INFINITY), (truth.clone(), &[0.2]), 1);
-        let calibrated = calibrated(first, &Vocabulary::built_in());
-        assert_ne!(calibrated.report.verdict, Verdict::Attributed);
+        let calibrated = after_few_loads((truth.clone(), &[0.2]), 1);
         let proposal = proposed(&calibrated, &RigLimits::default(), 30.0);
         let question = outlook(&proposal, "rate_dependence").unwrap();
         assert!(question.resolved_probability > 0.9 && question.by_repeating < 0.2, "{question:?}");
         assert_predicted_answers(&calibrated, &proposal, (truth, &[0.2]), "rate_dependence");
+    }
+
+    /// Neither effect is named where speed follows load, whichever of them the rig has.
+    #[test]
+    fn speed_and_compliance_stay_rivals_in_the_papers_protocol() {
+        let effects = ["rate_dependence", "fixture_compliance"];
+        for ((id, size), seed) in effects.into_iter().zip([0.2, 0.1]).flat_map(|e| [(e, 1), (e, 4)]) {
+            let truth = Term::named(effect_named(id).unwrap());
+            let report = after_few_loads((truth, &[size]), seed).report;
+            let rivals = report.effects.first().map(|effect| (&effect.id, &effect.rivals[..]));
+            let Some((named, [rival])) = rivals else { panic!("{id} {seed}: {rivals:?}") };
+            assert_eq!(report.verdict, Verdict::Ambiguous, "{id} {seed}");
+            assert!(effects.iter().all(|id| id == named || *id == rival.id), "{id} {seed}: {rivals:?}");
+        }
+    }
+
+    /// Returns a calibration with every second load of the paper's protocol on a rig with a term.
+    fn after_few_loads(truth: (Term, &[f64]), seed: u64) -> Calibrated {
+        let loads_g = RigLimits::default().loads_g.into_iter().step_by(2).collect();
+        let few_loads = RigLimits { loads_g, ..RigLimits::default() };
+        let first = recorded(&[], &paper_runs(&few_loads, f64::INFINITY), truth, seed);
+        calibrated(first, &Vocabulary::built_in())
     }
 
     /// Asserts that a rig with a term gives the answers that a plan predicts, and that the effect of

@@ -103,7 +103,7 @@ impl Largest {
             Covariate::Position => degrees.map(|degree| DiscrepancyFactor::Position { degree }).to_vec(),
             Covariate::Speed => vec![DiscrepancyFactor::Speed { most: self.log_speed }],
             Covariate::Dwell => vec![DiscrepancyFactor::Dwell { most: self.log_dwell }],
-            Covariate::Repetition => vec![DiscrepancyFactor::Repetition, DiscrepancyFactor::Direction],
+            Covariate::Repetition => vec![DiscrepancyFactor::Repetition],
             Covariate::Condition if devices > 1 => {
                 (0..devices).map(|device| DiscrepancyFactor::Device { device }).collect()
             }

@@ -211,6 +211,7 @@ impl ModelFile {
         let own = effects_of_model(text, file)?;
         parsed.vocabulary =
             Vocabulary::built_in().with(own).map_err(|e| Diagnostic::from(e).or_in_file(file))?;
+        parsed.add_later_constants().map_err(located)?;
         let constants = parsed.checked_model().map_err(located)?.values().len();
         check_covariance(&parsed.covariance, constants).map_err(located)?;
         check_content_hash(text).map_err(|e| e.or_in_file(file))?;
@@ -236,7 +237,27 @@ impl ModelFile {
         self.checked_model().map_err(|e| e.or_in_file(file))
     }
 
-    fn checked_model(&self) -> Result<Model, Diagnostic> {
+    /// Adds the constants that effects did not have in earlier versions, with the values that stand for them.
+    fn add_later_constants(&mut self) -> Result<(), Diagnostic> {
+        let model = self.with_zeros()?;
+        for (i, (name, unit)) in model.names().into_iter().enumerate() {
+            let is_given = self.constants.get(i).is_some_and(|given| given.name == name);
+            let (Some(value), false) = (model.otherwise(i), is_given || i > self.constants.len()) else {
+                continue;
+            };
+            self.constants.insert(i, Constant { name, value, unit: unit.to_owned() });
+            for row in self.covariance.iter_mut().filter(|row| row.len() >= i) {
+                row.insert(i, 0.0);
+            }
+            if self.covariance.len() >= i {
+                self.covariance.insert(i, vec![0.0; self.constants.len()]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the model of the listed terms, whose constants are zero.
+    fn with_zeros(&self) -> Result<Model, Diagnostic> {
         check_frame(&self.frame)
             .and_then(|()| check_noise(&self.noise))
             .and_then(|()| check_beyond_range(self.beyond_range))?;
@@ -256,6 +277,11 @@ impl ModelFile {
                 model = model.with_discrepancy(Discrepancy { term: i, value, sd, factor });
             }
         }
+        Ok(model)
+    }
+
+    fn checked_model(&self) -> Result<Model, Diagnostic> {
+        let mut model = self.with_zeros()?;
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
         let needed = model.values().len();
         let mismatch = || {
@@ -458,6 +484,34 @@ mod tests {
             let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
             assert!(error.starts_with("model.toml:") && error.contains(": noise.walk_N = "), "{error}");
         }
+    }
+
+    /// Models of earlier versions lack a constant that an effect has now, and the rows of their covariance have no number
+    /// for it.
+    #[test]
+    fn models_without_a_later_constant_are_read() {
+        let effect = crate::effects::effect_named("run_in").unwrap();
+        let rows = crate::test_session::session_with(3, &[(Term::named(effect), &[0.3, 2.5, 1.0])]);
+        let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+        let mut file = ModelFile::new(&calibration.augmented);
+        let at = file.constants.iter().position(|constant| constant.name == "run_in.q").unwrap();
+        file.constants[at].value = 0.0;
+        file.covariance.iter_mut().for_each(|row| row[at] = 0.0);
+        file.covariance[at].fill(0.0);
+        let now = ModelFile::parse(&file.to_text().unwrap(), "model.toml").unwrap();
+        assert_eq!(now, file);
+        file.constants.remove(at);
+        for row in &mut file.covariance {
+            row.remove(at);
+        }
+        file.covariance.remove(at);
+        let earlier = ModelFile::parse(&file.to_text().unwrap(), "model.toml").unwrap();
+        assert_eq!(earlier, now);
+        let predicted = |file: &ModelFile| file.predict(&rows[..12], Session::New, "model.toml").unwrap();
+        assert_eq!(predicted(&earlier), predicted(&now));
+        file.constants.remove(at - 1);
+        let error = ModelFile::parse(&file.to_text().unwrap(), "model.toml").unwrap_err();
+        assert!(error.problem().contains("finite constants"), "{error}");
     }
 
     /// An effect over a covariate that a row lacks would be predicted at an invented value.

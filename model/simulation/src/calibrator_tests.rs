@@ -4,7 +4,7 @@ use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::evidence::{Evidence, Fitted};
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_calibration::{Estimate, calibrate};
+use pinswitch_calibration::{Estimate, Verdict, calibrate};
 
 use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 use crate::plan::{EffectPlan, NoisePlan, Plan, Protocol};
@@ -109,6 +109,20 @@ fn scatter_is_not_attributed() {
         let case = Case { every_noise: true, ..study_cases().into_iter().find(is_meant).unwrap() };
         let outcome = run_case(&case, seed).unwrap();
         assert!(outcome.exact, "{name}: {:?}", outcome.named);
+    }
+}
+
+/// Run-in that decays as a hyperbola left structure over the repetition beside its exponential.
+#[test]
+fn hyperbolic_run_in_leaves_no_structure() {
+    for plan in [Plan { seed: 7, ..Plan::default() }, Plan { seed: 8, ..Plan::randomised() }] {
+        let effect = EffectPlan { id: "run_in".to_owned(), values: vec![0.3, 1.5, 1.0], form: 1 };
+        let plan = Plan { effects: vec![effect], ..plan };
+        let report = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1).unwrap().report;
+        let ids: Vec<&str> = report.effects.iter().map(|effect| effect.id.as_str()).collect();
+        assert_eq!((report.verdict, ids), (Verdict::Attributed, vec!["run_in"]), "{}", plan.seed);
+        let [least, most] = report.effects[0].parameters["k"].ci95;
+        assert!((least..most).contains(&0.3), "{:?}", report.effects[0]);
     }
 }
 

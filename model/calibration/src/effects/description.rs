@@ -57,17 +57,41 @@ pub struct Parameter {
     pub unit: Cow<'static, str>,
     /// Bounds of a shape; `None` for a size, which is free.
     pub bounds: Option<(f64, f64)>,
+    /// Value where it is not given, as in plans and models of earlier versions; only the last constants of an effect may have
+    /// one.
+    pub otherwise: Option<f64>,
 }
 
 impl Parameter {
     /// Returns a size: unbounded, and the effect vanishes at zero.
     pub const fn free(name: &'static str, unit: &'static str) -> Self {
-        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), bounds: None }
+        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), bounds: None, otherwise: None }
     }
 
     /// Returns a shape within bounds.
     pub const fn bounded(name: &'static str, unit: &'static str, least: f64, most: f64) -> Self {
-        Self { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), bounds: Some((least, most)) }
+        Self {
+            name: Cow::Borrowed(name),
+            unit: Cow::Borrowed(unit),
+            bounds: Some((least, most)),
+            otherwise: None,
+        }
+    }
+
+    /// Returns a shape within bounds that has a value where it is not given.
+    pub const fn bounded_or(
+        name: &'static str,
+        unit: &'static str,
+        least: f64,
+        most: f64,
+        otherwise: f64,
+    ) -> Self {
+        Self {
+            name: Cow::Borrowed(name),
+            unit: Cow::Borrowed(unit),
+            bounds: Some((least, most)),
+            otherwise: Some(otherwise),
+        }
     }
 }
 

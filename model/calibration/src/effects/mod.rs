@@ -244,7 +244,10 @@ mod tests {
             );
             assert!(!description.experiment.is_empty() && description.formula.len() > 8);
             let constants = usize::from(description.study.size.is_some()) + description.study.shapes.len();
-            assert_eq!(constants, description.parameters.len(), "{}", description.id);
+            let is_needed = |parameter: &&Parameter| parameter.otherwise.is_none();
+            let needed = description.parameters.iter().filter(is_needed).count();
+            assert_eq!(constants, needed, "{}", description.id);
+            assert!(description.parameters.iter().take(needed).all(|p| is_needed(&p)), "{}", description.id);
         }
     }
 

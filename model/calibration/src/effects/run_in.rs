@@ -9,7 +9,13 @@ use super::{
 /// Entry in the catalogue.
 pub(super) static EFFECT: FormulaEffect = FormulaEffect::new(
     DESCRIPTION,
-    &[&[0.2, 1.0, 1.0], &[0.2, 2.5, 1.0], &[0.2, 6.0, 1.0], &[0.2, 2.5, 0.0]],
+    &[
+        &[0.2, 1.0, 1.0, 0.02],
+        &[0.2, 2.5, 1.0, 0.02],
+        &[0.2, 6.0, 1.0, 0.02],
+        &[0.2, 2.5, 0.0, 0.02],
+        &[0.2, 1.5, 1.0, 1.0],
+    ],
 );
 
 const DESCRIPTION: Description<'static> = Description {
@@ -17,15 +23,17 @@ const DESCRIPTION: Description<'static> = Description {
     side: Side::Switch,
     covariate: Covariate::Repetition,
     stage: Stage::ScaledFriction,
-    formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half (c = 1: it settles again there)",
+    formula: "mu_s (1 + k (1 + q (r - 1)/r0)^(-1/q)), times c in the concentric half (c = 1: it settles again there)",
     written: Written::factor(
         ActsOn::MuSilicone,
-        "k*exp(-(repetition - 1)/r0) * ((direction < 0) + c*(direction > 0))",
+        "k*(1 + max(q, 1e-6)*(repetition - 1)/r0)^(-1/max(q, 1e-6)) * ((direction < 0) + c*(direction > 0))",
     ),
     parameters: &[
         Parameter::free("k", "1"),
         Parameter::bounded("r0", "1", 0.5, 12.0),
         Parameter::bounded("c", "1", -0.05, 1.05),
+        // General-order kinetics: exponential at 0, hyperbolic at 1.
+        Parameter::bounded_or("q", "1", -0.05, 1.05, 0.0),
     ],
     // Friction is higher before it settles.
     one_sided: true,

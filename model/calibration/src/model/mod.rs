@@ -55,6 +55,14 @@ impl Term {
         }
     }
 
+    /// Returns the values of its constants where they are not given.
+    fn otherwise(&self) -> Vec<Option<f64>> {
+        match self {
+            Term::Named(effect) => effect.parameters().iter().map(|p| p.otherwise).collect(),
+            Term::Structure(_) => vec![None],
+        }
+    }
+
     /// Returns the bounds of its constants; `None` for sizes.
     fn bounds(&self) -> Vec<Option<(f64, f64)>> {
         match self {
@@ -164,11 +172,13 @@ impl Model {
         self
     }
 
-    /// Adds a term whose constants have these values.
+    /// Adds a term whose constants have these values; the last ones may be left out where the effect has values for them.
     #[must_use]
     pub fn with_term(&self, term: Term, values: &[f64]) -> Self {
         let mut model = self.clone();
-        for (bounds, value) in term.bounds().into_iter().zip(values) {
+        let otherwise = term.otherwise();
+        let others = otherwise.iter().skip(values.len()).flatten();
+        for (bounds, value) in term.bounds().into_iter().zip(values.iter().chain(others)) {
             model.coordinates.push(to_coordinate(*value, bounds));
             model.priors.push(match bounds {
                 Some(_) => Prior { mean: 0.0, sd: 1.6 },
@@ -304,6 +314,12 @@ impl Model {
         let Some(beyond) = index.checked_sub(self.baseline_len()) else { return (0.0, f64::INFINITY) };
         let bounds: Vec<_> = self.terms.iter().flat_map(Term::bounds).collect();
         bounds.get(beyond).copied().flatten().unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
+    }
+
+    /// Returns the value of a constant where it is not given.
+    pub(crate) fn otherwise(&self, index: usize) -> Option<f64> {
+        let beyond = index.checked_sub(self.baseline_len())?;
+        self.terms.iter().flat_map(Term::otherwise).nth(beyond).flatten()
     }
 
     /// Returns the value of a constant by its name.

@@ -281,7 +281,9 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
         return Err(vocabulary.unknown(&planned.id).with_location(at("id", id())));
     };
     let names: Vec<&str> = effect.parameters().iter().map(|p| &*p.name).collect();
-    if names.len() != planned.values.len() {
+    let needed = effect.parameters().iter().filter(|p| p.otherwise.is_none()).count();
+    if !(needed..=names.len()).contains(&planned.values.len()) {
+        let (names, optional) = names.split_at(needed);
         let needed = pluralise(names.len(), "value");
         let location = match planned.values.as_slice() {
             [] => at("id", id()),
@@ -293,7 +295,10 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
             format!("{problem}, found {}", planned.values.len()),
         )
         .with_location(location)
-        .with_help("give its constants in this order"));
+        .with_help(match optional {
+            [] => "give its constants in this order".to_owned(),
+            _ => format!("give its constants in this order; {} may follow", optional.join(", ")),
+        }));
     }
     for (i, value) in planned.values.iter().enumerate() {
         if let Some(problem) = constant_problem(&*effect, i, *value) {

@@ -131,6 +131,10 @@ mod tests {
             ("[columns]\nspecimen = true", "unknown field"),
             ("[[effects]]\nid = \"gravity\"", "use one of"),
             ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "run_in needs 3 values (k, r0, c), found 1"),
+            (
+                "[[effects]]\nid = \"run_in\"\nvalues = [0.2, 2.0, 1.0, 0.0, 1.0]",
+                "run_in needs 3 values (k, r0, c), found 5",
+            ),
             ("colour = 1", "plan.toml:1:1: unknown field"),
         ];
         for (text, expected) in cases {

@@ -132,7 +132,7 @@ impl TwinContact {
                 ("run_in", 2) => silicone *= 1.0 + k * (-(at.series_repetition - 1.0) / shape).exp(),
                 ("run_in", _) => {
                     let restart = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
-                    silicone *= 1.0 + restart * k * (-(at.repetition - 1.0) / shape).exp();
+                    silicone *= 1.0 + restart * k * settled(at.repetition - 1.0, shape, e.values.get(3));
                 }
                 ("wear_drift", 1) => both *= 1.0 + k * at.travel_share,
                 ("wear_drift", 2) => both *= 1.0 + k * at.time_share,
@@ -201,6 +201,14 @@ impl TwinContact {
             }
             _ => 1.0 + k * mean,
         }
+    }
+}
+
+/// Returns what remains of run-in after a number of repetitions: exponential decay, or slower decay of an order above one.
+fn settled(repetitions: f64, r0: f64, order: Option<&f64>) -> f64 {
+    match order {
+        Some(q) if *q > 0.0 => (1.0 + q * repetitions / r0).powf(-1.0 / q),
+        _ => (-repetitions / r0).exp(),
     }
 }
 

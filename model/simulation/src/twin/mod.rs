@@ -168,6 +168,24 @@ mod tests {
         }
     }
 
+    /// Run-in of the order 1 in the fitter is hyperbolic decay in the twin, and between them the two agree.
+    #[test]
+    fn orders_of_run_in_match_the_fitter() {
+        let effect = effect_named("run_in").unwrap();
+        for (values, form, order) in [(vec![0.4, 1.5, 1.0], 1, 1.0), (vec![0.4, 1.5, 0.2, 0.5], 0, 0.5)] {
+            let mut plan = Plan::randomised();
+            plan.effects.push(EffectPlan { id: "run_in".to_owned(), values: values.clone(), form });
+            let rows = crate::protocol::rows(&plan, &mut rand::SeedableRng::seed_from_u64(3));
+            let frame = Frame::new(&rows);
+            let fitted = [&values[..3], &[order]].concat();
+            let model = Model::baseline(frame.clone()).with_term(Term::named(effect), &fitted);
+            let fitters = model.predict(&frame.points(&rows).unwrap());
+            let twins = readings(&plan, &rows, &SessionTraits::default());
+            let worst = twins.iter().zip(&fitters).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-3, "{values:?}: {worst} N");
+        }
+    }
+
     /// Every other form differs from form 0 by less than 1.5 times the effect.
     #[test]
     fn other_forms_differ_from_the_first() {

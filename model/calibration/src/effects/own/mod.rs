@@ -152,6 +152,7 @@ impl Described {
             name: Cow::Owned(p.name.clone()),
             unit: Cow::Owned(p.unit.clone()),
             bounds: p.bounds,
+            otherwise: None,
         };
         let EffectDefinition { acts_on, combine, formula: text, .. } = definition;
         Self {

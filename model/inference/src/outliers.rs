@@ -56,7 +56,7 @@ pub struct OutlyingSeries {
 pub struct OutlyingReading {
     /// Row of the reading.
     pub row: usize,
-    /// Reading minus its expectation from all others.
+    /// Reading minus its expectation from all readings.
     pub offset: f64,
     /// Scale of the noise of a reading.
     pub sd: f64,

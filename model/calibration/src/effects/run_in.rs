@@ -23,7 +23,7 @@ const DESCRIPTION: Description<'static> = Description {
     side: Side::Switch,
     covariate: Covariate::Repetition,
     stage: Stage::ScaledFriction,
-    formula: "mu_s (1 + k (1 + q (r - 1)/r0)^(-1/q)), times c in the concentric half (c = 1: it settles again there)",
+    formula: "mu_s (1 + g k (1 + q (r - 1)/r0)^(-1/q)), g = 1 eccentric, c concentric (c = 1: it settles again there)",
     written: Written::factor(
         ActsOn::MuSilicone,
         "k*(1 + max(q, 1e-6)*(repetition - 1)/r0)^(-1/max(q, 1e-6)) * ((direction < 0) + c*(direction > 0))",

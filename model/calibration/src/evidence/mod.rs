@@ -62,7 +62,7 @@ pub struct Evidence {
     /// Index in the table of each row of the problem.
     source: Vec<usize>,
     points: Vec<Point>,
-    /// Number of the series of each row of the problem, whose series may be blocks of a long one.
+    /// Number of the series of each row of the problem.
     series: Vec<usize>,
     readings: Vec<f64>,
     /// Session and specimen of each row of the problem.

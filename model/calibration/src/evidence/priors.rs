@@ -25,7 +25,7 @@ const LIMIT_MARGIN_N: f64 = 0.1;
 
 /// Prior standard deviation of a constant of a shape about its start, as a share of its range.
 const SHIFT_SHARE: f64 = 0.25;
-/// The same in logarithms, for a constant whose bounds have at least this ratio.
+/// The same in logarithms, for a constant whose bounds have a larger ratio than this.
 const LOG_SHIFT_SHARE: f64 = 1.0 / 6.0;
 const LOG_RANGE: f64 = 5.0;
 

@@ -23,6 +23,9 @@ const MOST_STEP: f64 = 1.2;
 const LOG_RANGE: (f64, f64) = (-12.0, 8.0);
 /// Times that a step is halved before the search gives up.
 const HALVINGS: usize = 3;
+/// Information that is added where no shorter Newton step gains (Levenberg and Marquardt): scales that the readings do not
+/// separate make a step long, and its limited components are another direction.
+const MORE_DAMPING: [f64; 4] = [0.0, 1.0, 10.0, 100.0];
 /// Gain in nats below which a step is the last one.
 const CONVERGED: f64 = 0.02;
 
@@ -86,11 +89,7 @@ impl ScaleProblem<'_> {
     pub(crate) fn maximum(&self, mode: &Mode, steps: usize) -> Option<ScalePoint> {
         let mut point = self.at(mode.scales, &mode.log_sd)?;
         for _ in 0..steps {
-            let Some((step, expected_gain)) = self.newton_step(&point) else { break };
-            if expected_gain < CONVERGED {
-                break;
-            }
-            let Some(better) = self.line_search(&point, &step) else { break };
+            let Some(better) = self.ascend(&point) else { break };
             let gain = better.log_posterior - point.log_posterior;
             point = better;
             if gain < CONVERGED {
@@ -128,13 +127,22 @@ impl ScaleProblem<'_> {
         None
     }
 
-    /// Returns the Newton step of all scales, the noise's, then the components', and its expected
-    /// gain.
-    fn newton_step(&self, point: &ScalePoint) -> Option<(Vec<f64>, f64)> {
+    /// Takes a Newton step of all scales, with more damping if none gains; `None` if little is expected of it.
+    fn ascend(&self, point: &ScalePoint) -> Option<ScalePoint> {
         let Slopes { gradient, information, .. } = self.slopes(point);
-        let step = information.cholesky()?.solve(&gradient);
-        let gain = 0.5 * step.dot(&gradient);
-        gain.is_finite().then(|| (step.iter().copied().collect(), gain))
+        for damping in MORE_DAMPING {
+            let damped = &information + DMatrix::identity(gradient.len(), gradient.len()) * damping;
+            let Some(factors) = damped.cholesky() else { continue };
+            let step = factors.solve(&gradient);
+            let gain = 0.5 * step.dot(&gradient);
+            if !gain.is_finite() || gain < CONVERGED {
+                return None;
+            }
+            if let Some(better) = self.line_search(point, step.as_slice()) {
+                return Some(better);
+            }
+        }
+        None
     }
 
     /// Returns the slopes of the log posterior in the logarithms of the scales.

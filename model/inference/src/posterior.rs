@@ -60,6 +60,8 @@ pub struct Posterior {
     pub excluded: Vec<bool>,
     /// Reported members.
     pub reported: Vec<Reported>,
+    /// Fits of the best hypothesis without one of its members each.
+    reductions: BTreeMap<Member, Fit>,
     /// Effects that are not reported and change some reading that the best hypothesis does not absorb.
     pub candidates: Vec<Candidate>,
     /// Series and readings with gross errors under the best hypothesis.
@@ -97,6 +99,8 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let total = log_sum_exp(&window.iter().map(|fit| fit.score).collect::<Vec<f64>>());
     let probabilities: Vec<f64> = window.iter().map(|fit| libm::exp(fit.score - total)).collect();
     let reported = reported(problem, &window, &probabilities);
+    let reduction = |member| Some((member, search.fit_of(&best.hypothesis.without(member))?.clone()));
+    let reductions = best.hypothesis.members().filter_map(reduction).collect();
     // The baseline alone is a start for other hypotheses, which are scored later.
     let is_baseline = options.members == 0;
     let candidates = if is_baseline { Vec::new() } else { candidates(problem, best, &reported) };
@@ -115,6 +119,7 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
         baseline,
         excluded,
         reported,
+        reductions,
         candidates,
         outliers,
         expected_error,
@@ -172,6 +177,9 @@ fn candidates(problem: &Problem, fit: &Fit, reported: &[Reported]) -> Vec<Candid
     let mut candidates: BTreeMap<usize, Candidate> = BTreeMap::new();
     for addition in additions {
         let (Member::Effect(effect), Some(size)) = (addition.element.member, addition.size) else { continue };
+        if size.is_absorbed() {
+            continue;
+        }
         let new = Candidate { effect, shape: addition.element.form, log_odds: addition.gain, size };
         let known = candidates.entry(effect).or_insert(new);
         let log_odds = known.log_odds.max(new.log_odds);
@@ -264,10 +272,9 @@ impl Posterior {
         Some(SizeEstimate { mean, sd: square.sqrt(), interval: [quantile(0.025), quantile(0.975)] })
     }
 
-    /// Fits the best hypothesis without a member, from its own mode.
-    pub fn best_without(&self, problem: &Problem, member: Member) -> Option<Fit> {
-        let best = self.window.first()?;
-        Fit::new(problem, &best.hypothesis.without(member), Start::at(best, None))
+    /// Returns the fit of the best hypothesis without a member.
+    pub fn best_without(&self, member: Member) -> Option<&Fit> {
+        self.reductions.get(&member)
     }
 
     /// Returns the function of a kernel at each row, in the unit of its channel, under the best
@@ -298,6 +305,11 @@ pub fn best_additions(problem: &Problem, fit: &Fit, effects: &[usize], most: usi
 }
 
 impl Fit {
+    /// Fits its hypothesis without a member, from its own mode; `None` if the readings are not finite there.
+    pub fn without(&self, problem: &Problem, member: Member) -> Option<Self> {
+        Self::new(problem, &self.hypothesis.without(member), Start::at(self, None))
+    }
+
     /// Fits a hypothesis from scratch without the rows that are `excluded`, a list that may be empty;
     /// `None` if its readings are not finite at any mode.
     pub fn of_hypothesis(problem: &Problem, hypothesis: &Hypothesis, excluded: &[bool]) -> Option<Self> {

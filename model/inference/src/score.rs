@@ -19,8 +19,8 @@ use crate::variance_gain::VarianceGain;
 
 /// Prior standard deviation of the sizes of a fit for scores, in typical sizes: nearly free.
 const FREE_SIZE_SD: f64 = 100.0;
-/// Share of its squared norm below which a column is explained by the fit, and gets no score.
-const LEAST_SHARE: f64 = 2e-3;
+/// Share of its squared norm below which what the fit leaves of a column is rounding. Above, the noise decides whether it shows.
+const ROUNDING_SHARE: f64 = 1e-9;
 /// Smallest start of a one-sided size, as a share of the typical one.
 const LEAST_START: f64 = 0.05;
 
@@ -53,9 +53,19 @@ pub struct SizeLimits {
     pub relevant: f64,
     /// Expected gain of the score if the effect had its smallest relevant size.
     pub expected_gain: f64,
+    /// Share of the squared norm of its column that the fit leaves.
+    pub share: f64,
 }
 
+/// Share below which the fit absorbs an effect: limits of its size would be those of the linearisation.
+const ABSORBED_SHARE: f64 = 2e-3;
+
 impl SizeLimits {
+    /// Returns whether the fit has nearly the same column, so that the table sets no limits.
+    pub fn is_absorbed(&self) -> bool {
+        self.share < ABSORBED_SHARE
+    }
+
     /// Returns the 95 % interval of the size.
     pub fn interval(&self) -> [f64; 2] {
         [self.size - NORMAL_95 * self.sd, self.size + NORMAL_95 * self.sd]
@@ -211,7 +221,7 @@ impl<'a> Scores<'a> {
         additions
     }
 
-    /// Returns the gain of an effect; `None` if the fit explains its column.
+    /// Returns the gain of an effect; `None` if the fit has the same column.
     fn effect_gain(
         &self,
         effect: usize,
@@ -220,12 +230,13 @@ impl<'a> Scores<'a> {
         score: &DVector<f64>,
     ) -> Option<EffectGain> {
         let (s, u) = (information[(0, 0)], score[0]);
-        if s < LEAST_SHARE * candidate.gram[(0, 0)] {
+        if s < ROUNDING_SHARE * candidate.gram[(0, 0)] {
             return None;
         }
         let prior = &self.problem.space.effects[effect];
         let relevant = 1.0 / candidate.relevance.max(1e-300);
-        let mut limits = SizeLimits { size: u / s, sd: 1.0 / s.sqrt(), relevant, expected_gain: 0.0 };
+        let share = s / candidate.gram[(0, 0)];
+        let mut limits = SizeLimits { size: u / s, sd: 1.0 / s.sqrt(), relevant, expected_gain: 0.0, share };
         let Some(typical) = prior.typical_size else {
             // The whole effect has size 1; if that is irrelevant, the data need not exclude it.
             if limits.relevant > 1.0 {

@@ -33,7 +33,7 @@ pub struct SearchOptions {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { window: 7.0, expansions: 6, width: 6, members: 5, thinned_above: 4000 }
+        Self { window: 7.0, expansions: 6, width: 6, members: 8, thinned_above: 4000 }
     }
 }
 
@@ -52,6 +52,8 @@ const THINNING_LOSS: f64 = 1.0;
 const MOST_FORMS: usize = 8;
 /// Exchanges that are fitted for each member.
 const EXCHANGES: usize = 4;
+/// Largest number of expansions.
+const MOST_EXPANSIONS: usize = 24;
 /// Hypotheses near the best one that are fitted again.
 const MOST_POLISHED: usize = 6;
 
@@ -134,9 +136,11 @@ impl<'a> Search<'a> {
             self.start_from_usual_effects();
         }
         let mut expanded = BTreeSet::new();
-        for _ in 0..self.options.expansions {
+        // Beyond that number only the best hypothesis is expanded: a search ends with one from which no step leads higher.
+        while expanded.len() < MOST_EXPANSIONS {
             let Some(best) = self.best_score() else { break };
-            let least = best - self.selectivity.expansion;
+            let is_wide = expanded.len() < self.options.expansions;
+            let least = if is_wide { best - self.selectivity.expansion } else { best };
             let near = self.ranked().into_iter().filter(|fit| fit.score >= least);
             let Some(fit) = near.into_iter().find(|fit| !expanded.contains(&fit.hypothesis)).cloned() else {
                 // Another autoregression may have changed the ranks.
@@ -352,17 +356,27 @@ impl<'a> Search<'a> {
         for fit in &near {
             self.fit_again(&fit.hypothesis, fit, true);
         }
-        let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) else { return };
-        if !self.selectivity.is_thorough {
-            return;
-        }
-        for member in best.hypothesis.members() {
-            let reduced = best.hypothesis.without(member);
-            self.fit_again(&reduced, &best, false);
-            if self.fits.get(&reduced).is_none_or(|fit| fit.score < best.score - self.options.window) {
-                self.fit_again(&reduced, &best, true);
+        // One without a member may be better, and is the best then.
+        let mut reduced_before = BTreeSet::new();
+        while let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) {
+            if !reduced_before.insert(best.hypothesis.clone()) {
+                break;
+            }
+            for member in best.hypothesis.members() {
+                let reduced = best.hypothesis.without(member);
+                self.fit_again(&reduced, &best, false);
+                let known = self.fits.get(&reduced);
+                let is_far = known.is_none_or(|fit| fit.score < best.score - self.options.window);
+                if self.selectivity.is_thorough && is_far {
+                    self.fit_again(&reduced, &best, true);
+                }
             }
         }
+    }
+
+    /// Returns the fit of a hypothesis, if there is one.
+    pub(crate) fn fit_of(&self, hypothesis: &Hypothesis) -> Option<&Fit> {
+        self.fits.get(hypothesis)
     }
 }
 

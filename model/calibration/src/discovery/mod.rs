@@ -54,7 +54,7 @@ pub(crate) fn draw_form(
     let channel = evidence.channel(member)?;
     let candidates = numbered(&library(covariate, frame), covariate, channel);
     let (best, rivals, with_forms) = best_form(evidence, member, vocabulary, &candidates, rows, seed)?;
-    let reduced = posterior.best_without(evidence.problem(), member)?.log_evidence;
+    let reduced = posterior.best_without(member)?.log_evidence;
     let by_structure = posterior.window.first()?.log_evidence - reduced;
     let explained = best.fit.log_evidence - reduced;
     if explained <= 0.0 {
@@ -93,8 +93,9 @@ pub(crate) fn draw_form(
         })
         .collect();
     // The prior odds of a structure are those of its formula.
-    let in_model =
-        best.fit.log_evidence >= posterior.window.first()?.log_evidence && !kernel.is_session_bound;
+    let in_model = best.fit.log_evidence >= posterior.window.first()?.log_evidence
+        && !kernel.is_session_bound
+        && needs_every_effect(&with_forms, &best);
     Some(DrawnForm {
         report: FormReport {
             shape,
@@ -127,6 +128,17 @@ impl BestForm {
         let is_dip = self.candidate.form.shape == "bump" && size.is_some_and(|size| size < 0.0);
         (if is_dip { "dip" } else { self.candidate.form.shape }).to_owned()
     }
+}
+
+/// Returns whether a formula needs all effects beside it. One that made up for what the basis of the structure leaves has no
+/// size beside the formula, and its report would contradict the model.
+fn needs_every_effect(with_forms: &Evidence, best: &BestForm) -> bool {
+    let is_needed = |member: Member| {
+        let without = best.fit.without(with_forms.problem(), member);
+        without.is_none_or(|without| without.score < best.fit.score)
+    };
+    let effects = best.fit.hypothesis.members().filter(|member| matches!(member, Member::Effect(_)));
+    effects.into_iter().all(is_needed)
 }
 
 /// Fits the formulas in place of a structure. Returns the best one, its rivals, and the posterior of a

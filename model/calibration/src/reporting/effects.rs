@@ -21,9 +21,9 @@ pub(super) fn effects(findings: &Findings<'_>, augmented: &ModelReport) -> Vec<E
 fn effect_report(findings: &Findings<'_>, reported: &Reported, augmented: &ModelReport) -> EffectReport {
     let evidence = findings.evidence;
     let posterior = evidence.posterior();
-    let without = posterior.best_without(evidence.problem(), reported.member);
-    let before = without.as_ref().and_then(|fit| held_out(evidence, fit)).map(HeldOut::both_n);
-    let odds = posterior.window.first().zip(without.as_ref()).map_or(MOST_ODDS, |(best, without)| {
+    let without = posterior.best_without(reported.member);
+    let before = without.and_then(|fit| held_out(evidence, fit)).map(HeldOut::both_n);
+    let odds = posterior.window.first().zip(without).map_or(MOST_ODDS, |(best, without)| {
         libm::exp((best.score - without.score).min(libm::log(MOST_ODDS)))
     });
     let effect = evidence.effect(reported.member);

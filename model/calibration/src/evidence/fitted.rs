@@ -12,8 +12,6 @@ use crate::effects::{self, Abscissa, Covariate, REFERENCE_LOAD_N, Shape};
 use crate::model::{Discrepancy, Model, Noise, Spread, Term, Wandering};
 use crate::table::Point;
 
-/// Step of a shift of a shape for its finite difference.
-const SHIFT_STEP: f64 = 1e-4;
 /// Most nodes of a table.
 const MOST_NODES: usize = 128;
 
@@ -100,11 +98,10 @@ impl Evidence {
             places.push((first, Coefficient::Size(sized.effect), slope / model.value(first).1));
         }
         for (i, coordinate) in (first + 1..model.coordinates.len()).enumerate() {
-            let Some(shift) = sized.shifts.get(i) else { break };
-            let mut moved = *sized;
-            moved.shifts[i] = shift + SHIFT_STEP;
-            let slope = (prior.values(&moved)[i + 1] - values[i + 1]) / SHIFT_STEP;
-            let slope = slope / model.value(coordinate).1.max(1e-12);
+            if i >= sized.shifts.len() {
+                break;
+            }
+            let slope = prior.shift_slope(i + 1, values[i + 1]) / model.value(coordinate).1.max(1e-12);
             places.push((coordinate, Coefficient::Shape(sized.effect, i), slope));
         }
         for (i, factor) in self.setup.discrepancy_factors(prior).into_iter().enumerate() {

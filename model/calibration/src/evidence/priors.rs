@@ -103,6 +103,14 @@ impl EffectPrior {
         }
     }
 
+    /// Returns the derivative by its shift of a constant of a shape with this value; at a bound, that towards the other one.
+    pub(super) fn shift_slope(&self, constant: usize, value: f64) -> f64 {
+        let Some((low, high)) = self.effect.parameters().get(constant).and_then(|p| p.bounds) else {
+            return 0.0;
+        };
+        log_step(low, high).map_or(SHIFT_SHARE * (high - low), |step| value * step)
+    }
+
     /// Returns the constants of a shape.
     pub(super) fn shape(&self, shape: usize) -> Vec<f64> {
         self.shapes.get(shape).cloned().unwrap_or_default()
@@ -179,12 +187,16 @@ impl EffectPrior {
 /// end.
 fn shifted(start: f64, bounds: Option<(f64, f64)>, shift: f64) -> f64 {
     let Some((low, high)) = bounds else { return start };
-    let value = if low > 0.0 && high > LOG_RANGE * low {
-        start * libm::exp(shift * LOG_SHIFT_SHARE * libm::log(high / low))
-    } else {
-        start + shift * SHIFT_SHARE * (high - low)
+    let value = match log_step(low, high) {
+        Some(step) => start * libm::exp(shift * step),
+        None => start + shift * SHIFT_SHARE * (high - low),
     };
     value.clamp(low, high)
+}
+
+/// Returns the standard deviation of the logarithm of a constant within these bounds; `None` if that of itself is given.
+fn log_step(low: f64, high: f64) -> Option<f64> {
+    (low > 0.0 && high > LOG_RANGE * low).then(|| LOG_SHIFT_SHARE * libm::log(high / low))
 }
 
 /// Returns whether the typical size is a force of the paper's rig, which is larger on a rig for heavier loads. That of a

@@ -117,11 +117,11 @@ fn a_joint_determines_the_wrap() {
     // The pins at 17.9, 0 and -17.9 degrees enter one after the other, from 31.9 degrees.
     let pins: Vec<f64> = [10, 20, 40, 60].map(|i| of(i, "pins")).to_vec();
     assert_eq!(pins, [0.0, 1.0, 2.0, 3.0]);
-    // At the flexion of the layout's wrap, the gains are those of the layout.
+    // At the flexion of the layout's wrap, the gains are those of the layout, within the error of the solver.
     let at = json(folder.path(), &["finger", "joint.toml", "--joint", "63.89", "--json"]);
     let straight = share(layout["points"].as_array().unwrap().last().unwrap(), "force_difference");
     let bent = share(&at["layouts"][0]["over_joint"][1]["points"][0], "force_difference");
-    assert!(straight.iter().zip(bent).all(|(a, b)| (a - b).abs() < 1e-9), "{straight:?} {bent:?}");
+    assert!(straight.iter().zip(bent).all(|(a, b)| (a - b).abs() < 1e-7), "{straight:?} {bent:?}");
     let printed = done(folder.path(), &["-q", "finger", "joint.toml", "three-double", "--out", "a"]);
     for words in
         ["joint of jointed: at 0 to 75 deg", "moment arm", "assumed: three-double: the tendon runs straight"]

@@ -1,6 +1,6 @@
 //! An edge of a wall at one height, and the shortest segment through material between two of them.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use crate::profile::{Arc, Point2, Vector2};
 
@@ -82,31 +82,23 @@ impl Candidate {
 #[derive(Clone, Copy)]
 pub(super) struct Directions {
     middle: Vector2,
-    /// The angle, up to half a turn, with its cosine and sine.
-    half_rad: f64,
+    /// Cosine and sine of the angle, up to half a turn: there are many edges, and more pairs of them.
     cos: f64,
     sin: f64,
 }
 
 impl Directions {
-    fn within(half_rad: f64, middle_rad: f64) -> Self {
-        let half_rad = half_rad.min(PI);
-        let middle = Vector2::new(libm::cos(middle_rad), libm::sin(middle_rad));
-        Self { middle, half_rad, cos: libm::cos(half_rad), sin: libm::sin(half_rad) }
-    }
-
     /// Whether none of these is opposite to one of the others.
     pub(super) fn are_averted(&self, other: &Self) -> bool {
-        // By cosines, since this is tested for every pair of close edges.
-        self.half_rad + other.half_rad < PI
+        // The sum of both angles is less than half a turn, and the turn to the opposite direction more than that.
+        self.sin * other.cos + self.cos * other.sin > 0.0
             && -self.middle.dot(&other.middle) < self.cos * other.cos - self.sin * other.sin
     }
 }
 
-/// Angle between two directions, 0 to a half turn.
-fn angle_between(a_rad: f64, b_rad: f64) -> f64 {
-    let turn = (a_rad - b_rad).rem_euclid(TAU);
-    turn.min(TAU - turn)
+/// Returns the left of a direction.
+fn inwards(tangent: Vector2) -> Vector2 {
+    Vector2::new(-tangent.y, tangent.x)
 }
 
 impl Section {
@@ -117,23 +109,37 @@ impl Section {
     /// All directions that [`Section::faces`] accepts at any point: those close to a normal, and up to the normals of the
     /// neighbours at corners that point into the material.
     pub(super) fn directions(&self) -> Directions {
-        let angle = |direction: Vector2| libm::atan2(direction.y, direction.x);
-        let inwards = |t: Vector2| angle(Vector2::new(-t.y, t.x));
-        let (middle_rad, reach_rad) = match &self.arc {
+        let (first, last) = self.tangents();
+        let (middle, mut cos, mut sin) = match &self.arc {
             Some(arc) => {
-                let towards_centre = if arc.sweep_rad > 0.0 { PI } else { 0.0 };
-                (arc.start_rad + 0.5 * arc.sweep_rad + towards_centre, 0.5 * arc.sweep_rad.abs())
+                let half_rad = 0.5 * arc.sweep_rad;
+                let (middle_rad, reach_rad) = (arc.start_rad + half_rad, half_rad.abs() + libm::acos(FACING));
+                let outwards = Vector2::new(libm::cos(middle_rad), libm::sin(middle_rad));
+                let reach_rad = reach_rad.min(PI);
+                (-outwards * arc.sweep_rad.signum(), libm::cos(reach_rad), libm::sin(reach_rad))
             }
-            None => (inwards(self.to - self.from), 0.0),
+            None => (inwards(first), FACING, (1.0 - FACING * FACING).sqrt()),
         };
+        for (before, after, neighbour) in [(self.before, first, self.before), (last, self.after, self.after)]
+        {
+            let normal = inwards(neighbour);
+            if before.perp(&after) < 0.0 && middle.dot(&normal) < cos {
+                (cos, sin) = (middle.dot(&normal), middle.perp(&normal).abs());
+            }
+        }
+        (cos, sin) = (cos - SAME_RAD * sin, sin + SAME_RAD * cos);
+        // All directions, also for an edge without a direction.
+        if sin < 0.0 || middle == Vector2::zeros() {
+            (cos, sin) = (-1.0, 0.0);
+        }
+        Directions { middle, cos, sin }
+    }
+
+    /// Returns the tangents at both ends.
+    fn tangents(&self) -> (Vector2, Vector2) {
         let here: PlainEdge = (self.from, self.to, self.arc);
-        let corners =
-            [(self.before, tangent(&here, 0.0), self.before), (tangent(&here, 1.0), self.after, self.after)];
-        let pointed = corners.into_iter().filter(|(first, second, _)| first.perp(second) < 0.0);
-        let half_rad = pointed
-            .map(|(_, _, neighbour)| angle_between(inwards(neighbour), middle_rad))
-            .fold(reach_rad + libm::acos(FACING), f64::max);
-        Directions::within(half_rad + SAME_RAD, middle_rad)
+        let first = tangent(&here, 0.0);
+        (first, if self.arc.is_some() { tangent(&here, 1.0) } else { first })
     }
 
     /// Distance of a point from the line or circle of this edge, mm.
@@ -154,7 +160,7 @@ impl Section {
         if let Some(arc) = &self.arc {
             let towards = match &other.arc {
                 Some(o) => (o.centre - arc.centre).try_normalize(SAME_MM),
-                None => (other.to - other.from).try_normalize(SAME_MM).map(|t| Vector2::new(-t.y, t.x)),
+                None => (other.to - other.from).try_normalize(SAME_MM).map(inwards),
             };
             // Concentric arcs are parallel everywhere.
             let towards = towards.unwrap_or_else(|| (arc.point_at(0.5, 1.0) - arc.centre).normalize());
@@ -194,7 +200,6 @@ impl Section {
     /// Whether `direction` at `point` of this edge is into the material and close to the normal,
     /// or, at a corner that points into the material, between the normals of its two sides.
     fn faces(&self, point: Point2, direction: Vector2) -> bool {
-        let inwards = |t: Vector2| Vector2::new(-t.y, t.x);
         let own = match &self.arc {
             // The left of its direction: towards the centre for a counter-clockwise arc.
             Some(arc) => (arc.centre - point) * (arc.sweep_rad.signum() / arc.radius_mm),

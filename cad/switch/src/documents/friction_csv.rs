@@ -18,9 +18,12 @@ pub fn friction_csv(curve: &FrictionCurve) -> String {
             curve.band_high_n[i],
             curve.silicone_share[i],
         ];
-        let cells: Vec<_> = row.iter().map(|v| format!("{v:.4}")).collect();
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "{}", cells.join(","));
+        for (column, value) in row.iter().enumerate() {
+            let separator = if column == 0 { "" } else { "," };
+            // Writing to a string does not fail.
+            let _ = write!(text, "{separator}{value:.4}");
+        }
+        text.push('\n');
     }
     text
 }

@@ -13,7 +13,7 @@ use crate::physics::pair::Pair;
 
 /// Largest change of a derivative of the log tension in the last pass, relative to the largest
 /// derivative.
-const DERIVATIVE_TOLERANCE: f64 = 1e-8;
+const DERIVATIVE_TOLERANCE: f64 = 1e-7;
 /// Largest number of passes over shape and tension for derivatives; 5 to 8 are usual.
 pub(in crate::physics) const MAX_PASSES: usize = 60;
 

@@ -32,7 +32,7 @@ pub(super) use explicit::Explicit;
 /// Largest number of sweeps; 2 to 4 are usual. Loads that need more are left to the line search.
 const MAX_SWEEPS: usize = 24;
 /// Largest relative error of a friction exponent, estimated from the last changes of the tension.
-const EXPONENT_ERROR: f64 = 5e-9;
+const EXPONENT_ERROR: f64 = 1e-7;
 /// Assumed ratio of a change of the tension to the change before, where it is not known.
 const UNKNOWN_RATE: f64 = 0.1;
 /// Least such ratio; usual are 0.005 to 0.1.

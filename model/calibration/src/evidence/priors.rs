@@ -175,9 +175,14 @@ impl EffectPrior {
             "polygon_bending" => vec![Covariate::Condition],
             "thermal_drift" => vec![Covariate::Time],
             "adhesion" | "switching_hysteresis" | "load_cell_nonlinearity" | LIMIT => Vec::new(),
-            _ if description.covariate == Covariate::Load => vec![Covariate::Load, Covariate::Direction],
             _ if description.covariate == Covariate::Direction => vec![Covariate::Load],
-            _ => vec![Covariate::Load, description.covariate, Covariate::Direction],
+            _ => {
+                let mut along = vec![Covariate::Load, description.covariate];
+                along.dedup();
+                // A user-defined formula, such as one derived from structure, states what happens in both directions.
+                along.extend(self.is_built_in().then_some(Covariate::Direction));
+                along
+            }
         }
     }
 }

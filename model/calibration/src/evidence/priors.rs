@@ -44,6 +44,8 @@ pub(super) struct EffectPrior {
     shapes: Vec<Vec<f64>>,
     /// Reading in newtons from which the limit of the load cell is measured downwards.
     pub(super) limit_from_n: Option<f64>,
+    /// Whether its formula was derived from structure, or is tried in place of it.
+    is_derived: bool,
 }
 
 impl EffectPrior {
@@ -69,20 +71,22 @@ impl EffectPrior {
             .effects()
             .filter(|effect| is_candidate(&**effect))
             .map(|effect| {
+                let is_derived = forms.contains(effect.id()) || is_derived(vocabulary, effect.id());
                 if effect.id() == LIMIT {
                     let typical_size = Some(LIMIT_SIZE_N * force_unit);
                     let limit_from_n = Some(highest_n + LIMIT_MARGIN_N);
-                    return Self { effect, typical_size, shapes: vec![vec![]; 3], limit_from_n };
+                    return Self { effect, typical_size, shapes: vec![vec![]; 3], limit_from_n, is_derived };
                 }
                 if effect.parameters().is_empty() {
-                    return Self { effect, typical_size: None, shapes: vec![vec![]], limit_from_n: None };
+                    let shapes = vec![vec![]];
+                    return Self { effect, typical_size: None, shapes, limit_from_n: None, is_derived };
                 }
                 let (size, mut shapes) = size_and_shapes(&*effect, frame);
                 let size = size * if is_force(&*effect) { force_unit } else { 1.0 };
                 if forms.contains(effect.id()) {
                     shapes.truncate(1);
                 }
-                Self { effect, typical_size: Some(size), shapes, limit_from_n: None }
+                Self { effect, typical_size: Some(size), shapes, limit_from_n: None, is_derived }
             })
             .collect()
     }
@@ -179,12 +183,20 @@ impl EffectPrior {
             _ => {
                 let mut along = vec![Covariate::Load, description.covariate];
                 along.dedup();
-                // A user-defined formula, such as one derived from structure, states what happens in both directions.
-                along.extend(self.is_built_in().then_some(Covariate::Direction));
+                // A formula that stands for structure is alike in both directions, as that is.
+                along.extend((!self.is_derived).then_some(Covariate::Direction));
                 along
             }
         }
     }
+}
+
+/// Returns whether an effect is a user-defined one that was derived from readings.
+fn is_derived(vocabulary: &Vocabulary, id: &str) -> bool {
+    let mut own = vocabulary.own().map(|own| own.definition());
+    own.any(|definition| {
+        definition.id == id && definition.drawn_from.as_ref().is_some_and(|from| !from.is_empty())
+    })
 }
 
 /// Returns a constant of a shape that is shifted from its start by standard deviations of its prior:

@@ -294,7 +294,8 @@ mod tests {
             let value = trial.median(&configuration).unwrap()[0];
             let curve = predicted_curve(&Design::new(configuration).unwrap());
             let predicted = Transition::of(&curve).unwrap().threshold_n;
-            assert!((value / predicted - 1.0).abs() < 1e-9, "{value} {predicted}");
+            // Curves are solved to 1e-7 of the friction exponent.
+            assert!((value / predicted - 1.0).abs() < 1e-7, "{value} {predicted}");
         }
     }
 }

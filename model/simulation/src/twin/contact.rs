@@ -204,10 +204,13 @@ impl TwinContact {
     }
 }
 
+/// Order of run-in above one up to which its decay is exponential: below, `1 + q x` loses its digits.
+const LEAST_ORDER: f64 = 1e-6;
+
 /// Returns what remains of run-in after a number of repetitions: exponential decay, or slower decay of an order above one.
 fn settled(repetitions: f64, r0: f64, order: Option<&f64>) -> f64 {
     match order {
-        Some(q) if *q > 0.0 => (1.0 + q * repetitions / r0).powf(-1.0 / q),
+        Some(q) if *q > LEAST_ORDER => (1.0 + q * repetitions / r0).powf(-1.0 / q),
         _ => (-repetitions / r0).exp(),
     }
 }

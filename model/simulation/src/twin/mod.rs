@@ -172,7 +172,10 @@ mod tests {
     #[test]
     fn orders_of_run_in_match_the_fitter() {
         let effect = effect_named("run_in").unwrap();
-        for (values, form, order) in [(vec![0.4, 1.5, 1.0], 1, 1.0), (vec![0.4, 1.5, 0.2, 0.5], 0, 0.5)] {
+        let own = |q: f64| vec![0.4, 1.5, 0.2, q];
+        let orders =
+            [(vec![0.4, 1.5, 1.0], 1, 1.0), (own(0.5), 0, 0.5), (own(1e-300), 0, 0.0), (own(-0.05), 0, 0.0)];
+        for (values, form, order) in orders {
             let mut plan = Plan::randomised();
             plan.effects.push(EffectPlan { id: "run_in".to_owned(), values: values.clone(), form });
             let rows = crate::protocol::rows(&plan, &mut rand::SeedableRng::seed_from_u64(3));

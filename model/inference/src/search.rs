@@ -1,10 +1,11 @@
 //! Search of the hypotheses with the highest posterior probability.
 //!
-//! 1. Start from the best hypotheses of a search on some of the readings, if there are many. Otherwise start from nothing, and from the usual effects of the space, thinned out: effects that explain
-//!    something only together are invisible one by one.
+//! 1. Start from the best hypotheses of a search on some of the readings, if there are many. Otherwise start from nothing, and
+//!    from the usual effects of the space, thinned out: effects that explain something only together are invisible one by one.
 //! 2. Expand the best hypothesis that has not been expanded, within 3 nats of the best: score every
-//!    addition to first order, fit the best few, every removal, and the best exchanges.
-//! 3. Fit the hypotheses near the best again from their own modes.
+//!    addition to first order, fit the best few, every removal, and the best exchanges. After a number of expansions only the
+//!    best hypothesis is expanded.
+//! 3. Fit the hypotheses near the best again from their own modes, and the best one without each member.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +22,7 @@ use crate::thinning::Thinned;
 pub struct SearchOptions {
     /// Occam's window: hypotheses further below the best one, in nats, are ignored.
     pub window: f64,
-    /// Most expansions.
+    /// Expansions after which only the best hypothesis is expanded.
     pub expansions: usize,
     /// Effects that are fitted in an expansion; half as many kernels are.
     pub width: usize,
@@ -347,7 +348,7 @@ impl<'a> Search<'a> {
     }
 
     /// Fits the hypotheses near the best one again from their own modes, and the best one without
-    /// each member from the best mode.
+    /// each member from the best mode, until none of these is better.
     fn polish(&mut self) {
         let Some(best) = self.best_score() else { return };
         let ranked = self.ranked().into_iter();

@@ -3,7 +3,7 @@
 //! Each series is predicted from the others, and its residual gets the spread of a new series at
 //! the same conditions. A hypothesis counts by its probability without that
 //! series, so that it is held out of the choice of effects too. New mounts and what a session draws again
-//! (a drift) add their variance. The interval is that of a bootstrap over series and of simulated
+//! (a drift, a level) add their variance. The interval is that of a bootstrap over series and of simulated
 //! sessions, whose mounts have standard deviations drawn from their posterior.
 
 use nalgebra::DVector;
@@ -75,7 +75,7 @@ pub(crate) fn expected_error(
         .collect();
     let simulation = Simulation::new(problem, fit, linearised);
     let added = simulation.new_level_variance(&sound) + session_variance(&views, &sound);
-    let relative_squares = simulation.run(&mut random, &sound);
+    let relative_squares = simulation.run(&mut random, &sound, &views[0].1);
     let mut errors: Vec<f64> = relative_squares
         .iter()
         .map(|relative| {
@@ -101,8 +101,36 @@ pub(crate) struct SessionView {
     prediction: Vec<f64>,
     /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
     pub(crate) deviation: Vec<f64>,
-    /// Mean square by which sessions differed from the one before.
-    steps: Vec<f64>,
+    /// How sessions differed from the one before.
+    steps: Vec<Steps>,
+}
+
+/// Differences of a level of sessions from that of the session before.
+struct Steps {
+    /// Mean square of the differences, in the square of the unit of the channel.
+    square: f64,
+    /// Number of differences.
+    count: usize,
+    /// Change of each reading per unit of the level.
+    channel: Vec<f64>,
+}
+
+impl Steps {
+    /// Returns those of a curve that is constant in each session: the next session may differ from the last one as the
+    /// sessions differed from the ones before.
+    fn of_curve(curve: &[f64], channel: Vec<f64>) -> Self {
+        let steps = curve.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| *square > 0.0);
+        let (sum, count) = steps.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
+        Self { square: sum / f64::max(count as f64, 1.0), count, channel }
+    }
+
+    /// Draws the difference of a new session. The variance of few differences is known badly: its posterior, with a prior
+    /// that is flat in its logarithm, is a scaled inverse chi-squared distribution with their number as degrees of freedom.
+    fn draw(&self, random: &mut Random) -> f64 {
+        let chi_squared: f64 = (0..self.count).map(|_| random.normal().powi(2)).sum();
+        let variance = self.square * self.count as f64 / f64::max(chi_squared, f64::MIN_POSITIVE);
+        if self.count == 0 { 0.0 } else { variance.sqrt() * random.normal() }
+    }
 }
 
 impl SessionView {
@@ -125,7 +153,7 @@ impl SessionView {
                 prediction.iter_mut().zip(column.iter()).for_each(|(p, x)| *p += x * mean[i]);
             }
         }
-        let mut steps = vec![0.0; problem.len()];
+        let mut steps = Vec::new();
         for (kernel, _) in fit.hypothesis.kernels() {
             let of = &problem.space.kernels[kernel];
             if of.is_gross_error || (!of.is_session_bound && !of.is_level_of_session) {
@@ -135,8 +163,7 @@ impl SessionView {
             let curve =
                 kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
             if of.is_level_of_session {
-                let square = mean_square_step(&curve);
-                steps.iter_mut().zip(channel.iter()).for_each(|(sum, x)| *sum += square * x * x);
+                steps.push(Steps::of_curve(&curve, channel));
                 continue;
             }
             let level = curve.iter().sum::<f64>() / curve.len() as f64;
@@ -147,14 +174,11 @@ impl SessionView {
         }
         Self { prediction, deviation, steps }
     }
-}
 
-/// Returns the mean square of the steps of a curve that is constant in each session: the next session may differ from the last
-/// one as the sessions differed from the ones before.
-fn mean_square_step(curve: &[f64]) -> f64 {
-    let steps = curve.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| *square > 0.0);
-    let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-    sum / f64::max(count, 1.0)
+    /// Mean square by which a new session differs from the last one at a row.
+    fn step_square(&self, row: usize) -> f64 {
+        self.steps.iter().map(|steps| steps.square * steps.channel[row].powi(2)).sum()
+    }
 }
 
 /// Returns the mean square of what a session draws again, of the steps between sessions, and of the difference between
@@ -167,7 +191,7 @@ fn session_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f64 {
     let of_row = |row: &usize| {
         let mean = average(&|view| view.prediction[*row]);
         average(&|view| {
-            view.deviation[*row].powi(2) + view.steps[*row] + (view.prediction[*row] - mean).powi(2)
+            view.deviation[*row].powi(2) + view.step_square(*row) + (view.prediction[*row] - mean).powi(2)
         })
     };
     sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
@@ -213,20 +237,27 @@ impl<'a> Simulation<'a> {
         Self { problem, fit, linearised, redrawn }
     }
 
-    /// Returns the mean square of each session over their mean, which the expected error estimates.
-    fn run(&self, random: &mut Random, sound: &[usize]) -> Vec<f64> {
-        let square = |errors: Vec<f64>| -> f64 {
-            sound.iter().map(|row| errors[*row].powi(2)).sum::<f64>() / sound.len().max(1) as f64
+    /// Returns the mean square of each session, whose levels differ from the last ones as in `view`, over what the expected
+    /// error estimates: their mean if the variance of these differences is as it was.
+    fn run(&self, random: &mut Random, sound: &[usize], view: &SessionView) -> Vec<f64> {
+        let mean = |value: &dyn Fn(usize) -> f64| -> f64 {
+            sound.iter().map(|row| value(*row)).sum::<f64>() / sound.len().max(1) as f64
         };
+        let mut without_steps = 0.0;
         let squares: Vec<f64> = (0..SIMULATIONS)
             .map(|_| {
                 let mut errors = self.session(random);
                 self.add_new_levels(random, &mut errors);
-                square(errors)
+                without_steps += mean(&|row| errors[row].powi(2)) / SIMULATIONS as f64;
+                for steps in &view.steps {
+                    let step = steps.draw(random);
+                    errors.iter_mut().zip(&steps.channel).for_each(|(error, x)| *error += step * x);
+                }
+                mean(&|row| errors[row].powi(2))
             })
             .collect();
-        let mean = (squares.iter().sum::<f64>() / squares.len() as f64).max(1e-300);
-        squares.iter().map(|s| s / mean).collect()
+        let expected = (without_steps + mean(&|row| view.step_square(row))).max(1e-300);
+        squares.iter().map(|square| square / expected).collect()
     }
 
     /// Returns the mean square that new levels of random effects add.
@@ -288,7 +319,7 @@ impl<'a> Simulation<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{SessionView, mean_square_step, session_variance};
+    use super::{SessionView, Steps, session_variance};
     use crate::problem::Problem;
     use crate::random::Random;
     use crate::test_problem::{problem, rows, space};
@@ -296,9 +327,25 @@ mod tests {
 
     #[test]
     fn steps_between_sessions_are_counted_once_each() {
-        assert_eq!(mean_square_step(&[0.3, 0.3, 0.3]), 0.0);
-        assert_eq!(mean_square_step(&[0.0, 0.0, 0.0, 1.0, 3.0, 3.0]), (1.0 + 4.0) / 2.0);
-        assert_eq!(mean_square_step(&[]), 0.0);
+        let of = |curve: &[f64]| {
+            let steps = Steps::of_curve(curve, vec![1.0; curve.len()]);
+            (steps.square, steps.count)
+        };
+        assert_eq!(of(&[0.3, 0.3, 0.3]), (0.0, 0));
+        assert_eq!(of(&[0.0, 0.0, 0.0, 1.0, 3.0, 3.0]), ((1.0 + 4.0) / 2.0, 2));
+        assert_eq!(of(&[]), (0.0, 0));
+    }
+
+    /// Two thirds of the levels of a new session are within the tabulated quantile of Student's t distribution with as many
+    /// degrees of freedom as differences.
+    #[test]
+    fn the_step_of_a_new_session_has_the_t_distribution_of_few_steps() {
+        let mut random = Random::new(8);
+        for (count, two_thirds) in [(1, 1.732), (3, 1.152)] {
+            let steps = Steps { square: 0.25, count, channel: Vec::new() };
+            let within = (0..9000).filter(|_| steps.draw(&mut random).abs() < 0.5 * two_thirds).count();
+            assert!((5850..6150).contains(&within), "{count} steps: {within}");
+        }
     }
 
     /// Two hypotheses of equal probability that predict 1 and 3 differ by 1 from their mean; one row of two is sound.
@@ -307,7 +354,7 @@ mod tests {
         let view = |prediction, deviation, step| SessionView {
             prediction: vec![prediction, 100.0],
             deviation: vec![deviation, 100.0],
-            steps: vec![step, 100.0],
+            steps: vec![Steps { square: step, count: 1, channel: vec![1.0, 100.0] }],
         };
         let views = [(0.5, view(1.0, 0.0, 4.0)), (0.5, view(3.0, 2.0, 0.0))];
         assert_eq!(session_variance(&views, &[0]), 0.5 * 2f64.powi(2) + 0.5 * 4.0 + 1.0);

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::basis::Basis;
+use crate::cells::{BasisByCell, Cells};
 use crate::hypothesis::Element;
 use crate::marginal::Marginal;
 
@@ -70,12 +70,15 @@ impl<'a> Candidates<'a> {
     }
 
     /// Adds kernels of one basis, each with its channel, unless they change no reading.
-    pub(crate) fn add_kernels(&mut self, kernels: impl Iterator<Item = (Element, usize)>, basis: &Basis) {
-        let cells = basis.of_cells(&self.marginal.whitening.ranges, self.is_second).map(Cells::new);
+    pub(crate) fn add_kernels(
+        &mut self,
+        kernels: impl Iterator<Item = (Element, usize)>,
+        basis: &BasisByCell,
+    ) {
         for (element, channel) in kernels {
             let sensitivity = &self.channels[channel];
-            let Some(cells) = &cells else {
-                let columns = basis.times(sensitivity);
+            let Some(cells) = &basis.cells else {
+                let columns = basis.basis.times(sensitivity);
                 if columns.amax() > LEAST_ENTRY {
                     self.columns.extend_from_slice(columns.as_slice());
                     self.waits(element, 0.0, columns.ncols());
@@ -129,20 +132,6 @@ impl<'a> Candidates<'a> {
         self.whiten();
         let count = self.done.last().map_or(0, |last| last.columns.end);
         (self.done, DMatrix::from_vec(self.marginal.gram.nrows(), count, self.cross))
-    }
-}
-
-/// A basis with one row per cell.
-struct Cells {
-    rows: DMatrix<f64>,
-    /// Largest entry of each row.
-    largest: Vec<f64>,
-}
-
-impl Cells {
-    fn new(rows: DMatrix<f64>) -> Self {
-        let largest = rows.row_iter().map(|row| row.amax()).collect();
-        Self { rows, largest }
     }
 }
 
@@ -228,6 +217,7 @@ impl CellProducts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::basis::Basis;
     use crate::hypothesis::Member;
     use crate::random::Random;
     use crate::test_problem::{fitted, full_hypothesis, long_problem};
@@ -245,13 +235,14 @@ mod tests {
         let element = Element { member: Member::Kernel(0), form: 0 };
         let mut candidates = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
         let kernels = || std::iter::once((element, 1));
-        candidates.add_kernels(kernels(), &basis);
+        let by_cell = |basis| BasisByCell::new(basis, &problem.ranges, &problem.rows.direction);
+        candidates.add_kernels(kernels(), &by_cell(&basis));
         let columns = basis.times(&design.channels[1]);
         for column in columns.column_iter() {
             candidates.add_effect(element, 0.0, &column.into_owned());
         }
         let zero = Basis::from(DMatrix::zeros(problem.len(), 2));
-        candidates.add_kernels(kernels(), &zero);
+        candidates.add_kernels(kernels(), &by_cell(&zero));
         let (found, cross) = candidates.finish();
         assert_eq!(found.len(), 1 + 3);
         for (j, single) in found[1..].iter().enumerate() {

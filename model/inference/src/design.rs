@@ -319,24 +319,41 @@ fn size_sensitivity(
     slope(&rows.forward.readings_at(&mode.constants, &moved, curved), baseline, step)
 }
 
-/// Returns the change of the readings per size of an element that is added to a model, by a secant
-/// to its start; `None` if it is not finite or zero. An element replaces another form of its member.
-pub(crate) fn added_column(
-    space: &Space,
-    rows: &Rows,
-    hypothesis: &Hypothesis,
-    mode: &Mode,
-    effect: usize,
-    shape: usize,
-) -> Option<DVector<f64>> {
-    let rest = mode.sized(&hypothesis.without(Member::Effect(effect)));
-    let start = space.effects[effect].starts.get(shape).copied()?;
-    let mut with = rest.clone();
-    with.push(SizedEffect { effect, shape, size: start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
-    let curved = CurvedChannel::new(mode, space, rows, hypothesis).value;
-    let before = rows.forward.readings_at(&mode.constants, &rest, &curved);
-    let after = rows.forward.readings_at(&mode.constants, &with, &curved);
-    let column = slope(&after, &before, start);
-    let most = column.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-    (most > 1e-9 && column.iter().all(|x| x.is_finite())).then(|| DVector::from_vec(column))
+/// Changes of the readings by effects that are added to a hypothesis at a mode, or take the place of another form of a member.
+pub(crate) struct AddedColumns<'a> {
+    problem: &'a Problem,
+    hypothesis: &'a Hypothesis,
+    mode: &'a Mode,
+    curved: Vec<f64>,
+    /// Readings of the hypothesis.
+    readings: Vec<f64>,
+}
+
+impl<'a> AddedColumns<'a> {
+    pub(crate) fn new(problem: &'a Problem, hypothesis: &'a Hypothesis, mode: &'a Mode) -> Self {
+        let curved = CurvedChannel::new(mode, &problem.space, &problem.rows, hypothesis).value;
+        let forward = &problem.rows.forward;
+        let readings = forward.readings_at(&mode.constants, &mode.sized(hypothesis), &curved);
+        Self { problem, hypothesis, mode, curved, readings }
+    }
+
+    /// Returns the forms of an effect with the change of the readings per size of each, by a secant to its start, without those
+    /// of which it is not finite or zero.
+    pub(crate) fn of_effect(&self, effect: usize) -> impl Iterator<Item = (usize, DVector<f64>)> + '_ {
+        let member = Member::Effect(effect);
+        let rest = self.mode.sized(&self.hypothesis.without(member));
+        let (forward, constants) = (&self.problem.rows.forward, &self.mode.constants);
+        let is_member = self.hypothesis.contains(member);
+        let without = is_member.then(|| forward.readings_at(constants, &rest, &self.curved));
+        let starts = self.problem.space.effects[effect].starts.iter().enumerate();
+        starts.filter_map(move |(shape, start)| {
+            let mut with = rest.clone();
+            with.push(SizedEffect { effect, shape, size: *start, shifts: [0.0; MOST_SHAPE_CONSTANTS] });
+            let after = forward.readings_at(constants, &with, &self.curved);
+            let column = slope(&after, without.as_ref().unwrap_or(&self.readings), *start);
+            let most = column.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            let is_change = most > 1e-9 && column.iter().all(|x| x.is_finite());
+            is_change.then(|| (shape, DVector::from_vec(column)))
+        })
+    }
 }

@@ -105,6 +105,7 @@
 mod autoregression;
 mod basis;
 mod candidates;
+mod cells;
 mod coefficients;
 mod covariance;
 mod curved_channel;

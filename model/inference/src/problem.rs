@@ -2,10 +2,12 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use nalgebra::DVector;
 
 use crate::basis::Basis;
+use crate::cells::KernelsOfBases;
 use crate::half_t::HalfT;
 use crate::noise::NoiseReference;
 
@@ -225,6 +227,7 @@ pub struct Problem {
     pub(crate) readings: DVector<f64>,
     pub(crate) ranges: Vec<Range<usize>>,
     pub(crate) reference: NoiseReference,
+    kernels_of_bases: OnceLock<Vec<KernelsOfBases>>,
 }
 
 /// Why a problem is invalid.
@@ -283,12 +286,29 @@ impl Problem {
         expect_finite("reading", &readings)?;
         let ranges = rows.ranges();
         let reference = NoiseReference::of_readings(&readings, &rows);
-        Ok(Self { space, rows, readings: DVector::from_vec(readings), ranges, reference })
+        Ok(Self::of_parts(space, rows, DVector::from_vec(readings), ranges, reference))
     }
 
     /// Returns the space of hypotheses.
     pub fn space(&self) -> &Space {
         &self.space
+    }
+
+    /// Returns the problem of parts that agree.
+    pub(crate) fn of_parts(
+        space: Space,
+        rows: Rows,
+        readings: DVector<f64>,
+        ranges: Vec<Range<usize>>,
+        reference: NoiseReference,
+    ) -> Self {
+        Self { space, rows, readings, ranges, reference, kernels_of_bases: OnceLock::new() }
+    }
+
+    /// Returns the kernels by their bases, which the scores of every fit need.
+    pub(crate) fn kernels_of_bases(&self) -> &[KernelsOfBases] {
+        let Rows { bases, direction, .. } = &self.rows;
+        self.kernels_of_bases.get_or_init(|| KernelsOfBases::new(bases, &self.ranges, direction))
     }
 
     /// Returns the conditions of the readings.

@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::{Candidate, Candidates};
-use crate::design::{Component, Design, Role, added_column};
+use crate::design::{AddedColumns, Component, Design, Role};
 use crate::fit::Fit;
 use crate::half_t::HalfT;
 use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
@@ -123,30 +123,22 @@ impl<'a> Scores<'a> {
             ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
         let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
         let mut collected = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
-        let effects = space.effects.iter().enumerate();
-        for (index, effect) in effects.filter(|(index, _)| is_candidate(Member::Effect(*index))) {
-            for form in 0..effect.starts.len() {
+        let added = AddedColumns::new(problem, &fit.hypothesis, &fit.mode);
+        let effects = (0..space.effects.len()).filter(|index| is_candidate(Member::Effect(*index)));
+        for index in effects {
+            for (form, column) in added.of_effect(index) {
                 let element = Element { member: Member::Effect(index), form };
-                let added = added_column(space, &problem.rows, &fit.hypothesis, &fit.mode, index, form);
-                if let Some(column) = added {
-                    let relevance = relevance(&column, &problem.rows.relevant[index]);
-                    collected.add_effect(element, relevance, &column);
-                }
+                let relevance = relevance(&column, &problem.rows.relevant[index]);
+                collected.add_effect(element, relevance, &column);
             }
         }
-        let bases = &problem.rows.bases;
-        let is_shared = |a: &usize, b: &usize| match (bases[*a].first(), bases[*b].first()) {
-            (Some(a), Some(b)) => a.is_shared_with(b),
-            _ => false,
-        };
-        let kernels: Vec<usize> =
-            (0..space.kernels.len()).filter(|index| is_candidate(Member::Kernel(*index))).collect();
-        for sharing in kernels.chunk_by(is_shared) {
-            for (form, basis) in bases[sharing[0]].iter().enumerate() {
+        for group in problem.kernels_of_bases() {
+            let kernels = group.kernels.iter().filter(|kernel| is_candidate(Member::Kernel(**kernel)));
+            for (form, basis) in group.bases.iter().enumerate() {
                 let element = |kernel: &usize| {
                     (Element { member: Member::Kernel(*kernel), form }, space.kernels[*kernel].channel)
                 };
-                collected.add_kernels(sharing.iter().map(element), basis);
+                collected.add_kernels(kernels.clone().map(element), basis);
             }
         }
         let (candidates, cross) = collected.finish();

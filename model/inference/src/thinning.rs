@@ -95,7 +95,7 @@ impl Problem {
         };
         let ranges = rows.ranges();
         let readings = self.readings.select_rows(kept);
-        Self { space: self.space.clone(), rows, readings, ranges, reference: self.reference }
+        Self::of_parts(self.space.clone(), rows, readings, ranges, self.reference)
     }
 }
 

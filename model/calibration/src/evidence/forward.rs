@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use pinswitch_inference::{Constant, ForwardModel, SizedEffect};
 
+use super::formula_values::FormulaValues;
 use super::priors::EffectPrior;
-use crate::effects::{ContactState, Stage};
+use crate::effects::{AppliedFormula, ContactState, Stage};
 use crate::model::{PLAIN_MU, PRIOR_LOG_HALF_LOAD, PRIOR_LOG_PLAIN};
 use crate::table::{Condition, Frame, Point};
 
@@ -161,6 +162,17 @@ pub(super) struct FrictionModel {
     pub(super) conditions: Arc<[Condition]>,
     pub(super) baseline: Baseline,
     pub(super) priors: Arc<[EffectPrior]>,
+    /// Values of formulas at the points.
+    pub(super) formula_values: FormulaValues,
+}
+
+/// An effect of a hypothesis.
+struct Acting<'a> {
+    prior: &'a EffectPrior,
+    /// Its constants.
+    constants: Vec<f64>,
+    /// Its formula on the contact with the value at each point, if these depend on nothing but the point.
+    known: Option<(&'a AppliedFormula, Arc<[f64]>)>,
 }
 
 impl FrictionModel {
@@ -172,25 +184,24 @@ impl FrictionModel {
         factors: Factors,
         curved: &[f64],
     ) -> Vec<f64> {
-        self.evaluate_at(&self.points, constants, effects, factors, curved)
+        self.evaluate_at(&self.points, &self.formula_values, constants, effects, factors, curved)
     }
 
     fn evaluate_at(
         &self,
         points: &[Point],
+        formula_values: &FormulaValues,
         constants: &[f64],
         effects: &[SizedEffect],
         factors: Factors,
         curved: &[f64],
     ) -> Vec<f64> {
-        let mut acting: Vec<(&EffectPrior, Vec<f64>)> =
-            effects.iter().map(|e| (&self.priors[e.effect], self.priors[e.effect].values(e))).collect();
-        acting.sort_by_key(|(prior, _)| prior.effect.description().stage);
+        let acting = self.acting(points, formula_values, effects);
         let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
         let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
         let states: Vec<ContactState> =
             self.conditions.iter().map(|c| self.contact(c, mu, constants)).collect();
-        let moves = acting.iter().any(|(prior, _)| prior.effect.moves_along_a_series());
+        let moves = acting.iter().any(|acting| acting.prior.effect.moves_along_a_series());
         let mut last: Option<(&Point, f64, f64)> = None;
         points
             .iter()
@@ -204,21 +215,60 @@ impl FrictionModel {
                 }
                 let condition = &self.conditions[point.condition];
                 let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
-                for (prior, values) in &acting {
-                    prior.effect.on_contact(values, point, condition, &mut state);
+                for Acting { prior, constants, known } in &acting {
+                    match known {
+                        Some((formula, values)) => formula.apply_to_contact(values[row], &mut state),
+                        None => prior.effect.on_contact(constants, point, condition, &mut state),
+                    }
                 }
                 factors.apply(&mut state);
                 state.exponent_factor *= 1.0 + change;
                 let mut reading = state.tension_n(condition, point);
-                for (prior, values) in &acting {
-                    reading = prior.effect.on_tension(values, point, condition, reading);
+                for Acting { prior, constants, .. } in &acting {
+                    reading = prior.effect.on_tension(constants, point, condition, reading);
                 }
                 // The limit of the load cell is the last stage.
-                for (prior, values) in &acting {
-                    reading = prior.effect.on_reading(values, point, condition, reading);
+                for Acting { prior, constants, .. } in &acting {
+                    reading = prior.effect.on_reading(constants, point, condition, reading);
                 }
                 last = Some((point, change, reading));
                 reading
+            })
+            .collect()
+    }
+
+    /// Returns the effects in the order in which they act.
+    fn acting(
+        &self,
+        points: &[Point],
+        formula_values: &FormulaValues,
+        effects: &[SizedEffect],
+    ) -> Vec<Acting<'_>> {
+        let mut sorted: Vec<&SizedEffect> = effects.iter().collect();
+        sorted.sort_by_key(|sized| self.priors[sized.effect].effect.description().stage);
+        let changes_load =
+            |sized: &&SizedEffect| self.priors[sized.effect].effect.description().stage == Stage::Load;
+        // Formulas read the load after effects on it.
+        let has_given_loads = !sorted.iter().any(changes_load);
+        sorted
+            .into_iter()
+            .map(|sized| {
+                let prior = &self.priors[sized.effect];
+                let constants = prior.values(sized);
+                let formula = prior.effect.formula().filter(|f| has_given_loads && f.acts_on_contact());
+                let known = formula.map(|formula| {
+                    let value = |point: &Point| {
+                        formula.value_on_contact(
+                            &constants,
+                            point,
+                            &self.conditions[point.condition],
+                            point.load_n,
+                        )
+                    };
+                    let compute = || points.iter().map(value).collect();
+                    (formula, formula_values.of(sized.effect, &constants, compute))
+                });
+                Acting { prior, constants, known }
             })
             .collect()
     }
@@ -284,7 +334,8 @@ impl ForwardModel for FrictionModel {
     }
 
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
-        self.evaluate_at(&self.points_at_mean_time(), constants, effects, NO_CHANGE, &[])
+        let points = self.points_at_mean_time();
+        self.evaluate_at(&points, &FormulaValues::default(), constants, effects, NO_CHANGE, &[])
     }
 }
 

@@ -8,6 +8,7 @@
 mod access;
 mod covariates;
 mod fitted;
+mod formula_values;
 mod forward;
 mod priors;
 mod structure;
@@ -29,6 +30,7 @@ use pinswitch_inference::{
 };
 
 use self::covariates::{Covariates, RowLabels};
+use self::formula_values::FormulaValues;
 use self::forward::{Baseline, Channel, FrictionModel, is_of_friction};
 use self::priors::EffectPrior;
 use self::structure::Structure;
@@ -322,6 +324,7 @@ impl Setup {
             conditions: Arc::clone(&self.conditions),
             baseline: self.baseline.clone(),
             priors: Arc::clone(&self.priors),
+            formula_values: FormulaValues::default(),
         };
         if session == Session::New {
             forward.points = forward.points_at_mean_time();

@@ -32,6 +32,27 @@ impl AppliedFormula {
         &self.formula
     }
 
+    /// Returns whether it acts on the contact, and not on the tension or the reading.
+    pub(crate) fn acts_on_contact(&self) -> bool {
+        !self.acts_on.knows_tension()
+    }
+
+    /// Returns the value of a formula that acts on the contact; `load_n` is the load in newtons after effects on it.
+    pub(crate) fn value_on_contact(
+        &self,
+        k: &[f64],
+        point: &Point,
+        condition: &Condition,
+        load_n: f64,
+    ) -> f64 {
+        self.formula.value(k, &Moment { point, condition, load_n, tension_n: f64::NAN })
+    }
+
+    /// Changes the contact by the value of the formula.
+    pub(crate) fn apply_to_contact(&self, value: f64, state: &mut ContactState) {
+        written::on_contact(self.acts_on, self.combine, value, state);
+    }
+
     /// Changes the contact, if the formula acts there; `k` are the constants.
     pub(super) fn on_contact(
         &self,
@@ -40,9 +61,8 @@ impl AppliedFormula {
         condition: &Condition,
         state: &mut ContactState,
     ) {
-        if !self.acts_on.knows_tension() {
-            let moment = Moment { point, condition, load_n: state.load_n, tension_n: f64::NAN };
-            written::on_contact(self.acts_on, self.combine, self.formula.value(k, &moment), state);
+        if self.acts_on_contact() {
+            self.apply_to_contact(self.value_on_contact(k, point, condition, state.load_n), state);
         }
     }
 

@@ -4,7 +4,7 @@ use std::io::Read;
 
 use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{Report, Verdict, calibrate};
+use pinswitch_calibration::{MountReport, Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
@@ -76,5 +76,23 @@ fn named_effects_have_a_size_in_the_model() {
         let size = effect.parameters.values().next().unwrap();
         let has_size = size.ci95[0] > 0.0 || size.ci95[1] < 0.0;
         assert!(has_size || effect.probability < 0.9, "{effect:?}");
+    }
+}
+
+/// The wrap angles of two rigs of five angles are 6 degrees larger than in their tables, which changes the friction of the
+/// smallest by 13 %. No effect does that. Structure over the condition had a probability of 0.84 in one table, and mounts took
+/// the difference in the other; the verdict of both was `none`.
+#[test]
+fn what_is_there_without_a_name_is_not_nothing() {
+    for (name, reason) in [
+        ("wrap-angles-off", "friction over condition has a probability of 0.8"),
+        ("wrap-angles-off-by-mounts", "friction differs between mounts: "),
+    ] {
+        let report = third_hand(name);
+        assert_eq!((report.verdict, report.effects.len()), (Verdict::Inconclusive, 0), "{name}");
+        let reasons = report.reservations();
+        assert!(reasons.iter().any(|found| found.starts_with(reason)), "{name}: {reasons:?}");
+        let is_of_consequence = |mount: &MountReport| mount.friction.abs() >= 0.05;
+        assert!(report.mounts.iter().all(is_of_consequence), "{:?}", report.mounts);
     }
 }

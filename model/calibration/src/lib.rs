@@ -103,7 +103,7 @@ pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, ExpectedErrorReport,
     ExternalInput, Extrapolation, Fate, FormReport, FormRival, Invisible, LimitReport, ModelReport,
-    NoisePart, ProvenanceReport, Report, RivalReport, SessionReport, StructureReport, TrialOutcome,
-    TrialReport, Verdict,
+    MountReport, NoisePart, ProvenanceReport, Report, RivalReport, SessionReport, StructureReport,
+    TrialOutcome, TrialReport, Verdict,
 };
 pub use session_plan::{Answer, PlanQuestion, SessionPlan};

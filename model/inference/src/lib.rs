@@ -148,7 +148,9 @@ pub use information::information;
 pub use leave_out::leave_groups_out;
 pub use noise::{NoiseReference, Scales};
 pub use outliers::{Outliers, OutlyingReading, OutlyingSeries, SERIES_PROBABILITY};
-pub use posterior::{Candidate, Posterior, Reported, SizeEstimate, best_additions, infer};
+pub use posterior::{
+    Candidate, Posterior, REPORTED_PROBABILITY, Reported, SizeEstimate, best_additions, infer,
+};
 pub use prediction::Prediction;
 pub use problem::{
     Constant, Effect, ForwardModel, Kernel, MOST_SHAPE_CONSTANTS, Problem, ProblemError, RandomEffect, Rows,

@@ -14,7 +14,7 @@ use crate::score::{Scores, SizeLimits};
 use crate::search::{Search, SearchOptions};
 
 /// Probability above which a member of the best hypothesis is reported, with its rivals.
-const REPORTED_PROBABILITY: f64 = 0.9;
+pub const REPORTED_PROBABILITY: f64 = 0.9;
 /// The same threshold for an effect next to a kernel: the basis of a kernel is approximate, and an
 /// effect could fit what it leaves.
 const REPORTED_NEXT_TO_KERNEL: f64 = 0.99;
@@ -240,6 +240,12 @@ impl Posterior {
     /// Returns the probability of a member.
     pub fn probability(&self, member: Member) -> f64 {
         probability(&self.window, &self.probabilities, member)
+    }
+
+    /// Returns the probability of the hypotheses with a member that meets a condition.
+    pub fn probability_of_any(&self, is_meant: impl Fn(Member) -> bool) -> f64 {
+        let fits = self.window.iter().zip(&self.probabilities);
+        fits.filter(|(fit, _)| fit.hypothesis.members().any(&is_meant)).map(|(_, p)| p).sum::<f64>().min(1.0)
     }
 
     fn containing(&self, member: Member) -> impl Iterator<Item = (&Fit, f64)> {

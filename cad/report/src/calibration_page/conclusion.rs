@@ -216,7 +216,11 @@ fn inconclusive(report: &Report) -> String {
     let open = open_limits(report);
     let reason = match (open.is_empty(), report.reservations()) {
         (true, reservations) if !reservations.is_empty() => escape(&reservations.join("; ")),
-        _ => "no effect is detected, but effects of consequence are not excluded".to_owned(),
+        _ => {
+            let mounts =
+                report.mounts_in_words().map_or_else(String::new, |words| format!("; {}", escape(&words)));
+            format!("no effect is detected, but effects of consequence are not excluded{mounts}")
+        }
     };
     let mut html = format!("<p>Verdict: <b>inconclusive</b>: {reason}. Record more data.</p>");
     html.push_str(if open.is_empty() { "" } else { "<ul>" });

@@ -1,11 +1,11 @@
 //! What reports read off a posterior.
 
-use pinswitch_inference::{Kernel, Member, leave_groups_out};
+use pinswitch_inference::{Kernel, Member, REPORTED_PROBABILITY, leave_groups_out};
 
 use super::fitted::channel_of;
 use super::forward::Channel;
 use super::structure::Record;
-use super::{Evidence, Fitted};
+use super::{Evidence, Fitted, MOUNT};
 use crate::effects::{self, SharedEffect};
 use crate::table::{Frame, Point};
 
@@ -109,6 +109,16 @@ impl Evidence {
         }
     }
 
+    /// Returns the index of the random effect of the mounts, with the number and the name of each of its levels.
+    pub(crate) fn mounts(&self) -> impl Iterator<Item = (usize, usize, &str)> {
+        let effects = &self.problem.space().random_effects;
+        let of_mounts = effects.iter().position(|effect| effect.name == MOUNT && effect.levels > 0);
+        let names = self.setup.mounts.iter().enumerate();
+        of_mounts
+            .into_iter()
+            .flat_map(move |effect| names.clone().map(move |(level, name)| (effect, level, name.as_str())))
+    }
+
     /// Returns the conditions and reference values of the table.
     pub(crate) fn frame(&self) -> &Frame {
         &self.setup.frame
@@ -146,6 +156,14 @@ impl Evidence {
     /// Returns whether a member is noise, which is not reported.
     pub(crate) fn is_noise(&self, member: Member) -> bool {
         self.kernel_at(member).is_some_and(|kernel| kernel.noise_probability.is_some())
+    }
+
+    /// Returns whether the absence of structure without a name has less than the probability from which a member is reported.
+    pub(crate) fn may_have_structure(&self) -> bool {
+        let is_structure = |member: Member| {
+            matches!(member, Member::Kernel(_)) && !self.is_noise(member) && !self.is_change(member)
+        };
+        self.posterior.probability_of_any(is_structure) > 1.0 - REPORTED_PROBABILITY
     }
 
     /// Returns whether the size of an effect cannot be negative.

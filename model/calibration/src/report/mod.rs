@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_inference::REPORTED_PROBABILITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -214,6 +215,17 @@ impl BadSeries {
     }
 }
 
+/// A mount whose friction differs from that of the others by a size of consequence.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MountReport {
+    /// Name in the table; that of the condition, if the table has no column `mount`.
+    pub mount: String,
+    /// Difference of friction, as a share of it.
+    pub friction: f64,
+    /// 95 % interval of the difference.
+    pub ci95: [f64; 2],
+}
+
 /// A component of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoisePart {
@@ -343,6 +355,10 @@ pub struct Report {
     pub never_visible: Vec<String>,
     /// Series to check, such as one with a mislabelled weight.
     pub bad_series: Vec<BadSeries>,
+    /// Mounts whose friction differs by 5 % or more, the largest difference first: scatter that no member of the model
+    /// explains. None of consequence may be there for the verdict `none`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mounts: Vec<MountReport>,
     /// Tests of the user-defined effects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trials: Vec<TrialReport>,
@@ -363,7 +379,24 @@ impl Report {
         if !hidden.is_empty() {
             reasons.push(format!("the data are too few to exclude {}", hidden.join(" or ")));
         }
+        let of_structure: f64 = self.structures.iter().map(|structure| structure.probability).sum();
+        let possible = self.structures.first().filter(|_| of_structure > 1.0 - REPORTED_PROBABILITY);
+        if let Some(StructureReport { name, probability, .. }) = possible {
+            reasons.push(format!("{name} has a probability of {probability:.2}"));
+        }
+        reasons.extend(self.mounts_in_words());
         reasons
+    }
+
+    /// Describes the mounts that differ, the first three by name; `None` without any.
+    pub fn mounts_in_words(&self) -> Option<String> {
+        const NAMED: usize = 3;
+        let words = |m: &MountReport| format!("{} by {:+.0} %", m.mount, 100.0 * m.friction);
+        let named: Vec<String> = self.mounts.iter().take(NAMED).map(words).collect();
+        let more = self.mounts.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let named = named.join(", ");
+        (!named.is_empty()).then(|| format!("friction differs between mounts: {named}{more}"))
     }
 }
 

@@ -9,8 +9,8 @@ use super::{TrialOutcome, TrialReport};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// No effect is probable, and every relevant size of every effect that acts on this table is
-    /// excluded.
+    /// Neither an effect nor structure without a name is probable, every relevant size of every effect that acts on this table is
+    /// excluded, and mounts differ by less than such a size.
     None,
     /// No effect is attributed, and a relevant effect is not excluded.
     Inconclusive,

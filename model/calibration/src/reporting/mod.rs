@@ -5,6 +5,7 @@ mod changes;
 mod effects;
 mod errors;
 mod limits;
+mod mounts;
 mod noise;
 
 use pinswitch_inference::Member;
@@ -14,7 +15,7 @@ use crate::aliasing::aliasing;
 use crate::effects::Vocabulary;
 use crate::evidence::{Evidence, Fitted};
 use crate::report::{
-    DataSummary, ExpectedErrorReport, ModelReport, Report, StructureReport, TrialReport, Verdict,
+    DataSummary, ExpectedErrorReport, ModelReport, MountReport, Report, StructureReport, TrialReport, Verdict,
 };
 use crate::table::{Optional, PlateauRow};
 
@@ -24,6 +25,7 @@ use effects::effects;
 use errors::least_squares_n;
 pub(crate) use errors::{HeldOut, held_out, model_report};
 use limits::{NEVER_VISIBLE, candidates, invisible, limits, without_covariate};
+use mounts::mounts;
 use noise::{floor_n, noise_parts};
 
 /// Name and version of the format.
@@ -78,6 +80,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
             Some(StructureReport { name: named(member)?, covariate, probability: *probability })
         })
         .collect();
+    let mounts = mounts(evidence);
     Some(Report {
         schema: SCHEMA.to_owned(),
         data: DataSummary {
@@ -86,7 +89,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
             conditions: augmented.model.frame.conditions.len(),
             outliers: evidence.outliers().iter().filter(|is_out| **is_out).count(),
         },
-        verdict: verdict(evidence).in_view_of(&findings.trials),
+        verdict: verdict(evidence, &mounts).in_view_of(&findings.trials),
         adequate: adequate(&findings),
         promise_n: expected.map(|e| e.value),
         promise_baseline_n: posterior.baseline_error.filter(|_| is_supported).map(|e| e.value),
@@ -108,6 +111,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         invisible: [invisible(evidence, baseline), without_covariate(vocabulary, lacking, is_plain)].concat(),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(evidence, rows),
+        mounts,
         effects,
         trials: findings.trials,
         sessions: Vec::new(),
@@ -116,8 +120,9 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
 }
 
 /// Returns the verdict of a posterior. A change of friction between sessions or specimens is no effect
-/// that the model lacks.
-fn verdict(evidence: &Evidence) -> Verdict {
+/// that the model lacks. Mounts that differ by a size of consequence are no effect either, but something is there, as it is
+/// where structure is not improbable.
+fn verdict(evidence: &Evidence, mounts: &[MountReport]) -> Verdict {
     let posterior = evidence.posterior();
     let reported: Vec<_> = posterior.reported.iter().filter(|r| !evidence.is_change(r.member)).collect();
     let is_unnamed = |member: Member| matches!(member, Member::Kernel(_));
@@ -127,7 +132,9 @@ fn verdict(evidence: &Evidence) -> Verdict {
         Verdict::Ambiguous
     } else if !reported.is_empty() {
         Verdict::Attributed
-    } else if !posterior.candidates.is_empty() && posterior.candidates.iter().all(|c| c.size.is_excluded()) {
+    } else if posterior.candidates.is_empty() || !mounts.is_empty() || evidence.may_have_structure() {
+        Verdict::Inconclusive
+    } else if posterior.candidates.iter().all(|candidate| candidate.size.is_excluded()) {
         Verdict::None
     } else {
         Verdict::Inconclusive

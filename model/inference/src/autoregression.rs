@@ -20,7 +20,11 @@ impl Process {
         rows.sort_by_key(|row| order[*row]);
         let decay = |place: usize| match place {
             0 => 0.0,
-            _ => libm::pow(correlation, (order[rows[place]] - order[rows[place - 1]]) as f64),
+            // Most rows follow each other, which needs no power.
+            _ => match order[rows[place]] - order[rows[place - 1]] {
+                1 => correlation,
+                lag => libm::pow(correlation, lag as f64),
+            },
         };
         let states = (0..rows.len()).map(|place| (rows[place], decay(place))).collect();
         Self { share, states, sd }

@@ -168,15 +168,21 @@ impl<'a> Noise<'a> {
 
     fn repetition_derivative(&self, range: &Range<usize>, scale: usize) -> Derivative {
         let growth = |row: usize| if scale == LOAD_GROWTH { self.repetition_sd(row).1 } else { 1.0 };
+        Derivative::Repetition {
+            growth: range.clone().map(growth).collect(),
+            own: self.estimated_variances(range),
+            process: self.process(range),
+        }
+    }
+
+    /// Returns the part of the diagonal of `E` that follows the scales: neither the process nor the quantum, and nothing of
+    /// excluded rows.
+    pub(crate) fn estimated_variances(&self, range: &Range<usize>) -> Vec<f64> {
         let own = |row: usize| match self.weights[row] {
             EXCLUDED => 0.0,
             weight => self.independent_variance(row) / weight,
         };
-        Derivative::Repetition {
-            growth: range.clone().map(growth).collect(),
-            own: range.clone().map(own).collect(),
-            process: self.process(range),
-        }
+        range.clone().map(own).collect()
     }
 
     /// Returns the covariance of the rows of a series, element by element.

@@ -8,12 +8,13 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::autoregression::Process;
 use crate::covariance::{Derivative, Noise};
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
 use crate::noise::{AUTOREGRESSIONS, SCALES, Scales};
 use crate::problem::Problem;
-use crate::whitening::PrecisionRoot;
+use crate::white_design::WhiteDesign;
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
 const DAMPING: f64 = 0.05;
@@ -178,19 +179,43 @@ impl ScaleProblem<'_> {
         let noise = self.noise(&point.scales);
         let (marginal, solution) = (&point.marginal, &point.solution);
         let white_residual = marginal.white_residual(&solution.mean);
-        let leverage = marginal.white_design.times(&solution.root.transpose());
-        for (range, root) in marginal.whitening.ranges.iter().zip(&marginal.whitening.roots) {
+        let repetition = RepetitionTrace::new(&noise, marginal);
+        let mut growth = vec![vec![0.0; self.problem.len()]; SCALES];
+        // `A'V^-1 F` of all factors, one column after the other, and the scale of each.
+        let (mut projected, mut of_scale): (Vec<f64>, Vec<usize>) = Default::default();
+        for (series, (range, root)) in
+            marginal.whitening.ranges.iter().zip(&marginal.whitening.roots).enumerate()
+        {
             let (first, length) = (range.start, range.len());
             let mut alpha = white_residual.rows(first, length).into_owned();
             root.whiten_transposed(alpha.as_mut_slice());
-            let leverage = leverage.rows(first, length).into_owned();
-            let series = SeriesPrecision::new(&noise, range, root, leverage);
             for scale in 0..SCALES {
                 let derivative = noise.derivative(range, scale);
                 let tangent = derivative.times(alpha.as_slice());
-                gradient[scale] += 0.5 * (alpha.dot(&tangent) - series.trace_with(&derivative));
+                gradient[scale] += 0.5 * alpha.dot(&tangent);
                 tangents.view_mut((first, scale), (length, 1)).copy_from(&tangent);
+                match derivative {
+                    Derivative::Factor(mut factor) => {
+                        factor.as_mut_slice().chunks_exact_mut(length).for_each(|x| root.whiten(x));
+                        gradient[scale] -= 0.5 * factor.norm_squared();
+                        let of_series = marginal.white_design.transposed_times_in(series, &factor);
+                        projected.extend_from_slice(of_series.as_slice());
+                        of_scale.extend(std::iter::repeat_n(scale, factor.ncols()));
+                    }
+                    Derivative::Repetition { growth: of_series, .. } => {
+                        growth[scale][range.clone()].copy_from_slice(&of_series);
+                    }
+                }
             }
+        }
+        // One product for all series, which is faster than one for each.
+        let projected = DMatrix::from_vec(solution.mean.len(), of_scale.len(), projected);
+        let explained = &solution.root * projected;
+        for (scale, column) in of_scale.into_iter().zip(explained.column_iter()) {
+            gradient[scale] += 0.5 * column.norm_squared();
+        }
+        for scale in (0..SCALES).filter(|scale| growth[*scale].iter().any(|g| *g != 0.0)) {
+            gradient[scale] -= repetition.with(&growth[scale], &solution.covariance);
         }
         for (i, (component, log)) in point.log_sd.iter().enumerate() {
             let columns = self.design.columns_of(*component);
@@ -205,58 +230,85 @@ impl ScaleProblem<'_> {
     }
 }
 
-/// Precision `P = W' (I - Z Z') W` of a series, with the coefficients integrated.
-struct SeriesPrecision<'a> {
-    root: &'a PrecisionRoot,
-    /// `Z`.
-    leverage: DMatrix<f64>,
-    /// Diagonal of `P`.
+/// Traces `tr(G V' P)`, with the covariance `V' = D + A` of the estimated repetition noise and the precision `P` of the readings,
+/// the coefficients with the covariance `C` integrated. `P = V^-1 - B C B'` with `B = V^-1 A`, so that such a trace is a weighted
+/// sum of the diagonal of `V' V^-1`, less `tr(C B'G V'B)`.
+struct RepetitionTrace {
+    /// Diagonal of `V' V^-1`.
     diagonal: Vec<f64>,
-    /// Diagonal of `A P`, with the covariance `A` of the process; zeros without one.
-    of_process: Vec<f64>,
+    /// `B`.
+    precise: WhiteDesign,
+    /// `V' B`.
+    of_noise: WhiteDesign,
 }
 
-impl<'a> SeriesPrecision<'a> {
-    fn new(noise: &Noise<'_>, range: &Range<usize>, root: &'a PrecisionRoot, leverage: DMatrix<f64>) -> Self {
-        // With the diagonal `D` of the independent noise, `A = E - D`, and `P = E^-1 - M M'`.
-        let (repetition, shared) = root.precision();
-        let process = noise.process(range);
-        let mut diagonal = repetition.clone();
-        let mut of_process = vec![0.0; range.len()];
-        if process.is_some() {
-            let independent = noise.independent_variances(range);
-            of_process =
-                repetition.iter().zip(independent).map(|(precision, d)| 1.0 - d * precision).collect();
-        }
-        let integrated = leverage.column_iter().map(|column| {
-            let mut column: Vec<f64> = column.iter().copied().collect();
-            root.whiten_transposed(&mut column);
-            column
+impl RepetitionTrace {
+    fn new(noise: &Noise<'_>, marginal: &Marginal) -> Self {
+        let whitening = &marginal.whitening;
+        let precise = marginal.white_design.mapped(|column| whitening.whiten_transposed_mut(column));
+        let estimated: Vec<EstimatedNoise> =
+            whitening.ranges.iter().map(|range| EstimatedNoise::new(noise, range)).collect();
+        let of_noise = precise.mapped(|column| {
+            let parts = whitening.ranges.iter().zip(&estimated);
+            parts.for_each(|(range, noise)| noise.apply(&mut column[range.clone()]));
         });
-        for column in shared.into_iter().chain(integrated) {
-            diagonal.iter_mut().zip(&column).for_each(|(sum, x)| *sum -= x * x);
-            if let Some(process) = &process {
-                let product = process.times(&column);
-                let terms = product.iter().zip(&column);
-                of_process.iter_mut().zip(terms).for_each(|(sum, (a, x))| *sum -= a * x);
-            }
-        }
-        Self { root, leverage, diagonal, of_process }
+        let roots = whitening.roots.iter().zip(&whitening.ranges).zip(&estimated);
+        let diagonal = roots
+            .flat_map(|((root, range), estimated)| {
+                let (repetition, shared) = root.precision();
+                // `E^-1` is that of `V'` and of the variance that is not estimated.
+                let independent = noise.independent_variances(range);
+                let mut diagonal = estimated.diagonal_of_inverse(&repetition, &independent);
+                for column in shared {
+                    let mut product = column.clone();
+                    estimated.apply(&mut product);
+                    diagonal
+                        .iter_mut()
+                        .zip(product.iter().zip(&column))
+                        .for_each(|(sum, (a, x))| *sum -= a * x);
+                }
+                diagonal
+            })
+            .collect();
+        Self { diagonal, precise, of_noise }
     }
 
-    /// Returns the trace of the product with the derivative of a covariance.
-    fn trace_with(&self, derivative: &Derivative) -> f64 {
-        match derivative {
-            Derivative::Factor(factor) => {
-                let mut white = factor.clone();
-                white.as_mut_slice().chunks_exact_mut(factor.nrows()).for_each(|x| self.root.whiten(x));
-                white.norm_squared() - self.leverage.tr_mul(&white).norm_squared()
-            }
-            Derivative::Repetition { growth, own, .. } => {
-                let term = |i: usize| 2.0 * growth[i] * (own[i] * self.diagonal[i] + self.of_process[i]);
-                (0..growth.len()).map(term).sum()
-            }
-        }
+    /// Returns the trace for a diagonal `G`.
+    fn with(&self, growth: &[f64], covariance: &DMatrix<f64>) -> f64 {
+        let of_rows: f64 = growth.iter().zip(&self.diagonal).map(|(g, d)| g * d).sum();
+        let grown = self.of_noise.mapped(|column| column.iter_mut().zip(growth).for_each(|(x, g)| *x *= g));
+        of_rows - self.precise.product(&grown).dot(covariance)
+    }
+}
+
+/// Estimated repetition noise of a series: `V' = D + A`.
+struct EstimatedNoise {
+    own: Vec<f64>,
+    process: Option<Process>,
+}
+
+impl EstimatedNoise {
+    fn new(noise: &Noise<'_>, range: &Range<usize>) -> Self {
+        Self { own: noise.estimated_variances(range), process: noise.process(range) }
+    }
+
+    /// Replaces `x` by `V' x`.
+    fn apply(&self, x: &mut [f64]) {
+        let of_process = self.process.as_ref().map(|process| process.times(x));
+        x.iter_mut().zip(&self.own).for_each(|(x, own)| *x *= own);
+        x.iter_mut().zip(of_process.into_iter().flatten()).for_each(|(x, product)| *x += product);
+    }
+
+    /// Returns the diagonal of `V' E^-1` for that of `E^-1`, where `E` is the process and independent noise.
+    fn diagonal_of_inverse(&self, precision: &[f64], independent: &[f64]) -> Vec<f64> {
+        // `A E^-1 = I - (E - A) E^-1`.
+        let of_process = |precision: f64, independent: f64| match self.process {
+            Some(_) => 1.0 - independent * precision,
+            None => 0.0,
+        };
+        let rows = precision.iter().zip(independent).zip(&self.own);
+        rows.map(|((precision, independent), own)| own * precision + of_process(*precision, *independent))
+            .collect()
     }
 }
 

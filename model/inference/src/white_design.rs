@@ -92,6 +92,68 @@ impl WhiteDesign {
         gram
     }
 
+    /// Returns the design with a linear map of the rows of each series in place of the root of its precision: `map` replaces a
+    /// column of all rows.
+    pub(crate) fn mapped(&self, map: impl Fn(&mut [f64])) -> Self {
+        let mut mapped = self.clone();
+        let rows = self.own.1.nrows();
+        mapped.own.1.as_mut_slice().chunks_exact_mut(rows.max(1)).for_each(&map);
+        mapped.of_series.iter_mut().for_each(|of| map(of.sensitivity.as_mut_slice()));
+        mapped
+    }
+
+    /// Returns `A'W'X A`, where `right` is the design with `X` in place of `W`.
+    pub(crate) fn product(&self, right: &Self) -> DMatrix<f64> {
+        let mut product = DMatrix::zeros(self.columns, self.columns);
+        let (indices, own) = &self.own;
+        let of_own = own.tr_mul(&right.own.1);
+        for (i, row) in indices.iter().enumerate() {
+            indices.iter().enumerate().for_each(|(j, column)| product[(*row, *column)] = of_own[(i, j)]);
+        }
+        for (of, of_right) in self.of_series.iter().zip(&right.of_series) {
+            let after = self.products_of_series(&of_right.sensitivity, own).tr_mul(&of.by_series);
+            let before = self.products_of_series(&of.sensitivity, &right.own.1).tr_mul(&of.by_series);
+            for (i, row) in indices.iter().enumerate() {
+                for (j, column) in of.columns.clone().enumerate() {
+                    product[(*row, column)] = after[(i, j)];
+                    product[(column, *row)] = before[(i, j)];
+                }
+            }
+            for other in &right.of_series {
+                let other_column = DMatrix::from_columns(std::slice::from_ref(&other.sensitivity));
+                let weights = self.products_of_series(&of.sensitivity, &other_column);
+                let mut weighted = other.by_series.clone();
+                weighted
+                    .column_iter_mut()
+                    .for_each(|mut column| column.component_mul_assign(&weights.column(0)));
+                let of_both = of.by_series.tr_mul(&weighted);
+                product
+                    .view_mut((of.columns.start, other.columns.start), of_both.shape())
+                    .copy_from(&of_both);
+            }
+        }
+        product
+    }
+
+    /// Returns `A_s'W_s'X` for white columns of one series.
+    pub(crate) fn transposed_times_in(&self, series: usize, white: &DMatrix<f64>) -> DMatrix<f64> {
+        let range = &self.ranges[series];
+        let (indices, own) = &self.own;
+        let mut product = DMatrix::zeros(self.columns, white.ncols());
+        for (j, column) in white.column_iter().enumerate() {
+            for (i, row) in indices.iter().enumerate() {
+                product[(*row, j)] = own.column(i).rows(range.start, range.len()).dot(&column);
+            }
+            for of in &self.of_series {
+                let share = of.sensitivity.rows(range.start, range.len()).dot(&column);
+                for (i, row) in of.columns.clone().enumerate() {
+                    product[(row, j)] = share * of.by_series[(series, i)];
+                }
+            }
+        }
+        product
+    }
+
     /// Returns `W A B`.
     pub(crate) fn times(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
         let (indices, own) = &self.own;
@@ -176,10 +238,19 @@ mod tests {
         };
         is_close(&apart.columns(), &columns);
         is_close(&apart.gram(), &columns.tr_mul(&columns));
+        let scaled = |x: &mut [f64]| x.iter_mut().enumerate().for_each(|(i, x)| *x *= (i % 5) as f64);
+        let mut scaled_columns = columns.clone();
+        scaled_columns.as_mut_slice().chunks_exact_mut(problem.len()).for_each(scaled);
+        is_close(&apart.product(&apart.mapped(scaled)), &columns.tr_mul(&scaled_columns));
         is_close(&apart.times(&right), &(&columns * &right));
         is_close(&apart.transposed_times(&white), &columns.tr_mul(&white));
         let first = white.column(0).into_owned();
         let by_series = apart.transposed_times_series(&first);
+        for (series, range) in apart.ranges.iter().enumerate() {
+            let of_series = white.rows(range.start, range.len()).into_owned();
+            let expected = columns.rows(range.start, range.len()).tr_mul(&of_series);
+            is_close(&apart.transposed_times_in(series, &of_series), &expected);
+        }
         let sum = DMatrix::from_columns(&[by_series.column_sum()]);
         is_close(&sum, &columns.tr_mul(&white.columns(0, 1)));
     }

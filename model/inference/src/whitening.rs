@@ -62,10 +62,15 @@ impl Whitening {
     /// Returns `W' x`.
     pub(crate) fn whiten_transposed(&self, white: &DVector<f64>) -> DVector<f64> {
         let mut result = white.clone();
-        for (range, root) in self.ranges.iter().zip(&self.roots) {
-            root.whiten_transposed(&mut result.as_mut_slice()[range.clone()]);
-        }
+        self.whiten_transposed_mut(result.as_mut_slice());
         result
+    }
+
+    /// Replaces `x` by `W' x`.
+    pub(crate) fn whiten_transposed_mut(&self, x: &mut [f64]) {
+        for (range, root) in self.ranges.iter().zip(&self.roots) {
+            root.whiten_transposed(&mut x[range.clone()]);
+        }
     }
 }
 

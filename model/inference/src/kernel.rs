@@ -16,6 +16,11 @@ pub fn brownian(u: &[f64], rank: usize) -> DMatrix<f64> {
     })
 }
 
+/// Returns the basis of Brownian motion with a start of unit variance: what settles may end at zero, as well as begin there.
+pub fn brownian_from_any(u: &[f64], rank: usize) -> DMatrix<f64> {
+    brownian(u, rank).insert_column(0, 1.0)
+}
+
 /// Returns a cosine basis of smooth functions over a covariate in 0..1, with a constant; the
 /// amplitude of the `j`-th wave is `j^-decay`.
 pub fn smooth(u: &[f64], rank: usize, decay: f64) -> DMatrix<f64> {

@@ -21,9 +21,10 @@ const MOST_LEVELS: usize = 20;
 /// Repetitions after which the memory of the previous load has decayed to 1/e.
 pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
-const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction];
+const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::DirectionFriction];
 /// The same for what may also change the scale of the load cell: who measures, how fast, and after which pause.
-const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Gain];
+const MEASURING: &[Channel] =
+    &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::DirectionFriction, Channel::Gain];
 
 /// Collects the kernels of a table.
 pub(super) struct Collector<'a> {
@@ -149,7 +150,7 @@ impl Collector<'_> {
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
             let settling: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&repetition(rows)), 5));
+                Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&repetition(rows)), 5));
             self.add(
                 "repetition",
                 "repetition",
@@ -173,7 +174,7 @@ impl Collector<'_> {
             self.levels("repetition of a direction", "repetition", record, channels, directed);
             let scale = Interval::of(&self.rows.series_time_s);
             let creep: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&rows.series_time_s), 5));
+                Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&rows.series_time_s), 5));
             let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
             self.add(
                 "time in a series",
@@ -259,7 +260,7 @@ impl Collector<'_> {
                 "dwell",
                 "dwell",
                 Record::Table(Abscissa::LogDwell, false),
-                &[Channel::Reading, Channel::Friction, Channel::Gain],
+                &[Channel::Reading, Channel::Friction, Channel::DirectionFriction, Channel::Gain],
                 vec![curve],
             );
         }
@@ -285,7 +286,7 @@ impl Collector<'_> {
                 "wrap angle",
                 "condition",
                 Record::Table(Abscissa::Condition, true),
-                &[Channel::Reading, Channel::Friction],
+                &[Channel::Reading, Channel::Friction, Channel::DirectionFriction],
                 wrap,
             );
         }

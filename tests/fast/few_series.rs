@@ -96,3 +96,29 @@ fn what_is_there_without_a_name_is_not_nothing() {
         assert!(report.mounts.iter().all(is_of_consequence), "{:?}", report.mounts);
     }
 }
+
+/// Friction that depends on direction and pause together is structure of both, not 177 gross errors of 288 readings. A force that
+/// decays to nothing in a series is structure over the repetitions, not a constant drag beside it.
+#[test]
+fn structure_has_the_covariate_and_channel_of_its_cause() {
+    for (name, structure) in [
+        ("pause-and-direction", "friction by direction over dwell"),
+        ("drag-that-decays-to-nothing", "drag over repetition"),
+    ] {
+        let report = third_hand(name);
+        let named: Vec<&str> = report.effects.iter().map(|effect| effect.formula.as_str()).collect();
+        assert!(named.len() == 1 && named[0].starts_with(structure), "{name}: {named:?}");
+        assert_eq!((report.verdict, report.data.outliers), (Verdict::Unattributed, 0), "{name}");
+    }
+}
+
+/// The gain of the cell differs by 5 % between the series of this rig: the verdict was `none`, and no component of the noise said
+/// so.
+#[test]
+fn series_that_scatter_by_a_size_of_consequence_are_not_nothing() {
+    let report = third_hand("gain-that-scatters");
+    assert_eq!(report.verdict, Verdict::Inconclusive);
+    assert!(report.series_scatter > 0.05, "{}", report.series_scatter);
+    let scatter = "without a known cause, series differ by ";
+    assert!(report.reservations().iter().any(|reason| reason.starts_with(scatter)));
+}

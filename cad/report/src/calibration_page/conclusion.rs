@@ -218,7 +218,7 @@ fn inconclusive(report: &Report) -> String {
         (true, reservations) if !reservations.is_empty() => escape(&reservations.join("; ")),
         _ => {
             let mounts =
-                report.mounts_in_words().map_or_else(String::new, |words| format!("; {}", escape(&words)));
+                report.scatter_in_words().map_or_else(String::new, |words| format!("; {}", escape(&words)));
             format!("no effect is detected, but effects of consequence are not excluded{mounts}")
         }
     };

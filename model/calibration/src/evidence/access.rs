@@ -4,7 +4,7 @@ use pinswitch_inference::{Kernel, Member, REPORTED_PROBABILITY, leave_groups_out
 
 use super::fitted::channel_of;
 use super::forward::Channel;
-use super::structure::Record;
+use super::structure::{NOISE, Record, Structure};
 use super::{Evidence, Fitted, MOUNT};
 use crate::effects::{self, SharedEffect};
 use crate::table::{Frame, Point};
@@ -156,6 +156,14 @@ impl Evidence {
     /// Returns whether a member is noise, which is not reported.
     pub(crate) fn is_noise(&self, member: Member) -> bool {
         self.kernel_at(member).is_some_and(|kernel| kernel.noise_probability.is_some())
+    }
+
+    /// Returns the offsets that wander from series to series in the best hypothesis: channel and standard deviation of each.
+    pub(crate) fn wandering(&self) -> Vec<(Channel, f64)> {
+        let Some(best) = self.posterior.window.first() else { return Vec::new() };
+        let is_wandering = |(_, structure): &(usize, &Structure)| structure.covariate == NOISE;
+        let structures = self.setup.structures.iter().enumerate().filter(is_wandering);
+        structures.filter_map(|(kernel, of)| Some((of.channel, best.kernel_sd(kernel)?))).collect()
     }
 
     /// Returns whether the absence of structure without a name has less than the probability from which a member is reported.

@@ -18,7 +18,7 @@ const CHANNEL_STEP: f64 = 1e-4;
 
 /// Channels through which structure acts on a reading, in the order of the forward model's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Channel {
+pub(crate) enum Channel {
     /// A force on the load cell.
     Reading,
     /// A force against the motion.

@@ -31,7 +31,8 @@ use pinswitch_inference::{
 
 use self::covariates::{Covariates, RowLabels};
 use self::formula_values::FormulaValues;
-use self::forward::{Baseline, Channel, FrictionModel, is_of_friction};
+pub(crate) use self::forward::Channel;
+use self::forward::{Baseline, FrictionModel, is_of_friction};
 use self::priors::EffectPrior;
 use self::structure::Structure;
 use self::table_kernels::structures;
@@ -364,13 +365,18 @@ impl Setup {
     }
 }
 
+/// Returns the smallest relevant change of a friction or reading in newtons.
+pub(crate) fn change_of_consequence(point: &Point, of_n: f64) -> f64 {
+    CONSEQUENCE * of_n.abs().max(LEAST_FRICTION * point.load_n).max(1e-9)
+}
+
 /// Returns the smallest relevant change of each reading by an effect: a share of the friction, or of
 /// the reading for effects on the load cell or against the motion.
 fn relevant_changes(prior: &EffectPrior, rows: &Covariates) -> Vec<f64> {
     let is_friction = is_of_friction(prior.effect.description().stage);
     let change = |(point, reading): (&Point, &f64)| {
         let of = if is_friction { reading - point.load_n } else { *reading };
-        CONSEQUENCE * of.abs().max(LEAST_FRICTION * point.load_n).max(1e-9)
+        change_of_consequence(point, of)
     };
     rows.points.iter().zip(&rows.readings).map(change).collect()
 }

@@ -229,7 +229,8 @@ pub struct MountReport {
 /// A component of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoisePart {
-    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount` or `specimen`.
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `specimen`, `wandering_reading`, `wandering_drag` or
+    /// `wandering_gain`.
     pub part: String,
     /// Description.
     pub what: String,
@@ -324,6 +325,10 @@ pub struct Report {
     pub noise: Noise,
     /// Components of the noise.
     pub noise_parts: Vec<NoisePart>,
+    /// Root mean square of the scatter between series, mounts and specimens, as a share of that of the friction. The verdict is
+    /// `none` only below 0.05.
+    #[serde(default)]
+    pub series_scatter: f64,
     /// Constants of the switch that differ between sessions or specimens.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<ChangeReport>,
@@ -384,12 +389,21 @@ impl Report {
         if let Some(StructureReport { name, probability, .. }) = possible {
             reasons.push(format!("{name} has a probability of {probability:.2}"));
         }
-        reasons.extend(self.mounts_in_words());
+        reasons.extend(self.scatter_in_words());
         reasons
     }
 
+    /// Describes scatter of consequence without a cause; `None` without any.
+    pub fn scatter_in_words(&self) -> Option<String> {
+        const LEAST: f64 = 0.05;
+        let share = 100.0 * self.series_scatter;
+        let words = || format!("without a known cause, series differ by {share:.0} % of the friction");
+        let of_series = || (self.series_scatter >= LEAST).then(words);
+        self.mounts_in_words().or_else(of_series)
+    }
+
     /// Describes the mounts that differ, the first three by name; `None` without any.
-    pub fn mounts_in_words(&self) -> Option<String> {
+    fn mounts_in_words(&self) -> Option<String> {
         const NAMED: usize = 3;
         let words = |m: &MountReport| format!("{} by {:+.0} %", m.mount, 100.0 * m.friction);
         let named: Vec<String> = self.mounts.iter().take(NAMED).map(words).collect();

@@ -13,7 +13,7 @@ use pinswitch_inference::Member;
 use crate::adequacy::{Residual, is_adequate};
 use crate::aliasing::aliasing;
 use crate::effects::Vocabulary;
-use crate::evidence::{Evidence, Fitted};
+use crate::evidence::{CONSEQUENCE, Evidence, Fitted};
 use crate::report::{
     DataSummary, ExpectedErrorReport, ModelReport, MountReport, Report, StructureReport, TrialReport, Verdict,
 };
@@ -26,7 +26,7 @@ use errors::least_squares_n;
 pub(crate) use errors::{HeldOut, held_out, model_report};
 use limits::{NEVER_VISIBLE, candidates, invisible, limits, without_covariate};
 use mounts::mounts;
-use noise::{floor_n, noise_parts};
+use noise::{floor_n, noise_parts, series_scatter};
 
 /// Name and version of the format.
 pub(crate) const SCHEMA: &str = "pinswitch.calibration/2";
@@ -80,7 +80,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
             Some(StructureReport { name: named(member)?, covariate, probability: *probability })
         })
         .collect();
-    let mounts = mounts(evidence);
+    let (mounts, series_scatter) = (mounts(evidence), series_scatter(evidence, augmented, rows));
     Some(Report {
         schema: SCHEMA.to_owned(),
         data: DataSummary {
@@ -89,7 +89,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
             conditions: augmented.model.frame.conditions.len(),
             outliers: evidence.outliers().iter().filter(|is_out| **is_out).count(),
         },
-        verdict: verdict(evidence, &mounts).in_view_of(&findings.trials),
+        verdict: verdict(evidence, series_scatter, &mounts).in_view_of(&findings.trials),
         adequate: adequate(&findings),
         promise_n: expected.map(|e| e.value),
         promise_baseline_n: posterior.baseline_error.filter(|_| is_supported).map(|e| e.value),
@@ -97,7 +97,8 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         least_squares_n: least_squares_n(evidence, rows, &baseline.model),
         noise_floor_n: floor_n(augmented, rows),
         noise: augmented.noise,
-        noise_parts: noise_parts(augmented.noise, rows),
+        noise_parts: noise_parts(augmented.noise, evidence, rows),
+        series_scatter,
         changes: changes(evidence),
         baseline: model_report(evidence, &posterior.baseline, baseline, held_baseline),
         augmented: augmented_report,
@@ -120,9 +121,9 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
 }
 
 /// Returns the verdict of a posterior. A change of friction between sessions or specimens is no effect
-/// that the model lacks. Mounts that differ by a size of consequence are no effect either, but something is there, as it is
-/// where structure is not improbable.
-fn verdict(evidence: &Evidence, mounts: &[MountReport]) -> Verdict {
+/// that the model lacks. Scatter between series or a mount that differs by a size of consequence are no effect either, but
+/// something is there, as it is where structure is not improbable.
+fn verdict(evidence: &Evidence, series_scatter: f64, mounts: &[MountReport]) -> Verdict {
     let posterior = evidence.posterior();
     let reported: Vec<_> = posterior.reported.iter().filter(|r| !evidence.is_change(r.member)).collect();
     let is_unnamed = |member: Member| matches!(member, Member::Kernel(_));
@@ -132,12 +133,12 @@ fn verdict(evidence: &Evidence, mounts: &[MountReport]) -> Verdict {
         Verdict::Ambiguous
     } else if !reported.is_empty() {
         Verdict::Attributed
-    } else if posterior.candidates.is_empty() || !mounts.is_empty() || evidence.may_have_structure() {
-        Verdict::Inconclusive
-    } else if posterior.candidates.iter().all(|candidate| candidate.size.is_excluded()) {
-        Verdict::None
     } else {
-        Verdict::Inconclusive
+        let is_unexplained =
+            series_scatter >= CONSEQUENCE || !mounts.is_empty() || evidence.may_have_structure();
+        let mut sizes = posterior.candidates.iter().map(|candidate| candidate.size);
+        let is_known = !posterior.candidates.is_empty() && sizes.all(|size| size.is_excluded());
+        if is_known && !is_unexplained { Verdict::None } else { Verdict::Inconclusive }
     }
 }
 

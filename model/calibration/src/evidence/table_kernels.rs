@@ -26,6 +26,9 @@ const COMMON: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Friction,
 const MEASURING: &[Channel] =
     &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::DirectionFriction, Channel::Gain];
 
+/// Value of a covariate at each row.
+type ValuesOfRows = fn(&Covariates) -> Vec<f64>;
+
 /// Collects the kernels of a table.
 pub(super) struct Collector<'a> {
     pub(super) rows: &'a Covariates,
@@ -148,16 +151,7 @@ impl Collector<'_> {
         let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
         let at = repetition(self.rows);
         if distinct(&at) > 2 {
-            let scale = Interval::of(&at);
-            let settling: BasisOfRows =
-                Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&repetition(rows)), 5));
-            self.add(
-                "repetition",
-                "repetition",
-                Record::Table(Abscissa::LogRepetition, false),
-                COMMON,
-                vec![settling],
-            );
+            self.settling("repetition", Record::Table(Abscissa::LogRepetition, false), repetition);
             let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
             let alternation: BasisOfRows = Box::new(move |rows| kernel::single(&rows.column(sign)));
             self.add(
@@ -172,18 +166,24 @@ impl Collector<'_> {
             let record = Record::Table(Abscissa::DirectedRepetition, true);
             let channels = &[Channel::Reading, Channel::Friction];
             self.levels("repetition of a direction", "repetition", record, channels, directed);
-            let scale = Interval::of(&self.rows.series_time_s);
-            let creep: BasisOfRows =
-                Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&rows.series_time_s), 5));
-            let creep = if distinct(&self.rows.series_time_s) > 1 { vec![creep] } else { Vec::new() };
-            self.add(
-                "time in a series",
-                "repetition",
-                Record::Table(Abscissa::SeriesReadings, false),
-                COMMON,
-                creep,
-            );
+            if distinct(&self.rows.series_time_s) > 1 {
+                let record = Record::Table(Abscissa::SeriesReadings, false);
+                self.settling("time in a series", record, |rows| rows.series_time_s.clone());
+            }
         }
+    }
+
+    /// Adds what settles over a covariate in a series. It may end at zero as well as begin there, so that no constant effect need
+    /// stand beside it; the level of the friction is that of its coefficient anyway.
+    fn settling(&mut self, name: &str, record: Record, covariate: ValuesOfRows) {
+        let scale = Interval::of(&covariate(self.rows));
+        let from_any: BasisOfRows =
+            Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&covariate(rows)), 5));
+        let channels = [Channel::Reading, Channel::Drag, Channel::DirectionFriction];
+        self.add(name, "repetition", record, &channels, vec![from_any]);
+        let from_zero: BasisOfRows =
+            Box::new(move |rows| kernel::brownian(&scale.shares(&covariate(rows)), 5));
+        self.add(name, "repetition", record, &[Channel::Friction], vec![from_zero]);
     }
 
     fn load(&mut self) {

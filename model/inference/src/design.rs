@@ -337,8 +337,8 @@ impl<'a> AddedColumns<'a> {
         Self { problem, hypothesis, mode, curved, readings }
     }
 
-    /// Returns the forms of an effect with the change of the readings per size of each, by a secant to its start, without those
-    /// of which it is not finite or zero.
+    /// Returns the forms of an effect with the change of the readings per size of each, by a secant to its start, without forms
+    /// whose change is zero or not finite.
     pub(crate) fn of_effect(&self, effect: usize) -> impl Iterator<Item = (usize, DVector<f64>)> + '_ {
         let member = Member::Effect(effect);
         let rest = self.mode.sized(&self.hypothesis.without(member));

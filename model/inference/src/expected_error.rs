@@ -237,8 +237,8 @@ impl<'a> Simulation<'a> {
         Self { problem, fit, linearised, redrawn }
     }
 
-    /// Returns the mean square of each session, whose levels differ from the last ones as in `view`, over what the expected
-    /// error estimates: their mean if the variance of these differences is as it was.
+    /// Returns the mean square of each session, divided by their expected value. The levels of a session differ from the last ones
+    /// by the steps of `view`. The expected value uses the mean square of the steps so far.
     fn run(&self, random: &mut Random, sound: &[usize], view: &SessionView) -> Vec<f64> {
         let mean = |value: &dyn Fn(usize) -> f64| -> f64 {
             sound.iter().map(|row| value(*row)).sum::<f64>() / sound.len().max(1) as f64

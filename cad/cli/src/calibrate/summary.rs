@@ -96,7 +96,7 @@ fn inconclusive(report: &Report) -> String {
         text.push_str(&format!("; {} is confirmed on unseen readings", listed(&confirmed)));
     } else if report.limits.iter().any(|limit| !limit.excluded) {
         text.push_str(", and effects of consequence are not excluded");
-        report.scatter_in_words().iter().for_each(|mounts| text.push_str(&format!("; {mounts}")));
+        report.scatter_in_words().iter().for_each(|scatter| text.push_str(&format!("; {scatter}")));
     } else {
         report.reservations().iter().for_each(|reason| text.push_str(&format!("; {reason}")));
     }

@@ -217,9 +217,9 @@ fn inconclusive(report: &Report) -> String {
     let reason = match (open.is_empty(), report.reservations()) {
         (true, reservations) if !reservations.is_empty() => escape(&reservations.join("; ")),
         _ => {
-            let mounts =
+            let scatter =
                 report.scatter_in_words().map_or_else(String::new, |words| format!("; {}", escape(&words)));
-            format!("no effect is detected, but effects of consequence are not excluded{mounts}")
+            format!("no effect is detected, but effects of consequence are not excluded{scatter}")
         }
     };
     let mut html = format!("<p>Verdict: <b>inconclusive</b>: {reason}. Record more data.</p>");

@@ -173,8 +173,8 @@ impl Collector<'_> {
         }
     }
 
-    /// Adds what settles over a covariate in a series. It may end at zero as well as begin there, so that no constant effect need
-    /// stand beside it; the level of the friction is that of its coefficient anyway.
+    /// Adds functions that settle over a covariate in a series. They may end at zero as well as begin at zero, without a constant
+    /// effect in addition. The friction coefficient fits the level of the friction.
     fn settling(&mut self, name: &str, record: Record, covariate: ValuesOfRows) {
         let scale = Interval::of(&covariate(self.rows));
         let from_any: BasisOfRows =

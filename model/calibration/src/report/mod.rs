@@ -218,7 +218,7 @@ impl BadSeries {
 /// A mount whose friction differs from that of the others by a size of consequence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MountReport {
-    /// Name in the table; that of the condition, if the table has no column `mount`.
+    /// Session and name in the table. Without a column `mount`: condition, session and specimen.
     pub mount: String,
     /// Difference of friction, as a share of it.
     pub friction: f64,
@@ -395,6 +395,7 @@ impl Report {
 
     /// Describes scatter of consequence without a cause; `None` without any.
     pub fn scatter_in_words(&self) -> Option<String> {
+        // The size of consequence, as a share of the friction.
         const LEAST: f64 = 0.05;
         let share = 100.0 * self.series_scatter;
         let words = || format!("without a known cause, series differ by {share:.0} % of the friction");

@@ -10,7 +10,7 @@ use super::{TrialOutcome, TrialReport};
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Neither an effect nor structure without a name is probable, every relevant size of every effect that acts on this table is
-    /// excluded, and mounts differ by less than such a size.
+    /// excluded, and series and mounts differ by less than such a size.
     None,
     /// No effect is attributed, and a relevant effect is not excluded.
     Inconclusive,

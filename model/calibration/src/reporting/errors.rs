@@ -14,7 +14,7 @@ use crate::table::{Condition, PlateauRow};
 /// Number of parts of the series, and of the loads.
 const FOLDS: usize = 4;
 /// Two-sided 95 % quantile of the standard normal distribution.
-const NORMAL_95: f64 = 1.96;
+pub(super) const NORMAL_95: f64 = 1.96;
 
 /// Root mean square errors in newtons on rows that are left out of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -121,8 +121,8 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
 }
 
 /// Returns the verdict of a posterior. A change of friction between sessions or specimens is no effect
-/// that the model lacks. Scatter between series or a mount that differs by a size of consequence are no effect either, but
-/// something is there, as it is where structure is not improbable.
+/// that the model lacks. Scatter between series, different mounts and possible structure are no effects, but prevent the
+/// verdict `none`.
 fn verdict(evidence: &Evidence, series_scatter: f64, mounts: &[MountReport]) -> Verdict {
     let posterior = evidence.posterior();
     let reported: Vec<_> = posterior.reported.iter().filter(|r| !evidence.is_change(r.member)).collect();

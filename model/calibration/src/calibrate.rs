@@ -225,7 +225,7 @@ mod tests {
     fn sessions_with_different_offsets_are_not_noise() {
         let report = calibrated(&[day("a", 1, 0.6), day("b", 2, -0.6)].concat());
         assert_eq!(report.verdict, Verdict::Unattributed, "{:?}", report.effects);
-        assert!(["session", "time"].contains(&report.effects[0].covariate.as_str()));
+        assert!(["session", "time"].contains(&report.effects[0].covariate.as_str()), "{:?}", report.effects);
         let same = calibrated(&[day("a", 1, 0.6), day("b", 2, 0.6)].concat());
         assert_eq!(same.verdict, Verdict::Attributed);
     }

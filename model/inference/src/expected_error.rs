@@ -14,7 +14,7 @@ use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
 use crate::outliers::Outliers;
-use crate::problem::Problem;
+use crate::problem::{Problem, SessionLevels};
 use crate::quadrature::log_sum_exp;
 use crate::random::Random;
 
@@ -101,35 +101,61 @@ pub(crate) struct SessionView {
     prediction: Vec<f64>,
     /// What the fitted session drew for itself: effects and kernels of its time, about their mean.
     pub(crate) deviation: Vec<f64>,
-    /// How sessions differed from the one before.
+    /// How sessions differed from what was to be expected of them.
     steps: Vec<Steps>,
 }
 
-/// Differences of a level of sessions from that of the session before.
+/// Differences of the levels of sessions from the levels that were to be expected.
 struct Steps {
+    /// Level that a new session is expected to have.
+    expected: f64,
     /// Mean square of the differences, in the square of the unit of the channel.
     square: f64,
-    /// Number of differences.
+    /// Number of differences from which it is known.
     count: usize,
+    /// Probability of a difference.
+    share: f64,
     /// Change of each reading per unit of the level.
     channel: Vec<f64>,
 }
 
 impl Steps {
-    /// Returns those of a curve that is constant in each session: the next session may differ from the last one as the
-    /// sessions differed from the ones before.
-    fn of_curve(curve: &[f64], channel: Vec<f64>) -> Self {
-        let steps = curve.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| *square > 0.0);
-        let (sum, count) = steps.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
-        Self { square: sum / f64::max(count as f64, 1.0), count, channel }
+    /// Returns those of a curve that is constant in each session. A new session may differ from its expected level as the
+    /// sessions did: from the level before, from their mean, which is known from as many sessions, or as one of them did.
+    fn of_curve(curve: &[f64], of: SessionLevels, channel: Vec<f64>) -> Self {
+        let mut levels = curve.to_vec();
+        if of == SessionLevels::Independent {
+            levels.sort_by(f64::total_cmp);
+        }
+        levels.dedup();
+        let expected = of.expected(&levels);
+        let steps = || levels.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
+        let count = levels.len().saturating_sub(1);
+        let of_all = |sum: f64| sum / f64::max(count as f64, 1.0);
+        let (square, count, share) = match of {
+            SessionLevels::Independent => {
+                let squares = levels.iter().map(|level| (level - expected).powi(2));
+                (of_all(squares.sum()) * (1.0 + 1.0 / levels.len().max(1) as f64), count, 1.0)
+            }
+            SessionLevels::RandomWalk => (of_all(steps().sum()), count, 1.0),
+            SessionLevels::OneChange(sessions) | SessionLevels::OneSession(sessions) => {
+                let share = 1.0 / sessions.max(1) as f64;
+                (share * steps().next().unwrap_or(0.0), count.min(1), share)
+            }
+        };
+        Self { expected, square, count, share, channel }
     }
 
     /// Draws the difference of a new session. The variance of few differences is known badly: its posterior, with a prior
     /// that is flat in its logarithm, is a scaled inverse chi-squared distribution with their number as degrees of freedom.
     fn draw(&self, random: &mut Random) -> f64 {
+        if self.count == 0 || (self.share < 1.0 && random.uniform() > self.share) {
+            return 0.0;
+        }
         let chi_squared: f64 = (0..self.count).map(|_| random.normal().powi(2)).sum();
-        let variance = self.square * self.count as f64 / f64::max(chi_squared, f64::MIN_POSITIVE);
-        if self.count == 0 { 0.0 } else { variance.sqrt() * random.normal() }
+        let variance =
+            self.square / self.share * self.count as f64 / f64::max(chi_squared, f64::MIN_POSITIVE);
+        variance.sqrt() * random.normal()
     }
 }
 
@@ -146,7 +172,10 @@ impl SessionView {
                 Role::Constant(_) | Role::Size(_) | Role::Shape(..) => false,
                 Role::Discrepancy(_) => true,
                 Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
-                Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
+                Role::Variance(Component::Kernel(i)) => {
+                    let kernel = &problem.space.kernels[*i];
+                    !kernel.is_session_bound && kernel.session_levels.is_empty()
+                }
             };
             if is_lasting {
                 let column = design.matrix.column(i);
@@ -154,16 +183,20 @@ impl SessionView {
             }
         }
         let mut steps = Vec::new();
-        for (kernel, _) in fit.hypothesis.kernels() {
+        for (kernel, form) in fit.hypothesis.kernels() {
             let of = &problem.space.kernels[kernel];
-            if of.is_gross_error || (!of.is_session_bound && !of.is_level_of_session) {
+            let session_levels = of.session_levels.get(form).copied();
+            if of.is_gross_error || (!of.is_session_bound && session_levels.is_none()) {
                 continue;
             }
             let channel = design.sensitivity(&problem.space, Component::Kernel(kernel));
             let curve =
                 kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
-            if of.is_level_of_session {
-                steps.push(Steps::of_curve(&curve, channel));
+            if let Some(levels) = session_levels {
+                let of_kernel = Steps::of_curve(&curve, levels, channel);
+                let next = of_kernel.channel.iter().map(|x| x * of_kernel.expected);
+                prediction.iter_mut().zip(next).for_each(|(p, next)| *p += next);
+                steps.push(of_kernel);
                 continue;
             }
             let level = curve.iter().sum::<f64>() / curve.len() as f64;
@@ -175,7 +208,7 @@ impl SessionView {
         Self { prediction, deviation, steps }
     }
 
-    /// Mean square by which a new session differs from the last one at a row.
+    /// Mean square by which a new session differs from its expected levels at a row.
     fn step_square(&self, row: usize) -> f64 {
         self.steps.iter().map(|steps| steps.square * steps.channel[row].powi(2)).sum()
     }
@@ -320,20 +353,27 @@ impl<'a> Simulation<'a> {
 #[cfg(test)]
 mod tests {
     use super::{SessionView, Steps, session_variance};
-    use crate::problem::Problem;
+    use crate::problem::{Problem, SessionLevels};
     use crate::random::Random;
     use crate::test_problem::{problem, rows, space};
     use crate::{SearchOptions, infer};
 
     #[test]
     fn steps_between_sessions_are_counted_once_each() {
-        let of = |curve: &[f64]| {
-            let steps = Steps::of_curve(curve, vec![1.0; curve.len()]);
-            (steps.square, steps.count)
+        let of = |curve: &[f64], levels| {
+            let steps = Steps::of_curve(curve, levels, vec![1.0; curve.len()]);
+            (steps.expected, steps.square, steps.count)
         };
-        assert_eq!(of(&[0.3, 0.3, 0.3]), (0.0, 0));
-        assert_eq!(of(&[0.0, 0.0, 0.0, 1.0, 3.0, 3.0]), ((1.0 + 4.0) / 2.0, 2));
-        assert_eq!(of(&[]), (0.0, 0));
+        let curve = [0.0, 0.0, 0.0, 1.0, 3.0, 3.0, -4.0];
+        assert_eq!(of(&curve, SessionLevels::RandomWalk), (-4.0, (1.0 + 4.0 + 49.0) / 3.0, 3));
+        assert_eq!(of(&curve, SessionLevels::Independent), (0.0, 26.0 / 3.0 * 1.25, 3));
+        assert_eq!(of(&[0.0, 0.0, 2.0, 2.0], SessionLevels::OneChange(4)), (2.0, 1.0, 1));
+        assert_eq!(of(&[0.0, 0.0, 2.0, 0.0], SessionLevels::OneSession(4)), (0.0, 1.0, 1));
+        use SessionLevels::{Independent, OneChange, OneSession, RandomWalk};
+        for levels in [Independent, RandomWalk, OneChange(3), OneSession(3)] {
+            assert_eq!(of(&[0.3, 0.3, 0.3], levels), (0.3, 0.0, 0));
+            assert_eq!(of(&[], levels), (0.0, 0.0, 0));
+        }
     }
 
     /// Two thirds of the levels of a new session are within the tabulated quantile of Student's t distribution with as many
@@ -342,7 +382,7 @@ mod tests {
     fn the_step_of_a_new_session_has_the_t_distribution_of_few_steps() {
         let mut random = Random::new(8);
         for (count, two_thirds) in [(1, 1.732), (3, 1.152)] {
-            let steps = Steps { square: 0.25, count, channel: Vec::new() };
+            let steps = Steps { expected: 0.0, square: 0.25, count, share: 1.0, channel: Vec::new() };
             let within = (0..9000).filter(|_| steps.draw(&mut random).abs() < 0.5 * two_thirds).count();
             assert!((5850..6150).contains(&within), "{count} steps: {within}");
         }
@@ -354,7 +394,13 @@ mod tests {
         let view = |prediction, deviation, step| SessionView {
             prediction: vec![prediction, 100.0],
             deviation: vec![deviation, 100.0],
-            steps: vec![Steps { square: step, count: 1, channel: vec![1.0, 100.0] }],
+            steps: vec![Steps {
+                expected: 0.0,
+                square: step,
+                count: 1,
+                share: 1.0,
+                channel: vec![1.0, 100.0],
+            }],
         };
         let views = [(0.5, view(1.0, 0.0, 4.0)), (0.5, view(3.0, 2.0, 0.0))];
         assert_eq!(session_variance(&views, &[0]), 0.5 * 2f64.powi(2) + 0.5 * 4.0 + 1.0);

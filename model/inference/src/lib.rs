@@ -154,7 +154,7 @@ pub use posterior::{
 pub use prediction::Prediction;
 pub use problem::{
     Constant, Effect, ForwardModel, Kernel, MOST_SHAPE_CONSTANTS, Problem, ProblemError, RandomEffect, Rows,
-    SizedEffect, Space,
+    SessionLevels, SizedEffect, Space,
 };
 pub use score::SizeLimits;
 pub use search::SearchOptions;

@@ -60,13 +60,38 @@ pub struct Kernel {
     pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
-    /// Whether its levels are those of the sessions: a new session has the last one, and may differ from it.
-    pub is_level_of_session: bool,
+    /// How the levels of sessions follow each other, one per variant; empty if it has no levels of sessions.
+    pub session_levels: Vec<SessionLevels>,
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
     pub noise_probability: Option<f64>,
     /// Whether it is a gross error of the rows where its basis is not zero, which no other session has.
     pub is_gross_error: bool,
+}
+
+/// How levels of sessions follow each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SessionLevels {
+    /// Each session draws its level about the same mean, which a new one is expected to have.
+    Independent,
+    /// Each session has the level of the one before and a step, so that a new one is expected to have the last level.
+    RandomWalk,
+    /// The level changed once between this number of sessions; a new one is expected to have the last level.
+    OneChange(usize),
+    /// One of this number of sessions, but not the first, differs from all others, whose level a new one is expected to have.
+    OneSession(usize),
+}
+
+impl SessionLevels {
+    /// Returns the level that a new session is expected to have, given those of the sessions in their order.
+    pub fn expected(self, levels: &[f64]) -> f64 {
+        let level = match self {
+            Self::Independent => Some(levels.iter().sum::<f64>() / levels.len().max(1) as f64),
+            Self::RandomWalk | Self::OneChange(_) => levels.last().copied(),
+            Self::OneSession(_) => levels.first().copied(),
+        };
+        level.unwrap_or(0.0)
+    }
 }
 
 /// A random effect that every hypothesis contains, such as that of mounts.

@@ -58,7 +58,7 @@ pub enum Abscissa {
     Condition,
     /// Number of the operator, from 1.
     Operator,
-    /// Index of the session among those of the frame; a later one has the value of the last.
+    /// Index of the session among those of the frame; a later one has the last value.
     Session,
     /// Index of the specimen among those of the frame; -1 for an unknown one.
     Specimen,

@@ -159,11 +159,33 @@ impl Evidence {
                 let best = fitted.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
                 best.map(|(_, form, size)| (of(form), size, relative * size * size)).into_iter().collect()
             }
+            Record::Sessions => {
+                let over = Abscissa::Session;
+                let (mut at, mut value) = table(&self.points, curve, |p| over.value(p), true);
+                let next = self.level_of_next_session(kernel, &value);
+                at.push(at.last().map_or(0.0, |last| last + 1.0));
+                value.push(next);
+                vec![(of(Shape::Table { over, at, value, is_factor: true }), 1.0, relative)]
+            }
             Record::Table(over, is_factor) => {
                 let (at, value) = table(&self.points, curve, |p| over.value(p), is_factor);
                 vec![(of(Shape::Table { over, at, value, is_factor }), 1.0, relative)]
             }
         }
+    }
+
+    /// Returns the level that a new session is expected to have, given those of the sessions: a mean over the forms of the kernel
+    /// by their probabilities.
+    fn level_of_next_session(&self, kernel: usize, levels: &[f64]) -> f64 {
+        let mut sum = (0.0, 0.0);
+        for (fit, probability) in self.posterior.window.iter().zip(&self.posterior.probabilities) {
+            let element = fit.hypothesis.elements().find(|e| e.member == Member::Kernel(kernel));
+            let form = element.and_then(|e| self.setup.structures[kernel].session_levels.get(e.form));
+            if let Some(form) = form {
+                sum = (sum.0 + probability * form.expected(levels), sum.1 + probability);
+            }
+        }
+        sum.0 / sum.1.max(f64::MIN_POSITIVE)
     }
 
     /// Returns the friction of each specimen, which a later session has too, and the mean relative

@@ -11,6 +11,7 @@ mod fitted;
 mod formula_values;
 mod forward;
 mod priors;
+mod session_kernels;
 mod structure;
 mod table_kernels;
 #[cfg(test)]

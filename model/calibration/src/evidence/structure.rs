@@ -1,7 +1,7 @@
 //! A kernel of unnamed structure, with its bases at the rows of the fitted session and of a new one.
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY};
+use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels};
 
 use super::Session;
 use super::covariates::Covariates;
@@ -25,6 +25,8 @@ pub(super) enum Record {
     Time,
     /// As a table over a covariate; with true, over the levels of a factor.
     Table(Abscissa, bool),
+    /// As a table over the sessions, with the expected level of a new one at its end.
+    Sessions,
     /// As the memory of the previous load.
     Memory,
     /// Not at all: a new session draws it again, about zero.
@@ -54,6 +56,8 @@ pub(super) struct Structure {
     pub(super) is_session_bound: bool,
     pub(super) scale: f64,
     pub(super) bases: std::rc::Rc<Vec<Variant>>,
+    /// How the levels of sessions follow each other, one per variant; empty if it has no levels of sessions.
+    pub(super) session_levels: Vec<SessionLevels>,
     /// Mean rows of the bases on the fitted table.
     pub(super) means: Vec<Vec<f64>>,
 }
@@ -68,7 +72,7 @@ impl Structure {
             scale: self.scale,
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
-            is_level_of_session: self.record == Record::Table(Abscissa::Session, true),
+            session_levels: self.session_levels.clone(),
             noise_probability: match self.covariate {
                 NOISE => Some(WANDERING_PROBABILITY),
                 GROSS_ERROR => Some(SERIES_PROBABILITY),

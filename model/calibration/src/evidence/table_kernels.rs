@@ -1,5 +1,7 @@
 //! Kernels that a table can show over its covariates, none finer than the sampling.
 
+use std::ops::RangeInclusive;
+
 use pinswitch_inference::kernel;
 
 use super::covariates::{Covariates, RowLabels, distinct};
@@ -17,7 +19,7 @@ const GAIN_SCALE: f64 = 0.02;
 pub(super) const BROWNIAN_RANK: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
-const MOST_LEVELS: usize = 20;
+pub(super) const MOST_LEVELS: usize = 20;
 /// Repetitions after which the memory of the previous load has decayed to 1/e.
 pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
@@ -82,6 +84,7 @@ impl Collector<'_> {
             .collect()
     }
 
+    /// Adds a kernel with these variants for each channel, and returns those added.
     pub(super) fn add_variants(
         &mut self,
         name: &str,
@@ -89,11 +92,12 @@ impl Collector<'_> {
         record: Record,
         channels: &[Channel],
         variants: Vec<Variant>,
-    ) {
+    ) -> &mut [Structure] {
+        let known = self.structures.len();
         // A new session draws again what a model file does not keep.
         let is_session_bound = matches!(record, Record::Time | Record::Nothing);
         if variants.is_empty() {
-            return;
+            return &mut [];
         }
         // No other session has a gross error of this one.
         let share = if covariate == GROSS_ERROR { 0.0 } else { 1.0 };
@@ -120,8 +124,10 @@ impl Collector<'_> {
                 scale,
                 bases: bases.clone(),
                 means: means.clone(),
+                session_levels: Vec::new(),
             });
         }
+        &mut self.structures[known..]
     }
 
     fn along_a_series(&mut self) {
@@ -305,10 +311,12 @@ impl Collector<'_> {
             MEASURING,
             |_, label| label.operator.clone(),
         );
-        let sessions = &[switches.as_slice(), &[Channel::Gain]].concat();
-        self.levels("session", "session", Record::Table(Abscissa::Session, true), sessions, |_, label| {
-            label.session.clone()
-        });
+        self.sessions();
+    }
+
+    /// Returns whether a factor may have a kernel: it has this many levels, and most of them several series.
+    pub(super) fn has_levels(&self, counts: RangeInclusive<usize>, count: usize) -> bool {
+        counts.contains(&count) && 5 * count <= 4 * self.rows.series_count()
     }
 
     /// Adds independent levels of a factor that has several.
@@ -324,17 +332,12 @@ impl Collector<'_> {
         let names: std::collections::BTreeSet<String> = all.into_iter().collect();
         let names: Vec<String> = names.into_iter().collect();
         let least = if name == "condition" { 3 } else { 2 };
-        if names.len() < least || names.len() > MOST_LEVELS || 5 * names.len() > 4 * self.rows.series_count()
-        {
+        if !self.has_levels(least..=MOST_LEVELS, names.len()) {
             return;
         }
-        // A new session is like the last one.
-        let latest =
-            names_of(self.rows, &level).pop().filter(|_| record == Record::Table(Abscissa::Session, true));
-        let latest = latest.and_then(|name| names.binary_search(&name).ok());
         let basis: BasisOfRows = Box::new(move |rows| {
             let level_of: Vec<Option<usize>> =
-                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok().or(latest)).collect();
+                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok()).collect();
             kernel::levels(&level_of, names.len())
         });
         self.add(name, covariate, record, channels, vec![basis]);

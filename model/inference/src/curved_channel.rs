@@ -141,7 +141,7 @@ mod tests {
         }
 
         fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>> {
-            self.channels_at(constants, effects, &[])
+            self.channels_at(constants, effects, &[], &[])
         }
 
         fn readings_at(&self, constants: &[f64], _: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
@@ -150,7 +150,13 @@ mod tests {
             readings.map(|(row, load)| libm::exp(constants[0]) * load * factor(row)).collect()
         }
 
-        fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<Vec<f64>> {
+        fn channels_at(
+            &self,
+            constants: &[f64],
+            effects: &[SizedEffect],
+            curved: &[f64],
+            _: &[f64],
+        ) -> Vec<Vec<f64>> {
             vec![vec![1.0; self.0.len()], self.readings_at(constants, effects, curved)]
         }
 

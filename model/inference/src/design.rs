@@ -125,7 +125,7 @@ impl Design {
         let channel = CurvedChannel::new(mode, space, rows, hypothesis);
         let curved = &channel.value;
         let baseline = forward.readings_at(&mode.constants, &effects, curved);
-        let channels = forward.channels_at(&mode.constants, &effects, curved);
+        let channels = forward.channels_at(&mode.constants, &effects, curved, &baseline);
         let mut builder = Builder { rows: rows.len(), ..Builder::default() };
         let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
         if let Some(index) = space.curved_channel {
@@ -135,7 +135,9 @@ impl Design {
         for (i, constant) in space.constants.iter().enumerate() {
             let mut moved = mode.constants.clone();
             moved[i] += CONSTANT_STEP;
-            let column = slope(&forward.readings_at(&moved, &effects, curved), &baseline, CONSTANT_STEP);
+            let constants = [mode.constants.as_slice(), &moved];
+            let after = forward.readings_where_moved(constants, &effects, curved, &baseline);
+            let column = slope(&after, &baseline, CONSTANT_STEP);
             add_scaled(&mut target, &column, mode.constants[i] - constant.mean);
             builder.push(Role::Constant(i), constant.mean, column);
         }

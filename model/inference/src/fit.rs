@@ -31,7 +31,7 @@ const FREE_ROUNDS: (usize, usize) = (6, 2);
 /// Most rounds after these.
 const FINAL_ROUNDS: usize = 5;
 /// Newton steps of the scales in a round: from scratch, and from the mode of a similar hypothesis.
-const SCALE_STEPS: (usize, usize) = (3, 2);
+const SCALE_STEPS: (usize, usize) = (3, 1);
 /// Change of the objective in nats below which the last rounds have converged.
 const CONVERGED: f64 = 0.05;
 

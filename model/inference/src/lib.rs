@@ -129,6 +129,8 @@ mod random;
 mod scales;
 mod score;
 mod search;
+mod session_view;
+mod simulated_sessions;
 #[cfg(test)]
 mod test_problem;
 mod thinning;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::design::Component;
-use crate::expected_error::{ExpectedError, expected_error, kernel_curve};
+use crate::expected_error::{ExpectedError, expected_error};
 use crate::fit::{Fit, Start};
 use crate::hypothesis::{Hypothesis, Member};
 use crate::leave_out::Linearised;
@@ -12,6 +12,7 @@ use crate::problem::Problem;
 use crate::quadrature::{log_sum_exp, normal_cdf};
 use crate::score::{Scores, SizeLimits};
 use crate::search::{Search, SearchOptions};
+use crate::session_view::kernel_curve;
 
 /// Probability above which a member of the best hypothesis is reported, with its rivals.
 pub const REPORTED_PROBABILITY: f64 = 0.9;

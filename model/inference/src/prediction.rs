@@ -2,11 +2,11 @@
 
 use crate::covariance::Noise;
 use crate::design::{Component, Design};
-use crate::expected_error::SessionView;
 use crate::fit::{DEGREES_OF_FREEDOM, Fit};
 use crate::leave_out::Linearised;
 use crate::posterior::Posterior;
 use crate::problem::{Problem, ProblemError, Rows, check_rows};
+use crate::session_view::SessionView;
 
 /// Most hypotheses that are averaged.
 const MOST_HYPOTHESES: usize = 12;

@@ -175,9 +175,27 @@ pub trait ForwardModel {
         self.readings(constants, effects)
     }
 
-    /// Returns the derivatives as [`ForwardModel::channels`] there; that of the curved channel with respect to the logarithm
-    /// of one plus it.
-    fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[f64]) -> Vec<Vec<f64>> {
+    /// Returns the same where `constants` have one that is `moved`, given the readings at them. A model may keep those that the
+    /// constant does not change.
+    fn readings_where_moved(
+        &self,
+        [_constants, moved]: [&[f64]; 2],
+        effects: &[SizedEffect],
+        curved: &[f64],
+        _readings: &[f64],
+    ) -> Vec<f64> {
+        self.readings_at(moved, effects, curved)
+    }
+
+    /// Returns the derivatives as [`ForwardModel::channels`] there, given the readings; that of the curved channel with respect
+    /// to the logarithm of one plus it.
+    fn channels_at(
+        &self,
+        constants: &[f64],
+        effects: &[SizedEffect],
+        _curved: &[f64],
+        _readings: &[f64],
+    ) -> Vec<Vec<f64>> {
         self.channels(constants, effects)
     }
 

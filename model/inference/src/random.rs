@@ -42,7 +42,7 @@ impl Random {
     /// Mathematics of Computation 62, 1994).
     pub(crate) fn student(&mut self) -> f64 {
         const NU: f64 = 5.0;
-        let radius = (NU * (libm::pow(self.uniform(), -2.0 / NU) - 1.0)).sqrt();
+        let radius = (NU * libm::expm1(-2.0 / NU * libm::log(self.uniform()))).sqrt();
         radius * libm::cos(2.0 * PI * self.uniform())
     }
 }

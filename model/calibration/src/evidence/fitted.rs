@@ -1,6 +1,6 @@
 //! A fitted hypothesis as a model for files: constants, terms, noise and covariance.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use pinswitch_inference::{Coefficient, Coefficients, Fit, Member, Outliers, SizedEffect};
 
 use super::forward::Channel;
@@ -135,11 +135,9 @@ impl Evidence {
         let covariate = covariate_of(structure.covariate);
         let channel = channel_of(structure.channel);
         let of = |form: Shape| effects::Structure { covariate, channel, form };
-        let square = curve.iter().map(|v| v * v).sum::<f64>() / curve.len().max(1) as f64;
         let columns: Vec<usize> =
             (0..).map_while(|i| coefficients.index(Coefficient::Kernel(kernel, i))).collect();
-        let variance: f64 = columns.iter().map(|i| coefficients.covariance[(*i, *i)]).sum();
-        let relative = variance / columns.len().max(1) as f64 / square.max(1e-300);
+        let relative = relative_variance(coefficients, &columns);
         match structure.record {
             Record::Nothing => Vec::new(),
             Record::Time => {
@@ -243,6 +241,15 @@ impl Evidence {
             specimen_scale: random("specimen"),
         }
     }
+}
+
+/// Returns the variance of a factor of a function whose course is known: `1/(m' C^-1 m)` for the mean `m` and the covariance `C` of
+/// its coefficients.
+fn relative_variance(coefficients: &Coefficients, columns: &[usize]) -> f64 {
+    let mean = DVector::from_iterator(columns.len(), columns.iter().map(|i| coefficients.mean[*i]));
+    let covariance = coefficients.covariance.select_rows(columns).select_columns(columns);
+    let precision: f64 = covariance.cholesky().map_or(0.0, |factors| mean.dot(&factors.solve(&mean)));
+    1.0 / precision.max(f64::MIN_POSITIVE)
 }
 
 pub(super) fn channel_of(channel: Channel) -> effects::Channel {

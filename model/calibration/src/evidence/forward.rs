@@ -184,29 +184,29 @@ impl FrictionModel {
         factors: Factors,
         curved: &[f64],
     ) -> Vec<f64> {
-        self.evaluate_at(&self.points, &self.formula_values, constants, effects, factors, curved)
+        let acting = self.acting(&self.points, &self.formula_values, effects);
+        self.evaluate_at(&self.points, &acting, &self.contacts(constants), factors, curved, |_| None)
     }
 
+    /// Returns the readings in newtons of points, except of rows where they are `known`.
     fn evaluate_at(
         &self,
         points: &[Point],
-        formula_values: &FormulaValues,
-        constants: &[f64],
-        effects: &[SizedEffect],
+        acting: &[Acting<'_>],
+        states: &[ContactState],
         factors: Factors,
         curved: &[f64],
+        known: impl Fn(usize) -> Option<f64>,
     ) -> Vec<f64> {
-        let acting = self.acting(points, formula_values, effects);
-        let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
-        let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
-        let states: Vec<ContactState> =
-            self.conditions.iter().map(|c| self.contact(c, mu, constants)).collect();
         let moves = acting.iter().any(|acting| acting.prior.effect.moves_along_a_series());
         let mut last: Option<(&Point, f64, f64)> = None;
         points
             .iter()
             .enumerate()
             .map(|(row, point)| {
+                if let Some(reading) = known(row) {
+                    return reading;
+                }
                 let change = curved.get(row).copied().unwrap_or(0.0);
                 // Repetitions at one setting have one expectation, unless an effect varies within a series.
                 let is_known = |known: &Point, at: f64| !moves && at == change && known.has_setting_of(point);
@@ -215,7 +215,7 @@ impl FrictionModel {
                 }
                 let condition = &self.conditions[point.condition];
                 let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
-                for Acting { prior, constants, known } in &acting {
+                for Acting { prior, constants, known } in acting {
                     match known {
                         Some((formula, values)) => formula.apply_to_contact(values[row], &mut state),
                         None => prior.effect.on_contact(constants, point, condition, &mut state),
@@ -224,11 +224,11 @@ impl FrictionModel {
                 factors.apply(&mut state);
                 state.exponent_factor *= 1.0 + change;
                 let mut reading = state.tension_n(condition, point);
-                for Acting { prior, constants, .. } in &acting {
+                for Acting { prior, constants, .. } in acting {
                     reading = prior.effect.on_tension(constants, point, condition, reading);
                 }
                 // The limit of the load cell is the last stage.
-                for Acting { prior, constants, .. } in &acting {
+                for Acting { prior, constants, .. } in acting {
                     reading = prior.effect.on_reading(constants, point, condition, reading);
                 }
                 last = Some((point, change, reading));
@@ -273,6 +273,13 @@ impl FrictionModel {
             .collect()
     }
 
+    /// Returns the contact of each condition before effects, at no load.
+    fn contacts(&self, constants: &[f64]) -> Vec<ContactState> {
+        let coefficient = |index: Option<usize>| index.map_or(0.0, |i| libm::exp(constants[i]));
+        let mu = [self.baseline.pins, self.baseline.silicone, self.baseline.plain].map(coefficient);
+        self.conditions.iter().map(|c| self.contact(c, mu, constants)).collect()
+    }
+
     /// Returns the contact of a condition before effects, at no load.
     fn contact(&self, condition: &Condition, mu: [f64; 3], q: &[f64]) -> ContactState {
         let [mu_pins, mu_silicone, mu_plain] = mu;
@@ -307,18 +314,38 @@ impl ForwardModel for FrictionModel {
     }
 
     fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>> {
-        self.channels_at(constants, effects, &[])
+        self.channels_at(constants, effects, &[], &self.readings(constants, effects))
     }
 
     fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
         self.evaluate(constants, effects, NO_CHANGE, curved)
     }
 
-    fn channels_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<Vec<f64>> {
-        let before = self.evaluate(constants, effects, NO_CHANGE, curved);
+    fn readings_where_moved(
+        &self,
+        constants: [&[f64]; 2],
+        effects: &[SizedEffect],
+        curved: &[f64],
+        readings: &[f64],
+    ) -> Vec<f64> {
+        // Most constants are of one device, and effects read none but through its contact.
+        let [before, after] = constants.map(|constants| self.contacts(constants));
+        let is_same: Vec<bool> = before.iter().zip(&after).map(|(before, after)| before == after).collect();
+        let known = |row: usize| is_same[self.points[row].condition].then(|| readings[row]);
+        let acting = self.acting(&self.points, &self.formula_values, effects);
+        self.evaluate_at(&self.points, &acting, &after, NO_CHANGE, curved, known)
+    }
+
+    fn channels_at(
+        &self,
+        constants: &[f64],
+        effects: &[SizedEffect],
+        curved: &[f64],
+        readings: &[f64],
+    ) -> Vec<Vec<f64>> {
         let slope = |factors: Factors| -> Vec<f64> {
             let after = self.evaluate(constants, effects, factors, curved);
-            after.iter().zip(&before).map(|(a, b)| (a - b) / CHANNEL_STEP).collect()
+            after.iter().zip(readings).map(|(a, b)| (a - b) / CHANNEL_STEP).collect()
         };
         let up = 1.0 + CHANNEL_STEP;
         let friction = slope(Factors { exponent: up, ..NO_CHANGE });
@@ -326,7 +353,7 @@ impl ForwardModel for FrictionModel {
         let silicone = slope(Factors { silicone: up, ..NO_CHANGE });
         let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();
         let by_direction = friction.iter().zip(&sign).map(|(f, d)| f * d).collect();
-        vec![vec![1.0; sign.len()], sign, friction, pins, silicone, before, by_direction]
+        vec![vec![1.0; sign.len()], sign, friction, pins, silicone, readings.to_vec(), by_direction]
     }
 
     fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {
@@ -335,7 +362,8 @@ impl ForwardModel for FrictionModel {
 
     fn session_mean(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<f64> {
         let points = self.points_at_mean_time();
-        self.evaluate_at(&points, &FormulaValues::default(), constants, effects, NO_CHANGE, &[])
+        let acting = self.acting(&points, &FormulaValues::default(), effects);
+        self.evaluate_at(&points, &acting, &self.contacts(constants), NO_CHANGE, &[], |_| None)
     }
 }
 

@@ -342,7 +342,7 @@ impl Setup {
                 levels(&self.mounts, |label| &label.mount),
                 levels(&self.specimens, |label| &label.specimen),
             ],
-            bases: structure::bases(&self.structures, rows, Session::Fitted),
+            bases: structure::fitted_bases(&self.structures),
             discrepancies: discrepancies.collect(),
             relevant: relevant.collect(),
             is_new_session: session == Session::New,

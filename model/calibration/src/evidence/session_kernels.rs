@@ -3,6 +3,8 @@
 //! A new zero of the load cell in each session, a slow trend, another tendon from some session on and one bad day are levels of
 //! the same factor. They differ in the level that a new session is expected to have, so each is a form of its own.
 
+use std::rc::Rc;
+
 use nalgebra::DMatrix;
 use pinswitch_inference::SessionLevels;
 
@@ -74,7 +76,7 @@ fn random_walk(count: usize) -> Form {
 
 /// Returns a basis by its values for the session of a row, which is `None` for a new one.
 fn basis(columns: usize, value: impl Fn(Option<usize>, usize) -> f64 + 'static) -> BasisOfRows {
-    Box::new(move |rows| {
+    Rc::new(move |rows| {
         DMatrix::from_fn(rows.len(), columns, |row, column| value(rows.points[row].session_group, column))
     })
 }

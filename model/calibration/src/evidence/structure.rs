@@ -1,7 +1,9 @@
 //! A kernel of unnamed structure, with its bases at the rows of the fitted session and of a new one.
 
+use std::rc::Rc;
+
 use nalgebra::DMatrix;
-use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels};
+use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels, kernel};
 
 use super::Session;
 use super::covariates::Covariates;
@@ -16,7 +18,7 @@ pub(super) const GROSS_ERROR: &str = "gross error";
 const WANDERING_PROBABILITY: f64 = 0.05;
 
 /// A function of the rows that returns a basis.
-pub(super) type BasisOfRows = Box<dyn Fn(&Covariates) -> DMatrix<f64>>;
+pub(super) type BasisOfRows = Rc<dyn Fn(&Covariates) -> DMatrix<f64>>;
 
 /// How a model file keeps the function of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,16 +35,48 @@ pub(super) enum Record {
     Nothing,
 }
 
-/// A discrete form of a kernel.
+/// Root mean square of the rows of a basis below which it changes nothing.
+const LEAST_NORM: f64 = 1e-9;
+
+/// A discrete form of a kernel. Clones share their numbers.
+#[derive(Clone)]
 pub(super) struct Variant {
-    pub(super) basis: BasisOfRows,
+    basis: BasisOfRows,
     /// Factor of the basis.
-    pub(super) factor: f64,
-    pub(super) probability: f64,
+    factor: f64,
+    probability: f64,
+    /// The basis at the rows of the fitted table, where it was evaluated once.
+    fitted: Basis,
+    /// Its mean row.
+    mean: Vec<f64>,
 }
 
 impl Variant {
-    pub(super) fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
+    /// Returns a variant with unit variance at the rows of the fitted table; `None` if it is zero there.
+    pub(super) fn of_unit_variance(basis: BasisOfRows, rows: &Covariates, probability: f64) -> Option<Self> {
+        let columns = basis(rows);
+        let norm = kernel::rms_norm(&columns);
+        (norm > LEAST_NORM).then(|| Self::scaled(basis, columns, 1.0 / norm, probability))
+    }
+
+    /// Returns a variant with the height of its basis.
+    pub(super) fn as_is(basis: BasisOfRows, rows: &Covariates, probability: f64) -> Self {
+        let columns = basis(rows);
+        Self::scaled(basis, columns, 1.0, probability)
+    }
+
+    fn scaled(basis: BasisOfRows, columns: DMatrix<f64>, factor: f64, probability: f64) -> Self {
+        let columns = columns * factor;
+        let mean = columns.row_mean().iter().copied().collect();
+        Self { basis, factor, probability, fitted: columns.into(), mean }
+    }
+
+    /// Returns the variant with another probability.
+    pub(super) fn with_probability(&self, probability: f64) -> Self {
+        Self { probability, ..self.clone() }
+    }
+
+    fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
         (self.basis)(rows) * self.factor
     }
 }
@@ -55,11 +89,9 @@ pub(super) struct Structure {
     pub(super) record: Record,
     pub(super) is_session_bound: bool,
     pub(super) scale: f64,
-    pub(super) bases: std::rc::Rc<Vec<Variant>>,
+    pub(super) bases: Rc<Vec<Variant>>,
     /// How the levels of sessions follow each other, one per variant; empty if it has no levels of sessions.
     pub(super) session_levels: Vec<SessionLevels>,
-    /// Mean rows of the bases on the fitted table.
-    pub(super) means: Vec<Vec<f64>>,
 }
 
 impl Structure {
@@ -82,27 +114,36 @@ impl Structure {
         }
     }
 
-    /// Returns the bases at the rows of the fitted table.
+    /// Returns the bases at other rows of the fitted session.
     fn bases(&self, rows: &Covariates) -> Vec<Basis> {
         self.bases.iter().map(|variant| variant.columns(rows).into()).collect()
     }
 
-    /// Returns the bases at the rows of a new session: what a session draws again has its mean.
+    /// Returns the bases at the rows of a new session: what a session draws again has its mean, except a gross error, which no
+    /// other session has.
     fn bases_of_new_session(&self, rows: &Covariates) -> Vec<Basis> {
         if !self.is_session_bound {
             return self.bases(rows);
         }
-        let repeated =
-            |mean: &Vec<f64>| DMatrix::from_fn(rows.len(), mean.len(), |_, column| mean[column]).into();
-        self.means.iter().map(repeated).collect()
+        let share = if self.covariate == GROSS_ERROR { 0.0 } else { 1.0 };
+        let repeated = |variant: &Variant| {
+            DMatrix::from_fn(rows.len(), variant.mean.len(), |_, column| share * variant.mean[column]).into()
+        };
+        self.bases.iter().map(repeated).collect()
     }
 }
 
-/// Returns the bases of structures at the rows of the fitted session or of a new one. Those of one covariate share them.
+/// Returns the bases of structures at the rows of the fitted table.
+pub(super) fn fitted_bases(structures: &[Structure]) -> Vec<Vec<Basis>> {
+    let of = |structure: &Structure| structure.bases.iter().map(|variant| variant.fitted.clone()).collect();
+    structures.iter().map(of).collect()
+}
+
+/// Returns the bases of structures at other rows of the fitted session or at those of a new one. Those of one covariate share them.
 pub(super) fn bases(structures: &[Structure], rows: &Covariates, session: Session) -> Vec<Vec<Basis>> {
     let mut all: Vec<Vec<Basis>> = Vec::new();
     for (i, structure) in structures.iter().enumerate() {
-        let is_shared = |other: &Structure| std::rc::Rc::ptr_eq(&other.bases, &structure.bases);
+        let is_shared = |other: &Structure| Rc::ptr_eq(&other.bases, &structure.bases);
         let shared = structures[..i].iter().rposition(is_shared).map(|other| all[other].clone());
         all.push(shared.unwrap_or_else(|| match session {
             Session::New => structure.bases_of_new_session(rows),

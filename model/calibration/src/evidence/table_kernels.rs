@@ -1,12 +1,13 @@
 //! Kernels that a table can show over its covariates, none finer than the sampling.
 
 use std::ops::RangeInclusive;
+use std::rc::Rc;
 
 use pinswitch_inference::kernel;
 
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
-use super::structure::{BasisOfRows, GROSS_ERROR, Record, Structure, Variant};
+use super::structure::{BasisOfRows, Record, Structure, Variant};
 use crate::effects::{Abscissa, REFERENCE_LOAD_N};
 use crate::table::Point;
 
@@ -75,13 +76,8 @@ impl Collector<'_> {
     /// Returns the variants of bases that are scaled to unit variance, of this total probability.
     pub(super) fn variants(&self, bases: Vec<BasisOfRows>, probability: f64) -> Vec<Variant> {
         let probability = probability / bases.len().max(1) as f64;
-        bases
-            .into_iter()
-            .filter_map(|basis| {
-                let norm = kernel::rms_norm(&basis(self.rows));
-                (norm > 1e-9).then(|| Variant { basis, factor: 1.0 / norm, probability })
-            })
-            .collect()
+        let variant = |basis| Variant::of_unit_variance(basis, self.rows, probability);
+        bases.into_iter().filter_map(variant).collect()
     }
 
     /// Adds a kernel with these variants for each channel, and returns those added.
@@ -99,12 +95,7 @@ impl Collector<'_> {
         if variants.is_empty() {
             return &mut [];
         }
-        // No other session has a gross error of this one.
-        let share = if covariate == GROSS_ERROR { 0.0 } else { 1.0 };
-        let mean =
-            |variant: &Variant| variant.columns(self.rows).row_mean().iter().map(|x| share * x).collect();
-        let means: Vec<Vec<f64>> = variants.iter().map(mean).collect();
-        let bases = std::rc::Rc::new(variants);
+        let bases = Rc::new(variants);
         for channel in channels {
             // Without two materials their friction is the friction.
             if !self.has_both_materials && matches!(channel, Channel::Pins | Channel::Silicone) {
@@ -123,7 +114,6 @@ impl Collector<'_> {
                 is_session_bound,
                 scale,
                 bases: bases.clone(),
-                means: means.clone(),
                 session_levels: Vec::new(),
             });
         }
@@ -136,17 +126,17 @@ impl Collector<'_> {
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
             let waves: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
+                Rc::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
             let rank = distinct(&at).min(BROWNIAN_RANK);
             let steps: BasisOfRows =
-                Box::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
+                Rc::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
             let mut bases = vec![waves, steps];
             // A pattern that repetitions show just as well, where each has a position of its own.
             let hundredths = |position: f64| (100.0 * position).round() as i64;
             let stops: std::collections::BTreeSet<i64> = at.iter().copied().map(hundredths).collect();
             let stops: Vec<i64> = stops.into_iter().collect();
             if stops.len() <= MOST_LEVELS {
-                bases.push(Box::new(move |rows| {
+                bases.push(Rc::new(move |rows| {
                     let stop = |at: &f64| stops.binary_search(&hundredths(*at)).ok();
                     kernel::levels(&position(rows).iter().map(stop).collect::<Vec<_>>(), stops.len())
                 }));
@@ -159,7 +149,7 @@ impl Collector<'_> {
         if distinct(&at) > 2 {
             self.settling("repetition", Record::Table(Abscissa::LogRepetition, false), repetition);
             let sign = |p: &Point| if p.repetition % 2.0 > 0.5 { 1.0 } else { -1.0 };
-            let alternation: BasisOfRows = Box::new(move |rows| kernel::single(&rows.column(sign)));
+            let alternation: BasisOfRows = Rc::new(move |rows| kernel::single(&rows.column(sign)));
             self.add(
                 "alternate repetitions",
                 "repetition",
@@ -184,11 +174,11 @@ impl Collector<'_> {
     fn settling(&mut self, name: &str, record: Record, covariate: ValuesOfRows) {
         let scale = Interval::of(&covariate(self.rows));
         let from_any: BasisOfRows =
-            Box::new(move |rows| kernel::brownian_from_any(&scale.shares(&covariate(rows)), 5));
+            Rc::new(move |rows| kernel::brownian_from_any(&scale.shares(&covariate(rows)), 5));
         let channels = [Channel::Reading, Channel::Drag, Channel::DirectionFriction];
         self.add(name, "repetition", record, &channels, vec![from_any]);
         let from_zero: BasisOfRows =
-            Box::new(move |rows| kernel::brownian(&scale.shares(&covariate(rows)), 5));
+            Rc::new(move |rows| kernel::brownian(&scale.shares(&covariate(rows)), 5));
         self.add(name, "repetition", record, &[Channel::Friction], vec![from_zero]);
     }
 
@@ -206,7 +196,7 @@ impl Collector<'_> {
                 Channel::Silicone,
                 Channel::DirectionFriction,
             ];
-            let curve: BasisOfRows = Box::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
+            let curve: BasisOfRows = Rc::new(move |rows| kernel::brownian(&scale.shares(&load(rows)), 5));
             self.add("load", "load", Record::Table(Abscissa::Load, false), &channels, vec![curve]);
         }
         if (4..=MOST_LOADS).contains(&distinct(&loads)) {
@@ -226,7 +216,7 @@ impl Collector<'_> {
                 let decay = libm::exp(-p.through / repetitions);
                 (p.previous_load_n - p.load_n) / REFERENCE_LOAD_N * decay
             };
-            Box::new(move |rows| kernel::single(&rows.column(memory)))
+            Rc::new(move |rows| kernel::single(&rows.column(memory)))
         });
         self.add(
             "previous load",
@@ -242,12 +232,11 @@ impl Collector<'_> {
         let speeds = speed(self.rows);
         if distinct(&speeds) > 2 {
             let scale = Interval::of(&speeds);
-            let curve: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
+            let curve: BasisOfRows = Rc::new(move |rows| kernel::smooth(&scale.shares(&speed(rows)), 6, 1.0));
             self.add("speed", "speed", Record::Table(Abscissa::LogSpeed, false), MEASURING, vec![curve]);
         } else if distinct(&speeds) == 2 {
             let sign: BasisOfRows =
-                Box::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
+                Rc::new(move |rows| kernel::single(&rows.column(|p| p.log_speed.signum())));
             self.add(
                 "speed",
                 "speed",
@@ -260,8 +249,7 @@ impl Collector<'_> {
         let dwells = dwell(self.rows);
         if distinct(&dwells) > 1 {
             let scale = Interval::of(&dwells);
-            let curve: BasisOfRows =
-                Box::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
+            let curve: BasisOfRows = Rc::new(move |rows| kernel::smooth(&scale.shares(&dwell(rows)), 4, 1.5));
             self.add(
                 "dwell",
                 "dwell",
@@ -272,7 +260,7 @@ impl Collector<'_> {
         }
         let descending = self.rows.column(|p| p.descending);
         if distinct(&descending) == 2 {
-            let sweep: BasisOfRows = Box::new(|rows| kernel::single(&rows.column(|p| p.descending)));
+            let sweep: BasisOfRows = Rc::new(|rows| kernel::single(&rows.column(|p| p.descending)));
             self.add("sweep", "sweep", Record::Table(Abscissa::Descending, true), COMMON, vec![sweep]);
         }
     }
@@ -335,7 +323,7 @@ impl Collector<'_> {
         if !self.has_levels(least..=MOST_LEVELS, names.len()) {
             return;
         }
-        let basis: BasisOfRows = Box::new(move |rows| {
+        let basis: BasisOfRows = Rc::new(move |rows| {
             let level_of: Vec<Option<usize>> =
                 names_of(rows, &level).iter().map(|name| names.binary_search(name).ok()).collect();
             kernel::levels(&level_of, names.len())

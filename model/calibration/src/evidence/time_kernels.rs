@@ -1,6 +1,7 @@
 //! Kernels over the time of a session, and over its series in the order of time.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use nalgebra::DMatrix;
 use pinswitch_inference::kernel;
@@ -47,29 +48,44 @@ impl Collector<'_> {
         let edges: Vec<f64> = starts.iter().copied().skip(1).collect();
         let time = |rows: &Covariates| rows.column(|p| p.time_s);
         let scale = Interval::of(&time(self.rows));
-        let wandering = || -> BasisOfRows {
-            if edges.len() < FEW_SERIES {
-                return Box::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12));
-            }
+        let wandering: BasisOfRows = if edges.len() < FEW_SERIES {
+            Rc::new(move |rows| kernel::brownian(&scale.shares(&time(rows)), 12))
+        } else {
             // Between series time moves by steps, equal ones: pauses are not known.
-            let (edges, rank) = (edges.clone(), edges.len().min(BROWNIAN_RANK));
+            let rank = edges.len().min(BROWNIAN_RANK);
             let share =
                 move |time: &f64| edges.partition_point(|edge| edge <= time) as f64 / edges.len() as f64;
-            Box::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
+            Rc::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
         let waves = waves(scale, starts.len());
-        let intervals = interval_variants(self.rows.series_count(), INTERVAL_PROBABILITY);
+        let intervals = self.intervals(INTERVAL_PROBABILITY);
         let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
         let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
         let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
-        let mut variants = self.variants(vec![wandering()], 1.0 - of_intervals - of_waves);
+        let mut variants = self.variants(vec![wandering], 1.0 - of_intervals - of_waves);
+        // The scale of the cell drifts, as its bridge warms up, or changes by a fault or a calibration.
+        let mut of_gain: Vec<Variant> =
+            variants.iter().map(|drift| drift.with_probability(1.0 - of_intervals)).collect();
+        of_gain.extend(intervals.iter().cloned());
         variants.extend(self.variants(waves, of_waves));
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
-        // The scale of the cell drifts, as its bridge warms up, or changes by a fault or a calibration.
-        let mut of_gain = self.variants(vec![wandering()], 1.0 - of_intervals);
-        of_gain.extend(interval_variants(self.rows.series_count(), of_intervals));
         self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
+    }
+
+    /// Returns structure of this total probability that acts in one interval of series: a change, or a fault that lasts for a
+    /// while. Brownian motion prices one large step as many small ones.
+    fn intervals(&self, probability: f64) -> Vec<Variant> {
+        let intervals = intervals(self.rows.series_count());
+        let probability = probability / intervals.len().max(1) as f64;
+        let variant = |interval: Range<usize>| {
+            let basis: BasisOfRows = Rc::new(move |rows| {
+                let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
+                kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+            });
+            Variant::as_is(basis, self.rows, probability)
+        };
+        intervals.into_iter().map(variant).collect()
     }
 
     /// Adds offsets that wander from series to series in the order of time, in both directions alike or
@@ -80,7 +96,7 @@ impl Collector<'_> {
             return;
         }
         let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
-            Box::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
+            Rc::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
         });
         let channels = [Channel::Reading, Channel::Drag, Channel::Gain];
         self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
@@ -101,11 +117,11 @@ impl Collector<'_> {
                     let of = usize::from(is_second(&rows.points[row]));
                     rows.sequence[row] == series && (directions == 1 || of == direction)
                 };
-                let basis: BasisOfRows = Box::new(move |rows| {
+                let basis: BasisOfRows = Rc::new(move |rows| {
                     let value = |row, direction| f64::from(u8::from(is_in(rows, row, direction)));
                     DMatrix::from_fn(rows.len(), directions, value)
                 });
-                Variant { basis, factor: 1.0, probability: if has_both { 0.5 } else { 1.0 } }
+                Variant::as_is(basis, self.rows, if has_both { 0.5 } else { 1.0 })
             };
             let variants = (1..=if has_both { 2 } else { 1 }).map(error).collect();
             self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
@@ -121,24 +137,9 @@ fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
     cycles
         .take_while(|cycles| *cycles <= most)
         .map(|cycles| -> BasisOfRows {
-            Box::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
+            Rc::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
         })
         .collect()
-}
-
-/// Returns structure of this total probability that acts in one interval of a number of series: a change, or a fault that
-/// lasts for a while. Brownian motion prices one large step as many small ones.
-fn interval_variants(count: usize, probability: f64) -> Vec<Variant> {
-    let intervals = intervals(count);
-    let probability = probability / intervals.len().max(1) as f64;
-    let variant = |interval: Range<usize>| -> Variant {
-        let basis: BasisOfRows = Box::new(move |rows| {
-            let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
-            kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
-        });
-        Variant { basis, factor: 1.0, probability }
-    };
-    intervals.into_iter().map(variant).collect()
 }
 
 /// Returns intervals of a number of series, of two or more with two or more outside: one series that differs from all others

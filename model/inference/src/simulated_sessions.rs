@@ -1,0 +1,150 @@
+//! Simulated sessions of a fit: how far the mean square error of a session scatters about its expected value.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::design::{Component, Role};
+use crate::evidence::component_gain;
+use crate::fit::Fit;
+use crate::leave_out::Linearised;
+use crate::problem::Problem;
+use crate::quadrature::log_sum_exp;
+use crate::random::Random;
+use crate::session_view::SessionView;
+
+/// Readings of a simulated session, at most: as many as possible at equal distances. Those of a longer one scatter less about
+/// what their series and mounts share.
+const MOST_READINGS: usize = 4000;
+
+/// Sessions of the rows of a problem, drawn from a fit.
+pub(crate) struct SimulatedSessions<'a> {
+    problem: &'a Problem,
+    fit: &'a Fit,
+    linearised: &'a Linearised,
+    /// Simulated rows.
+    rows: Vec<usize>,
+    /// Places of the rows of each series among them.
+    series: Vec<Range<usize>>,
+    /// Their design.
+    matrix: DMatrix<f64>,
+    redrawn: Vec<Redrawn>,
+}
+
+/// A random effect whose levels a new session draws again.
+struct Redrawn {
+    effect: usize,
+    levels: usize,
+    /// Standard deviations, with the sum of the probabilities up to each.
+    standard_deviations: Vec<(f64, f64)>,
+    /// Change of each simulated row per unit of its level.
+    channel: Vec<f64>,
+}
+
+impl<'a> SimulatedSessions<'a> {
+    /// Simulates sessions with the readings at the rows that are `sound`.
+    pub(crate) fn new(
+        problem: &'a Problem,
+        fit: &'a Fit,
+        linearised: &'a Linearised,
+        sound: &[usize],
+    ) -> Self {
+        let distance = sound.len().div_ceil(MOST_READINGS).max(1);
+        let rows: Vec<usize> = sound.iter().copied().step_by(distance).collect();
+        let of_series = |range: &Range<usize>| {
+            rows.partition_point(|row| *row < range.start)..rows.partition_point(|row| *row < range.end)
+        };
+        let mut redrawn = Vec::new();
+        for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
+            let gain = component_gain(&linearised.design, &linearised.point, Component::Random(i));
+            let terms = gain.map_or_else(Vec::new, |(_, gain)| gain.fine_terms(effect.predictive_prior()));
+            let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
+            let mut sum = 0.0;
+            let up_to = terms.into_iter().map(|(sd, term)| {
+                sum += libm::exp(term - total);
+                (sd, sum)
+            });
+            let channel = linearised.design.sensitivity(&problem.space, Component::Random(i));
+            redrawn.push(Redrawn {
+                effect: i,
+                levels: effect.levels,
+                standard_deviations: up_to.collect(),
+                channel: rows.iter().map(|row| channel[*row]).collect(),
+            });
+        }
+        let series = problem.ranges.iter().map(of_series).collect();
+        let matrix = linearised.design.matrix.select_rows(&rows);
+        Self { problem, fit, linearised, rows, series, matrix, redrawn }
+    }
+
+    /// Returns the mean squares of this many sessions, divided by their expected value. The levels of a session differ from the
+    /// expected ones by the steps of `view`. The expected value uses the mean square of the steps so far.
+    pub(crate) fn relative_squares(
+        &self,
+        random: &mut Random,
+        view: &SessionView,
+        simulations: usize,
+    ) -> Vec<f64> {
+        let count = self.rows.len().max(1) as f64;
+        let mean_square = |errors: &DVector<f64>| errors.norm_squared() / count;
+        let mut without_steps = 0.0;
+        let squares: Vec<f64> = (0..simulations)
+            .map(|_| {
+                let mut errors = self.session(random);
+                self.add_new_levels(random, &mut errors);
+                without_steps += mean_square(&errors) / simulations as f64;
+                for steps in &view.steps {
+                    let step = steps.draw(random);
+                    errors.iter_mut().zip(&self.rows).for_each(|(e, row)| *e += step * steps.channel[*row]);
+                }
+                mean_square(&errors)
+            })
+            .collect();
+        let of_steps = self.rows.iter().map(|row| view.step_square(*row)).sum::<f64>() / count;
+        let expected = (without_steps + of_steps).max(f64::MIN_POSITIVE);
+        squares.iter().map(|square| square / expected).collect()
+    }
+
+    /// Returns errors of a session: uncertainty of constants and sizes, and noise.
+    fn session(&self, random: &mut Random) -> DVector<f64> {
+        let (problem, solution) = (self.problem, &self.linearised.point.solution);
+        let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
+        let mut coefficients = solution.root.tr_mul(&normal);
+        for (i, role) in self.linearised.design.roles.iter().enumerate() {
+            if !matches!(role, Role::Constant(_) | Role::Size(_) | Role::Shape(..)) {
+                coefficients[i] = 0.0;
+            }
+        }
+        let mut errors = &self.matrix * coefficients;
+        let [sigma, growth, direction, series, scale, by_load] = self.fit.scales().values();
+        let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
+        for places in &self.series {
+            let offset = series * random.normal();
+            let sides = [direction * random.normal(), direction * random.normal()];
+            let slopes = [by_load * random.normal(), by_load * random.normal()];
+            let factor = scale * random.normal();
+            for place in places.clone() {
+                let row = self.rows[place];
+                let load = problem.rows.load[row] / problem.reference.mean_load;
+                let own = sigma * (1.0 + (growth * load).powi(2)).sqrt() * random.student();
+                let side = usize::from(problem.rows.direction[row]);
+                errors[place] += offset + sides[side] + load * slopes[side] + factor * friction[row] + own;
+            }
+        }
+        errors
+    }
+
+    /// Adds new levels of the random effects that a new session draws again, with standard deviations from their posterior.
+    fn add_new_levels(&self, random: &mut Random, errors: &mut DVector<f64>) {
+        for redrawn in &self.redrawn {
+            let share = random.uniform();
+            let drawn = redrawn.standard_deviations.iter().find(|(_, up_to)| share < *up_to);
+            let Some((sd, _)) = drawn.or(redrawn.standard_deviations.last()) else { continue };
+            let values: Vec<f64> = (0..redrawn.levels).map(|_| sd * random.normal()).collect();
+            let level_of = &self.problem.rows.levels[redrawn.effect];
+            for (place, row) in self.rows.iter().enumerate() {
+                errors[place] += level_of[*row].map_or(0.0, |level| values[level] * redrawn.channel[place]);
+            }
+        }
+    }
+}

@@ -162,9 +162,11 @@ fn others(report: &Report) -> String {
     let others = other_probabilities(report, NAMED_PROBABILITY);
     let each: Vec<String> = others.iter().map(|(name, p)| format!("{name} {}", probability(*p))).collect();
     match (report.effects.is_empty(), each.is_empty()) {
-        (true, true) => format!("no effect is detected; none has a probability above {NAMED_PROBABILITY}\n"),
+        (true, true) => format!(
+            "no effect is detected; none that this table can show has a probability above {NAMED_PROBABILITY}\n"
+        ),
         (true, false) => format!("no effect is detected; probabilities: {}\n", listed(&each)),
-        (false, true) => format!("nothing else above {NAMED_PROBABILITY}\n"),
+        (false, true) => format!("nothing else that this table can show above {NAMED_PROBABILITY}\n"),
         (false, false) => format!("other probabilities above {NAMED_PROBABILITY}: {}\n", listed(&each)),
     }
 }

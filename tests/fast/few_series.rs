@@ -2,9 +2,10 @@
 
 use std::io::Read;
 
-use pinswitch_calibration::effects::Vocabulary;
+use pinswitch_calibration::effects::{Abscissa, Shape, Structure, Vocabulary};
+use pinswitch_calibration::model::Term;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{MountReport, Report, Verdict, calibrate};
+use pinswitch_calibration::{Calibration, MountReport, Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
@@ -26,12 +27,16 @@ fn effects_are_detected_in_few_series() {
 
 /// Returns the report of a table in `tests/data/third-hand`.
 fn third_hand(name: &str) -> Report {
+    third_hand_calibration(name).report
+}
+
+fn third_hand_calibration(name: &str) -> Calibration {
     let packed =
         std::fs::File::open(repository("tests/data/third-hand").join(format!("{name}.csv.gz"))).unwrap();
     let mut text = String::new();
     flate2::read::MultiGzDecoder::new(packed).read_to_string(&mut text).unwrap();
     let rows = PlateauTable::read(text.as_bytes(), name).unwrap().rows;
-    calibrate(&rows, &Vocabulary::built_in(), 1).unwrap().report
+    calibrate(&rows, &Vocabulary::built_in(), 1).unwrap()
 }
 
 /// Each of these tables named an effect that its rig does not have, or that has no size: the noise of ten series of two
@@ -122,4 +127,26 @@ fn series_that_scatter_by_a_size_of_consequence_are_not_nothing() {
     assert!(report.series_scatter > 0.05, "{}", report.series_scatter);
     let scatter = "without a known cause, series differ by ";
     assert!(report.reservations().iter().any(|reason| reason.starts_with(scatter)));
+}
+
+/// The zero of the cell is another one on each of six days; on another rig it is wrong by 1.5 N on the third of five days. A new
+/// day was predicted with the zero of the last one, and the expected error of the second rig was above the actual one on 12 of
+/// 12 later days.
+#[test]
+fn a_new_session_has_the_level_that_the_sessions_show() {
+    for (name, days, expected) in [("zero-of-each-session", 6, -0.157), ("one-bad-day", 5, 0.0)] {
+        let found = third_hand_calibration(name);
+        let words = found.report.effects[0].formula.as_str();
+        let levels = words.starts_with("reading over session: levels of");
+        assert!(levels && words.contains(&format!("({days} values)")), "{words}");
+        let of_sessions = found.augmented.model.terms.iter().find_map(|term| match term {
+            Term::Structure(Structure {
+                form: Shape::Table { over: Abscissa::Session, value, .. }, ..
+            }) => Some(value),
+            _ => None,
+        });
+        let levels = of_sessions.unwrap();
+        assert_eq!(levels.len(), days + 1, "{levels:?}");
+        assert!((levels[days] - expected).abs() < 0.02, "{name}: {levels:?}");
+    }
 }

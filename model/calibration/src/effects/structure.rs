@@ -433,7 +433,11 @@ impl Structure {
             }
             Shape::Descending => "a different level for descending loads".to_owned(),
             Shape::Constant => "a constant".to_owned(),
-            Shape::Table { over, at, value, .. } => table_words(*over, at, value, self.unit()),
+            Shape::Table { over, value, .. } => {
+                // The value after those of the sessions is what a new one is expected to have.
+                let measured = if *over == Abscissa::Session { frame.sessions.len() } else { value.len() };
+                table_words(*over, &value[..measured.min(value.len())], self.unit())
+            }
             Shape::DirectionLoad { power, .. } => {
                 format!("a difference between the directions with load to the power {power}")
             }
@@ -443,7 +447,7 @@ impl Structure {
 }
 
 /// Describes a table by its covariate and range.
-fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String {
+fn table_words(over: Abscissa, value: &[f64], unit: &str) -> String {
     let low = value.iter().copied().fold(f64::INFINITY, f64::min);
     let high = value.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (kind, name) = match over {
@@ -463,5 +467,5 @@ fn table_words(over: Abscissa, at: &[f64], value: &[f64], unit: &str) -> String 
         Abscissa::Specimen => ("levels", "the specimens"),
     };
     let unit = if unit == "1" { "" } else { " N" };
-    format!("{kind} of {low:+.3} to {high:+.3}{unit} over {name} ({} values)", at.len())
+    format!("{kind} of {low:+.3} to {high:+.3}{unit} over {name} ({} values)", value.len())
 }

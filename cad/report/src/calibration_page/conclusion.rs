@@ -77,7 +77,9 @@ fn effect(effect: &EffectReport) -> String {
 fn others(report: &Report) -> String {
     let named = other_probabilities(report, NAMED_PROBABILITY);
     if named.is_empty() {
-        return format!("<p>Nothing else has a probability above {NAMED_PROBABILITY}.</p>");
+        return format!(
+            "<p>Nothing else that this table can show has a probability above {NAMED_PROBABILITY}.</p>"
+        );
     }
     let each: Vec<String> =
         named.iter().map(|(name, p)| format!("{} {}", escape(name), probability(*p))).collect();

@@ -350,7 +350,7 @@ impl Structure {
     pub(crate) fn is_change(&self) -> bool {
         let is_of_group =
             matches!(self.form, Shape::Table { over: Abscissa::Session | Abscissa::Specimen, .. });
-        is_of_group && !matches!(self.channel, Channel::Reading | Channel::Gain | Channel::Drag)
+        is_of_group && matches!(self.channel, Channel::Friction | Channel::Pins | Channel::Silicone)
     }
 
     /// Returns the unit of its size.

@@ -211,7 +211,7 @@ impl Evidence {
     pub(crate) fn is_change(&self, member: Member) -> bool {
         let Member::Kernel(kernel) = member else { return false };
         let structure = &self.setup.structures[kernel];
-        let is_of_switch = !structure.channel.is_force() && structure.channel != Channel::Gain;
+        let is_of_switch = matches!(structure.channel, Channel::Friction | Channel::Pins | Channel::Silicone);
         matches!(structure.covariate, "session" | "specimen") && is_of_switch
     }
 

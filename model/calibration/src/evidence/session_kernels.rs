@@ -12,8 +12,8 @@ use super::forward::Channel;
 use super::structure::{BasisOfRows, Record};
 use super::table_kernels::{Collector, MOST_LEVELS};
 
-/// Channels of who measures and how, and of the switch.
-const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Gain];
+/// Channels of what a session may draw again, and of the switch.
+const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
 const SWITCH: &[Channel] = &[Channel::Friction, Channel::Pins, Channel::Silicone];
 
 /// A form of the levels with its basis.

@@ -287,11 +287,14 @@ impl Collector<'_> {
         // The mount effect on friction is in every hypothesis.
         let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
         self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
-        let switches =
-            &[Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
-        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), switches, |_, label| {
-            label.specimen.clone()
-        });
+        let of_specimens = &[COMMON, &[Channel::Pins, Channel::Silicone]].concat();
+        self.levels(
+            "specimen",
+            "specimen",
+            Record::Table(Abscissa::Specimen, true),
+            of_specimens,
+            |_, label| label.specimen.clone(),
+        );
         self.levels(
             "operator",
             "operator",

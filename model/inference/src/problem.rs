@@ -60,7 +60,7 @@ pub struct Kernel {
     pub variants: Vec<f64>,
     /// Whether a new session draws it again.
     pub is_session_bound: bool,
-    /// How the levels of sessions follow each other, one per variant; empty if it has no levels of sessions.
+    /// Process of the levels of sessions of each variant; empty for a kernel over another covariate.
     pub session_levels: Vec<SessionLevels>,
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
@@ -69,7 +69,7 @@ pub struct Kernel {
     pub is_gross_error: bool,
 }
 
-/// How levels of sessions follow each other.
+/// Process that the levels of sessions follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SessionLevels {
     /// Each session draws its level about the same mean, which a new one is expected to have.

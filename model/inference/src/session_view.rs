@@ -63,7 +63,7 @@ impl Steps {
     /// Draws the difference of a new session. The variance of few differences is known badly: its posterior, with a prior
     /// that is flat in its logarithm, is a scaled inverse chi-squared distribution with their number as degrees of freedom.
     pub(crate) fn draw(&self, random: &mut Random) -> f64 {
-        if self.count == 0 || (self.share < 1.0 && random.uniform() > self.share) {
+        if self.count == 0 || random.uniform() > self.share {
             return 0.0;
         }
         let chi_squared: f64 = (0..self.count).map(|_| random.normal().powi(2)).sum();

@@ -30,6 +30,13 @@ pub enum Channel {
     FrictionByDirection,
 }
 
+impl Channel {
+    /// Returns whether it is a friction coefficient of the switch, the same in both directions.
+    pub(crate) fn is_of_switch(self) -> bool {
+        matches!(self, Self::Friction | Self::Pins | Self::Silicone)
+    }
+}
+
 /// Covariate of a tabulated shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -58,7 +65,7 @@ pub enum Abscissa {
     Condition,
     /// Number of the operator, from 1.
     Operator,
-    /// Index of the session among those of the frame; a later one has the last value.
+    /// Index of the session among those of the frame; any other one has the last value.
     Session,
     /// Index of the specimen among those of the frame; -1 for an unknown one.
     Specimen,
@@ -350,7 +357,7 @@ impl Structure {
     pub(crate) fn is_change(&self) -> bool {
         let is_of_group =
             matches!(self.form, Shape::Table { over: Abscissa::Session | Abscissa::Specimen, .. });
-        is_of_group && matches!(self.channel, Channel::Friction | Channel::Pins | Channel::Silicone)
+        is_of_group && self.channel.is_of_switch()
     }
 
     /// Returns the unit of its size.

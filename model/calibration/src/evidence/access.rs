@@ -211,8 +211,7 @@ impl Evidence {
     pub(crate) fn is_change(&self, member: Member) -> bool {
         let Member::Kernel(kernel) = member else { return false };
         let structure = &self.setup.structures[kernel];
-        let is_of_switch = matches!(structure.channel, Channel::Friction | Channel::Pins | Channel::Silicone);
-        matches!(structure.covariate, "session" | "specimen") && is_of_switch
+        matches!(structure.covariate, "session" | "specimen") && channel_of(structure.channel).is_of_switch()
     }
 
     /// Returns the constant that a change multiplies.

@@ -38,18 +38,27 @@ pub(super) struct RowLabels {
 }
 
 impl Covariates {
-    /// Sorts the rows of a table by series.
+    /// Sorts the rows of a table by session and series, each in the order of their first rows.
     ///
     /// # Errors
     /// A [`Diagnostic`] if the frame lacks the condition of a row.
     pub(super) fn new(frame: &Frame, rows: &[PlateauRow]) -> Result<Self, Diagnostic> {
         let (series_of, _) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
+        let (session_of, _) = crate::table::groups(rows, |r| r.labels.session.clone());
         let mut source: Vec<usize> = (0..rows.len()).collect();
-        sort_by_number(&mut source, |i| series_of[*i] as f64);
+        source.sort_by_key(|i| (session_of[*i], series_of[*i]));
         let missing = || Diagnostic::new(codes::INTERNAL_ERROR, "a row has a condition that the table lacks");
         let all = frame.points(rows).ok_or_else(missing)?;
         let points: Vec<Point> = source.iter().map(|i| all[*i]).collect();
-        let series: Vec<usize> = source.iter().map(|i| series_of[*i]).collect();
+        let begins = |pair: &[usize]| usize::from(series_of[pair[0]] != series_of[pair[1]]);
+        let series: Vec<usize> = std::iter::once(0)
+            .chain(source.windows(2).map(begins))
+            .scan(0, |number, begins| {
+                *number += begins;
+                Some(*number)
+            })
+            .take(rows.len())
+            .collect();
         let has_mounts = rows.iter().any(|row| !row.labels.mount.is_empty());
         let labels = source.iter().zip(&points).map(|(i, point)| {
             let row = &rows[*i];
@@ -153,4 +162,28 @@ pub(super) fn distinct(values: &[f64]) -> usize {
     rounded.sort_by(f64::total_cmp);
     rounded.dedup();
     rounded.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    /// Two days whose rows alternate in the table: all rows of the first day come first, series by series.
+    #[test]
+    fn interleaved_sessions_are_consecutive() {
+        let day = |name: &str, seed| {
+            let mut rows = session(seed);
+            rows.iter_mut().for_each(|row| name.clone_into(&mut row.labels.session));
+            rows
+        };
+        let rows: Vec<PlateauRow> =
+            day("b", 1).into_iter().zip(day("a", 2)).flat_map(|(b, a)| [b, a]).collect();
+        let covariates = Covariates::new(&Frame::new(&rows), &rows).unwrap();
+        assert!(covariates.points.is_sorted_by_key(|point| point.session_group));
+        assert!(covariates.series.windows(2).all(|pair| pair[1] - pair[0] <= 1), "{:?}", covariates.series);
+        let [first, last] = [&covariates.labels[0], &covariates.labels[rows.len() - 1]];
+        assert_eq!((first.session.as_str(), last.session.as_str()), ("b", "a"));
+        assert_eq!(covariates.series_count(), 2 * 60);
+    }
 }

@@ -24,8 +24,8 @@ impl Collector<'_> {
     pub(super) fn sessions(&mut self) {
         let count = self.rows.points.iter().filter_map(|p| p.session_group).max().map_or(1, |last| last + 1);
         if self.has_levels(2..=MOST_LEVELS, count) {
-            // The last session may be the one with a wrong zero, but it has the switch as it is from now on. Of two sessions, too:
-            // what is drawn again of its friction is that of the mounts, in every hypothesis.
+            // The one session with a wrong zero may be the last. For the switch a difference of the last session is a change that
+            // lasts, and so is the difference of two sessions: mount effects contain the friction that is drawn again.
             self.levels_of_sessions(MEASURING, kinds(count, count));
             let of_switch = if count == 2 { vec![vec![random_walk(count)]] } else { kinds(count, count - 1) };
             self.levels_of_sessions(SWITCH, of_switch);

@@ -90,7 +90,7 @@ pub(super) struct Structure {
     pub(super) is_session_bound: bool,
     pub(super) scale: f64,
     pub(super) bases: Rc<Vec<Variant>>,
-    /// How the levels of sessions follow each other, one per variant; empty if it has no levels of sessions.
+    /// Process of the levels of sessions of each variant; empty for a kernel over another covariate.
     pub(super) session_levels: Vec<SessionLevels>,
 }
 

@@ -1,6 +1,6 @@
 //! Tests of the whole inference on small sessions.
 
-use pinswitch_inference::Member;
+use pinswitch_inference::{Member, SizedEffect};
 
 use super::{Evidence, Session};
 use crate::effects::{Vocabulary, effect_named};
@@ -14,6 +14,29 @@ fn evidence(rows: &[PlateauRow]) -> Evidence {
 
 fn reported(evidence: &Evidence) -> Vec<&str> {
     evidence.posterior().reported.iter().map(|r| evidence.name(r.member)).collect()
+}
+
+/// Readings that a constant does not change are kept: with any effect they equal those of a new evaluation.
+#[test]
+fn moved_constants_change_all_that_depends_on_them() {
+    let rows: Vec<PlateauRow> = session(3).into_iter().step_by(5).collect();
+    let evidence = Evidence::baseline(&rows, 1).unwrap();
+    let space = evidence.problem().space();
+    let forward = &evidence.problem().rows().forward;
+    let constants: Vec<f64> = space.constants.iter().map(|constant| constant.mean).collect();
+    let curved: Vec<f64> = (0..rows.len()).map(|row| 0.01 * (row % 3) as f64).collect();
+    for (effect, prior) in space.effects.iter().enumerate() {
+        let size = prior.starts.first().copied().unwrap_or(1.0);
+        let effects = [SizedEffect { effect, shape: 0, size, shifts: [0.0; 3] }];
+        let readings = forward.readings_at(&constants, &effects, &curved);
+        for constant in 0..constants.len() {
+            let mut moved = constants.clone();
+            moved[constant] += 0.1;
+            let kept = forward.readings_where_moved([&constants, &moved], &effects, &curved, &readings);
+            assert_eq!(kept, forward.readings_at(&moved, &effects, &curved), "{} {constant}", prior.name);
+            assert_ne!(kept, readings, "{} {constant}", prior.name);
+        }
+    }
 }
 
 #[test]

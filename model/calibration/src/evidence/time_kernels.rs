@@ -58,7 +58,7 @@ impl Collector<'_> {
             Rc::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
         let waves = waves(scale, starts.len());
-        let intervals = self.intervals(INTERVAL_PROBABILITY);
+        let intervals = self.intervals();
         let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
         let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
         let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
@@ -73,11 +73,11 @@ impl Collector<'_> {
         self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
     }
 
-    /// Returns structure of this total probability that acts in one interval of series: a change, or a fault that lasts for a
-    /// while. Brownian motion prices one large step as many small ones.
-    fn intervals(&self, probability: f64) -> Vec<Variant> {
+    /// Returns structure that acts in one interval of series: a change, or a fault that lasts for a while. Brownian motion prices
+    /// one large step as many small ones.
+    fn intervals(&self) -> Vec<Variant> {
         let intervals = intervals(self.rows.series_count());
-        let probability = probability / intervals.len().max(1) as f64;
+        let probability = INTERVAL_PROBABILITY / intervals.len().max(1) as f64;
         let variant = |interval: Range<usize>| {
             let basis: BasisOfRows = Rc::new(move |rows| {
                 let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));

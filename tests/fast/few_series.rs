@@ -3,9 +3,10 @@
 use std::io::Read;
 
 use pinswitch_calibration::effects::{Abscissa, Shape, Structure, Vocabulary};
+use pinswitch_calibration::evidence::Session;
 use pinswitch_calibration::model::Term;
-use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{Calibration, MountReport, Report, Verdict, calibrate};
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_calibration::{Calibration, ModelFile, MountReport, Report, Verdict, calibrate};
 
 use crate::harness::repository;
 
@@ -31,12 +32,15 @@ fn third_hand(name: &str) -> Report {
 }
 
 fn third_hand_calibration(name: &str) -> Calibration {
+    calibrate(&third_hand_rows(name), &Vocabulary::built_in(), 1).unwrap()
+}
+
+fn third_hand_rows(name: &str) -> Vec<PlateauRow> {
     let packed =
         std::fs::File::open(repository("tests/data/third-hand").join(format!("{name}.csv.gz"))).unwrap();
     let mut text = String::new();
     flate2::read::MultiGzDecoder::new(packed).read_to_string(&mut text).unwrap();
-    let rows = PlateauTable::read(text.as_bytes(), name).unwrap().rows;
-    calibrate(&rows, &Vocabulary::built_in(), 1).unwrap()
+    PlateauTable::read(text.as_bytes(), name).unwrap().rows
 }
 
 /// Each of these tables named an effect that its rig does not have, or that has no size: the noise of ten series of two
@@ -150,5 +154,19 @@ fn a_new_session_has_the_level_that_the_sessions_show() {
         let levels = of_sessions.unwrap();
         assert_eq!(levels.len(), days + 1, "{levels:?}");
         assert!((levels[days] - expected).abs() < 0.02, "{name}: {levels:?}");
+        let [low, high] = found.report.effects[0].parameters["unattributed.1"].ci95;
+        assert!(low > 0.5 && high < 1.5, "{low} {high}");
+        // A reading of another day differs by the spread of the days, one of a known day does not.
+        let squares = levels[..days].iter().map(|level| (level - levels[days]).powi(2));
+        let spread = (squares.sum::<f64>() / days as f64).sqrt();
+        let model = ModelFile::new(&found.augmented);
+        let sd = |session: &str| {
+            let mut rows = third_hand_rows(name);
+            rows.iter_mut().for_each(|row| session.clone_into(&mut row.labels.session));
+            let (_, sd) = model.predict(&rows, Session::New, "model.toml").unwrap();
+            (sd.iter().map(|sd| sd * sd).sum::<f64>() / sd.len() as f64).sqrt()
+        };
+        let (known, new) = (sd("d0"), sd("another day"));
+        assert!((new / known.hypot(spread) - 1.0).abs() < 1e-3, "{name}: {known} {new} {spread}");
     }
 }

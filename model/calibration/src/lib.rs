@@ -88,6 +88,7 @@ mod published_maxima;
 mod report;
 mod reporting;
 mod session_plan;
+mod session_spread;
 pub mod table;
 #[cfg(test)]
 mod test_session;

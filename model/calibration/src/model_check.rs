@@ -192,6 +192,18 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Diagnostic> {
     Ok(())
 }
 
+/// Checks that a table of structure has ascending nodes, and a value for each.
+pub(crate) fn check_nodes(field: &str, at: &[f64], value: &[f64]) -> Result<(), Diagnostic> {
+    if at.is_empty() || at.len() != value.len() {
+        let problem = format!("expected {} values, one for each node of at, at least 1", at.len());
+        return Err(invalid(format!("{field}.value"), format!("{} values", value.len()), problem));
+    }
+    if let Some(i) = at.windows(2).position(|pair| pair[0] >= pair[1]) {
+        return Err(invalid(format!("{field}.at[{}]", i + 1), at[i + 1], "not above the node before"));
+    }
+    Ok(())
+}
+
 /// Checks that the covariance is square, symmetric and positive semidefinite up to rounding.
 pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), Diagnostic> {
     if let Some(length) = std::iter::once(rows.len()).chain(rows.iter().map(Vec::len)).find(|n| *n != needed)
@@ -237,6 +249,21 @@ mod tests {
         assert!(refused(&[vec![1.0, 2.0], vec![2.0, 1.0]]));
         assert!(refused(&[vec![-1.0, 0.0], vec![0.0, 1.0]]));
         assert!(refused(&[vec![f64::NAN, 0.0], vec![0.0, 1.0]]));
+    }
+
+    #[test]
+    fn nodes_ascend_and_have_a_value_each() {
+        assert!(check_nodes("s", &[0.0, 1.0], &[2.0, -1.0]).is_ok());
+        for (at, value, field) in [
+            (&[] as &[f64], &[] as &[f64], "s.value"),
+            (&[0.0, 1.0], &[2.0], "s.value"),
+            (&[0.0], &[2.0, 3.0], "s.value"),
+            (&[1.0, 0.0], &[2.0, 3.0], "s.at[1]"),
+            (&[0.0, 1.0, 1.0], &[2.0, 3.0, 4.0], "s.at[2]"),
+        ] {
+            let error = check_nodes("s", at, value).unwrap_err();
+            assert_eq!(error.location().and_then(|l| l.field.as_deref()), Some(field));
+        }
     }
 
     #[test]

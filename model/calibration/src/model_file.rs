@@ -12,17 +12,15 @@ use crate::effects::{
 use crate::evidence::{Fitted, Session};
 use crate::model::{Discrepancy, DiscrepancyFactor, Model, Noise, Term, prediction_sd_n};
 use crate::model_check::{
-    HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
-    invalid, walk_to_offset,
+    HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_nodes,
+    check_noise, invalid, walk_to_offset,
 };
-use crate::table::{Condition, Frame, Optional, PlateauRow, Point};
+use crate::session_spread::{drift_n, levels_of_sessions_n};
+use crate::table::{Condition, Frame, Optional, PlateauRow};
 use pinswitch_measurements::{locate_field, toml_error};
 
 /// Name and version of the format.
 const SCHEMA: &str = "pinswitch.model/1";
-
-/// Times of the fitted session at which its drift is evaluated.
-const DRIFT_TIMES: usize = 24;
 
 /// A term in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -268,7 +266,12 @@ impl ModelFile {
                     .with_help("use the ids of `pinswitch effects`")
             };
             let term = match &entry.structure {
-                Some(structure) => Term::Structure(structure.clone()),
+                Some(structure) => {
+                    if let Shape::Table { at, value, .. } = &structure.form {
+                        check_nodes(&format!("terms[{i}].structure"), at, value)?;
+                    }
+                    Term::Structure(structure.clone())
+                }
                 None => Term::Named(self.vocabulary.named(&entry.id).ok_or_else(unknown)?),
             };
             let zeros = vec![0.0; term.constants()];
@@ -350,8 +353,13 @@ impl ModelFile {
         let mut sd = prediction_sd_n(&model, &points, &self.covariance(), noise);
         if session == Session::New {
             // What the fitted session drew for itself, another one draws again.
-            let drift_n = self.drift_n(&model, &points, &predicted);
-            sd.iter_mut().zip(drift_n).for_each(|(sd, drift_n)| *sd = libm::hypot(*sd, drift_n));
+            let add = |sd: &mut [f64], spread_n: Vec<f64>| {
+                sd.iter_mut().zip(spread_n).for_each(|(sd, spread_n)| *sd = libm::hypot(*sd, spread_n));
+            };
+            if self.drifts() {
+                add(&mut sd, drift_n(&model, &points, &predicted));
+            }
+            add(&mut sd, levels_of_sessions_n(&model, &points, &predicted));
         }
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
@@ -370,29 +378,6 @@ impl ModelFile {
                 .with_help(HELP));
         }
         Ok((predicted, sd))
-    }
-
-    /// Returns the root mean square of the drift of the fitted session about its mean, at each point.
-    fn drift_n(&self, model: &Model, points: &[Point], mean_n: &[f64]) -> Vec<f64> {
-        if !self.drifts() {
-            return vec![0.0; points.len()];
-        }
-        let Frame { travel_time_s, travel_share, session_s, .. } = &self.frame;
-        let stride = (travel_time_s.len() / DRIFT_TIMES).max(1);
-        let times: Vec<(f64, f64)> = travel_time_s
-            .iter()
-            .zip(travel_share)
-            .step_by(stride)
-            .map(|(time_s, travel)| (time_s / session_s, *travel))
-            .collect();
-        let mut squares = vec![0.0; points.len()];
-        for (time, travel) in &times {
-            let at = |p: &Point| Point { time: *time, travel: *travel, is_new_session: false, ..*p };
-            let drifting = model.predict(&points.iter().map(at).collect::<Vec<_>>());
-            let changes = drifting.iter().zip(mean_n).map(|(a, b)| (a - b).powi(2));
-            squares.iter_mut().zip(changes).for_each(|(sum, square)| *sum += square);
-        }
-        squares.iter().map(|sum| (sum / times.len().max(1) as f64).sqrt()).collect()
     }
 
     /// Returns whether a term drifts with the time of the session, so that a new session is predicted with

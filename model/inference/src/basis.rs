@@ -18,6 +18,11 @@ pub struct Basis {
 }
 
 impl Basis {
+    /// Returns a basis of readings in groups, by the row of each group and the number of each reading's group.
+    pub fn of_groups(rows: &DMatrix<f64>, of_reading: Arc<[u32]>) -> Self {
+        Self { values: rows.transpose().as_slice().into(), columns: rows.ncols(), of_reading }
+    }
+
     /// Returns the number of readings.
     pub fn readings(&self) -> usize {
         self.of_reading.len()
@@ -145,6 +150,8 @@ mod tests {
         assert_eq!(basis.values.len(), 6);
         assert_eq!(basis.times(&[1.0; 4]), matrix);
         assert_eq!(basis.function(&[1.0, -1.0]), [-1.0, -1.0, -1.0, -2.0]);
+        let groups = DMatrix::from_row_slice(3, 2, &[1.0, 2.0, 3.0, 4.0, 3.0, 5.0]);
+        assert_eq!(Basis::of_groups(&groups, [0, 1, 0, 2].into()), basis);
         assert_eq!(
             basis.select(&[3, 0]).times(&[1.0, 2.0]),
             DMatrix::from_row_slice(2, 2, &[3.0, 5.0, 2.0, 4.0])

@@ -168,7 +168,8 @@ impl Candidate {
 /// Returns the effects that could be added to a fit, and those of its members that are not reported, in
 /// the order of the space.
 fn candidates(problem: &Problem, fit: &Fit, reported: &[Reported]) -> Vec<Candidate> {
-    let Some(scores) = Scores::new(problem, fit) else { return Vec::new() };
+    let is_effect = |member| matches!(member, Member::Effect(_));
+    let Some(scores) = Scores::of(problem, fit, is_effect) else { return Vec::new() };
     let mut additions = scores.additions(None);
     let is_reported = |member: &Member| reported.iter().any(|r| r.member == *member);
     for member in fit.hypothesis.members().filter(|member| !is_reported(member)) {
@@ -297,13 +298,14 @@ impl Posterior {
 /// Fits the best additions of some effects to a fit, one at a time, by their first-order scores; best
 /// first, and at most one form of each effect.
 pub fn best_additions(problem: &Problem, fit: &Fit, effects: &[usize], most: usize) -> Vec<Fit> {
-    let additions = Scores::new(problem, fit).map_or_else(Vec::new, |scores| scores.additions(None));
+    let is_wanted = |member| matches!(member, Member::Effect(effect) if effects.contains(&effect));
+    let scores = Scores::of(problem, fit, is_wanted);
+    let additions = scores.map_or_else(Vec::new, |scores| scores.additions(None));
     let mut tried: BTreeSet<Member> = BTreeSet::new();
     let mut fits = Vec::new();
     for addition in additions {
         let member = addition.element.member;
-        let is_wanted = matches!(member, Member::Effect(effect) if effects.contains(&effect));
-        if tried.len() < most && is_wanted && tried.insert(member) {
+        if tried.len() < most && tried.insert(member) {
             fits.extend(Fit::new(problem, &addition.hypothesis, Start::at(fit, addition.hint)));
         }
     }

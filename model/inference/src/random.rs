@@ -38,12 +38,19 @@ impl Random {
         radius * libm::cos(2.0 * PI * self.uniform())
     }
 
-    /// Returns a number of Student's t distribution with 5 degrees of freedom, the noise's (Bailey,
-    /// Mathematics of Computation 62, 1994).
+    /// Returns a number of Student's t distribution with 5 degrees of freedom, the noise's: a ratio of uniform numbers (Kinderman
+    /// and Monahan, ACM Transactions on Mathematical Software 3, 1977), whose density needs products only.
     pub(crate) fn student(&mut self) -> f64 {
-        const NU: f64 = 5.0;
-        let radius = (NU * libm::expm1(-2.0 / NU * libm::log(self.uniform()))).sqrt();
-        radius * libm::cos(2.0 * PI * self.uniform())
+        // Largest |t| f(t)^(1/2) of f(t) = (1 + t^2/5)^-3, at t^2 = 5/2.
+        const MOST: f64 = 0.860_662_965_823_87;
+        loop {
+            let below = self.uniform();
+            let t = MOST * (2.0 * self.uniform() - 1.0) / below;
+            let inverse = 1.0 + t * t / 5.0;
+            if below * below * inverse * inverse * inverse <= 1.0 {
+                return t;
+            }
+        }
     }
 }
 
@@ -60,5 +67,14 @@ mod tests {
         };
         assert!((variance(&mut || random.normal()) - 1.0).abs() < 0.03);
         assert!((variance(&mut || random.student()) - 5.0 / 3.0).abs() < 0.15);
+        // Quantiles of Student's t distribution.
+        for (quantile, share) in [(0.7267, 0.5), (2.0150, 0.1), (4.0321, 0.01)] {
+            let outside = (0..count).filter(|_| random.student().abs() > quantile).count();
+            let sd = (share * (1.0 - share) / f64::from(count)).sqrt();
+            assert!(
+                (outside as f64 / f64::from(count) - share).abs() < 4.0 * sd,
+                "{outside} beyond {quantile}"
+            );
+        }
     }
 }

@@ -114,6 +114,10 @@ pub(crate) struct Search<'a> {
     selectivity: Selectivity,
     fits: BTreeMap<Hypothesis, Fit>,
     failed: BTreeSet<Hypothesis>,
+    /// Score of each hypothesis after the last fit from its own mode with every autoregression.
+    polished: BTreeMap<Hypothesis, f64>,
+    /// Score of each best hypothesis when those without one of its members were fitted from its mode.
+    reduced: BTreeMap<Hypothesis, f64>,
     excluded: &'a [bool],
     pub(crate) fit_count: usize,
 }
@@ -122,8 +126,17 @@ impl<'a> Search<'a> {
     /// Returns a search without the rows that are `excluded`, a list that may be empty.
     pub(crate) fn new(problem: &'a Problem, options: SearchOptions, excluded: &'a [bool]) -> Self {
         let selectivity = Selectivity::of_rows(problem.len());
-        let (fits, failed) = (BTreeMap::new(), BTreeSet::new());
-        Self { problem, options, selectivity, fits, failed, excluded, fit_count: 0 }
+        Self {
+            problem,
+            options,
+            selectivity,
+            fits: BTreeMap::new(),
+            failed: BTreeSet::new(),
+            polished: BTreeMap::new(),
+            reduced: BTreeMap::new(),
+            excluded,
+            fit_count: 0,
+        }
     }
 
     /// Returns the fits within the window, best first; empty if no hypothesis can be fitted.
@@ -152,7 +165,7 @@ impl<'a> Search<'a> {
                 }
             };
             // All hypotheses that follow start from this mode, and from its autoregression.
-            self.fit_again(&fit.hypothesis, &fit, true);
+            self.polish_one(&fit);
             let Some(fit) = self.fits.get(&fit.hypothesis).cloned() else { break };
             expanded.insert(fit.hypothesis.clone());
             self.expand(&fit);
@@ -355,12 +368,11 @@ impl<'a> Search<'a> {
         let least = best - self.selectivity.polish;
         let near: Vec<Fit> = ranked.take(MOST_POLISHED).filter(|fit| fit.score > least).cloned().collect();
         for fit in &near {
-            self.fit_again(&fit.hypothesis, fit, true);
+            self.polish_one(fit);
         }
         // One without a member may be better, and is the best then.
-        let mut reduced_before = BTreeSet::new();
         while let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) {
-            if !reduced_before.insert(best.hypothesis.clone()) {
+            if self.reduced.insert(best.hypothesis.clone(), best.score) == Some(best.score) {
                 break;
             }
             for member in best.hypothesis.members() {
@@ -373,6 +385,16 @@ impl<'a> Search<'a> {
                 }
             }
         }
+    }
+
+    /// Fits a hypothesis again from its own mode, unless that is where the last such fit ended.
+    fn polish_one(&mut self, fit: &Fit) {
+        if self.polished.get(&fit.hypothesis) == Some(&fit.score) {
+            return;
+        }
+        self.fit_again(&fit.hypothesis, fit, true);
+        let score = self.fits.get(&fit.hypothesis).map_or(f64::NEG_INFINITY, |fit| fit.score);
+        self.polished.insert(fit.hypothesis.clone(), score);
     }
 
     /// Returns the fit of a hypothesis, if there is one.

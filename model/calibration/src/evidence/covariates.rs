@@ -1,5 +1,9 @@
 //! Covariates of the rows of a table, in the order of their series.
 
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::Arc;
+
 use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::sort_by_number;
 
@@ -27,10 +31,41 @@ pub(super) struct Covariates {
     pub(super) labels: Vec<RowLabels>,
 }
 
+/// Rows of a table in groups, in each of which a basis is constant.
+#[derive(Clone, Debug)]
+pub(super) struct Groups {
+    /// First row of each group.
+    pub(super) firsts: Covariates,
+    /// Number of its rows.
+    pub(super) counts: Vec<f64>,
+    /// Group of each row.
+    pub(super) of_row: Arc<[u32]>,
+}
+
+impl Groups {
+    /// Groups rows by a key.
+    pub(super) fn new<K: Eq + Hash>(rows: &Covariates, key: impl Fn(usize) -> K) -> Self {
+        let (mut firsts, mut counts, mut of_row) = (Vec::new(), Vec::new(), Vec::new());
+        let mut known: HashMap<K, usize> = HashMap::new();
+        for row in 0..rows.len() {
+            let group = *known.entry(key(row)).or_insert(firsts.len());
+            if group == firsts.len() {
+                firsts.push(row);
+                counts.push(0.0);
+            }
+            counts[group] += 1.0;
+            of_row.push(u32::try_from(group).unwrap_or(u32::MAX));
+        }
+        Self { firsts: rows.select(&firsts), counts, of_row: of_row.into() }
+    }
+}
+
 /// Names of the levels of factors at a row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RowLabels {
     pub(super) condition: String,
+    /// Numbers of the occupied grooves.
+    pub(super) layout: String,
     pub(super) mount: String,
     pub(super) specimen: String,
     pub(super) operator: String,
@@ -65,6 +100,7 @@ impl Covariates {
             let condition = &frame.conditions[point.condition];
             // The angle of a `plain` contact belongs to the rig: it does not make another mount.
             let kind = condition.substrate.map_or_else(|| "plain".to_owned(), |_| condition.name());
+            let layout = format!("{:?}", condition.pins);
             let condition = condition.name();
             let mount = if has_mounts {
                 format!("{}|{}", row.labels.session, row.labels.mount)
@@ -73,6 +109,7 @@ impl Covariates {
             };
             RowLabels {
                 condition,
+                layout,
                 mount,
                 specimen: row.labels.specimen.clone(),
                 operator: row.labels.operator.clone(),
@@ -97,6 +134,25 @@ impl Covariates {
         covariates.order_series();
         covariates.rank_series();
         Ok(covariates)
+    }
+
+    /// Returns some of the rows.
+    fn select(&self, rows: &[usize]) -> Self {
+        fn of<T: Clone>(all: &[T], rows: &[usize]) -> Vec<T> {
+            rows.iter().map(|row| all[*row].clone()).collect()
+        }
+        Self {
+            source: of(&self.source, rows),
+            points: of(&self.points, rows),
+            readings: of(&self.readings, rows),
+            series: of(&self.series, rows),
+            sequence: of(&self.sequence, rows),
+            order: of(&self.order, rows),
+            series_time_s: of(&self.series_time_s, rows),
+            series_start_s: of(&self.series_start_s, rows),
+            wrap_deg: of(&self.wrap_deg, rows),
+            labels: of(&self.labels, rows),
+        }
     }
 
     fn order_series(&mut self) {

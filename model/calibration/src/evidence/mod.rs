@@ -10,6 +10,7 @@ mod covariates;
 mod fitted;
 mod formula_values;
 mod forward;
+mod levels;
 mod priors;
 mod session_kernels;
 mod structure;
@@ -17,6 +18,7 @@ mod table_kernels;
 #[cfg(test)]
 mod tests;
 mod time_kernels;
+mod variant;
 
 use std::collections::BTreeSet;
 use std::fmt;

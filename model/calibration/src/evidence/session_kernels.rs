@@ -9,8 +9,9 @@ use nalgebra::DMatrix;
 use pinswitch_inference::SessionLevels;
 
 use super::forward::Channel;
-use super::structure::{BasisOfRows, Record};
+use super::structure::Record;
 use super::table_kernels::{Collector, MOST_LEVELS};
+use super::variant::BasisOfRows;
 
 /// Channels of what a session may draw again, and of the switch.
 const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];

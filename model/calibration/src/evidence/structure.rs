@@ -3,11 +3,12 @@
 use std::rc::Rc;
 
 use nalgebra::DMatrix;
-use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels, kernel};
+use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels};
 
 use super::Session;
 use super::covariates::Covariates;
 use super::forward::Channel;
+use super::variant::Variant;
 use crate::effects::Abscissa;
 
 /// Covariate of noise.
@@ -16,9 +17,6 @@ pub(super) const NOISE: &str = "noise";
 pub(super) const GROSS_ERROR: &str = "gross error";
 /// Prior probability that offsets of series wander, for each channel: that of an effect.
 const WANDERING_PROBABILITY: f64 = 0.05;
-
-/// A function of the rows that returns a basis.
-pub(super) type BasisOfRows = Rc<dyn Fn(&Covariates) -> DMatrix<f64>>;
 
 /// How a model file keeps the function of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,52 +31,6 @@ pub(super) enum Record {
     Memory,
     /// Not at all: a new session draws it again, about zero.
     Nothing,
-}
-
-/// Root mean square of the rows of a basis below which it changes nothing.
-const LEAST_NORM: f64 = 1e-9;
-
-/// A discrete form of a kernel. Clones share their numbers.
-#[derive(Clone)]
-pub(super) struct Variant {
-    basis: BasisOfRows,
-    /// Factor of the basis.
-    factor: f64,
-    probability: f64,
-    /// The basis at the rows of the fitted table, where it was evaluated once.
-    fitted: Basis,
-    /// Its mean row.
-    mean: Vec<f64>,
-}
-
-impl Variant {
-    /// Returns a variant with unit variance at the rows of the fitted table; `None` if it is zero there.
-    pub(super) fn of_unit_variance(basis: BasisOfRows, rows: &Covariates, probability: f64) -> Option<Self> {
-        let columns = basis(rows);
-        let norm = kernel::rms_norm(&columns);
-        (norm > LEAST_NORM).then(|| Self::scaled(basis, columns, 1.0 / norm, probability))
-    }
-
-    /// Returns a variant with the height of its basis.
-    pub(super) fn as_is(basis: BasisOfRows, rows: &Covariates, probability: f64) -> Self {
-        let columns = basis(rows);
-        Self::scaled(basis, columns, 1.0, probability)
-    }
-
-    fn scaled(basis: BasisOfRows, columns: DMatrix<f64>, factor: f64, probability: f64) -> Self {
-        let columns = columns * factor;
-        let mean = columns.row_mean().iter().copied().collect();
-        Self { basis, factor, probability, fitted: columns.into(), mean }
-    }
-
-    /// Returns the variant with another probability.
-    pub(super) fn with_probability(&self, probability: f64) -> Self {
-        Self { probability, ..self.clone() }
-    }
-
-    fn columns(&self, rows: &Covariates) -> DMatrix<f64> {
-        (self.basis)(rows) * self.factor
-    }
 }
 
 /// A kernel that a table supports, for one channel.

@@ -7,7 +7,9 @@ use pinswitch_inference::kernel;
 
 use super::covariates::{Covariates, RowLabels, distinct};
 use super::forward::Channel;
-use super::structure::{BasisOfRows, Record, Structure, Variant};
+use super::levels::{Levels, RowFactors};
+use super::structure::{Record, Structure};
+use super::variant::{BasisOfRows, Variant};
 use crate::effects::{Abscissa, REFERENCE_LOAD_N};
 use crate::table::Point;
 
@@ -21,6 +23,12 @@ pub(super) const BROWNIAN_RANK: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
 pub(super) const MOST_LEVELS: usize = 20;
+/// Prior probability that of the levels of a factor one differs from the others.
+const ONE_LEVEL_PROBABILITY: f64 = 0.5;
+/// Most positions of stops that are levels of a factor, and the prior probability that a pattern along the stroke has its own
+/// value at each stop, or at one.
+const MOST_STOPS: usize = 48;
+const STOP_PROBABILITY: f64 = 0.5;
 /// Repetitions after which the memory of the previous load has decayed to 1/e.
 pub(super) const MEMORY_REPETITIONS: [f64; 2] = [20.0, 1e6];
 /// Channels of structure that may be a force or friction.
@@ -123,26 +131,25 @@ impl Collector<'_> {
     fn along_a_series(&mut self) {
         let position = |rows: &Covariates| rows.column(|p| p.position);
         let at = position(self.rows);
-        if distinct(&at) > 2 {
+        let has_positions = distinct(&at) > 2;
+        if has_positions {
             let scale = Interval::of(&at);
             let waves: BasisOfRows =
                 Rc::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
-            let rank = distinct(&at).min(BROWNIAN_RANK);
+            // A worn spot has edges, which many readings show exactly.
+            let rank = distinct(&at).min(MOST_STOPS);
             let steps: BasisOfRows =
                 Rc::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
-            let mut bases = vec![waves, steps];
+            let mut variants = self.variants(vec![waves, steps], 1.0 - STOP_PROBABILITY);
             // A pattern that repetitions show just as well, where each has a position of its own.
-            let hundredths = |position: f64| (100.0 * position).round() as i64;
-            let stops: std::collections::BTreeSet<i64> = at.iter().copied().map(hundredths).collect();
-            let stops: Vec<i64> = stops.into_iter().collect();
-            if stops.len() <= MOST_LEVELS {
-                bases.push(Rc::new(move |rows| {
-                    let stop = |at: &f64| stops.binary_search(&hundredths(*at)).ok();
-                    kernel::levels(&position(rows).iter().map(stop).collect::<Vec<_>>(), stops.len())
-                }));
+            let stop = |row: &RowFactors, _: &RowLabels| format!("{:.2}", row.position);
+            let stops = Levels::new(self.rows, Rc::new(stop));
+            if stops.count() <= MOST_STOPS {
+                let levels = stops.variants(ONE_LEVEL_PROBABILITY);
+                variants.extend(levels.iter().map(|v| v.with_probability(STOP_PROBABILITY * v.probability)));
             }
             let record = Record::Table(Abscissa::Position, false);
-            self.add("position", "position", record, COMMON, bases);
+            self.add_variants("position", "position", record, COMMON, variants);
         }
         let repetition = |rows: &Covariates| rows.column(|p| libm::log(p.repetition));
         let at = repetition(self.rows);
@@ -157,11 +164,16 @@ impl Collector<'_> {
                 COMMON,
                 vec![alternation],
             );
-            // The same mistake in every series: the first reading after a reversal, or any other.
+            // The same mistake in every series: the first reading after a reversal, or any other. A pattern over all of them is
+            // one along the stroke, where positions are known.
             let directed = |row: &RowFactors, _: &RowLabels| format!("{:+}", row.directed_repetition);
             let record = Record::Table(Abscissa::DirectedRepetition, true);
             let channels = &[Channel::Reading, Channel::Friction];
-            self.levels("repetition of a direction", "repetition", record, channels, directed);
+            let levels = Levels::new(self.rows, Rc::new(directed));
+            if self.has_levels(2..=MOST_LEVELS, levels.count()) {
+                let variants = levels.variants(if has_positions { 1.0 } else { ONE_LEVEL_PROBABILITY });
+                self.add_variants("repetition of a direction", "repetition", record, channels, variants);
+            }
             if distinct(&self.rows.series_time_s) > 1 {
                 let record = Record::Table(Abscissa::SeriesReadings, false);
                 self.settling("time in a series", record, |rows| rows.series_time_s.clone());
@@ -266,6 +278,7 @@ impl Collector<'_> {
     }
 
     fn factors(&mut self) {
+        let of_parts = &[COMMON, &[Channel::Pins, Channel::Silicone]].concat();
         self.levels(
             "condition",
             "condition",
@@ -273,6 +286,18 @@ impl Collector<'_> {
             COMMON,
             |_, label| label.condition.clone(),
         );
+        if self.rows.level_names(|label| &label.layout).len()
+            < self.rows.level_names(|label| &label.condition).len()
+        {
+            // Pins and cast layer of a layout, in each condition that has it.
+            self.levels(
+                "layout",
+                "condition",
+                Record::Table(Abscissa::Condition, true),
+                of_parts,
+                |_, label| label.layout.clone(),
+            );
+        }
         let wraps = distinct(&self.rows.wrap_deg);
         if wraps < self.rows.level_names(|label| &label.condition).len() {
             let wrap = |row: &RowFactors, _: &RowLabels| format!("{:.3}", row.wrap_deg);
@@ -287,14 +312,9 @@ impl Collector<'_> {
         // The mount effect on friction is in every hypothesis.
         let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
         self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
-        let of_specimens = &[COMMON, &[Channel::Pins, Channel::Silicone]].concat();
-        self.levels(
-            "specimen",
-            "specimen",
-            Record::Table(Abscissa::Specimen, true),
-            of_specimens,
-            |_, label| label.specimen.clone(),
-        );
+        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), of_parts, |_, label| {
+            label.specimen.clone()
+        });
         self.levels(
             "operator",
             "operator",
@@ -319,37 +339,13 @@ impl Collector<'_> {
         channels: &[Channel],
         level: impl Fn(&RowFactors, &RowLabels) -> String + 'static,
     ) {
-        let all = names_of(self.rows, &level);
-        let names: std::collections::BTreeSet<String> = all.into_iter().collect();
-        let names: Vec<String> = names.into_iter().collect();
+        let levels = Levels::new(self.rows, Rc::new(level));
         let least = if name == "condition" { 3 } else { 2 };
-        if !self.has_levels(least..=MOST_LEVELS, names.len()) {
-            return;
+        if self.has_levels(least..=MOST_LEVELS, levels.count()) {
+            let variants = levels.variants(ONE_LEVEL_PROBABILITY);
+            self.add_variants(name, covariate, record, channels, variants);
         }
-        let basis: BasisOfRows = Rc::new(move |rows| {
-            let level_of: Vec<Option<usize>> =
-                names_of(rows, &level).iter().map(|name| names.binary_search(name).ok()).collect();
-            kernel::levels(&level_of, names.len())
-        });
-        self.add(name, covariate, record, channels, vec![basis]);
     }
-}
-
-/// Numbers of a row that may be levels of a factor.
-struct RowFactors {
-    wrap_deg: f64,
-    load_n: f64,
-    /// Repetition, negative in the eccentric direction.
-    directed_repetition: f64,
-}
-
-fn names_of(rows: &Covariates, level: &impl Fn(&RowFactors, &RowLabels) -> String) -> Vec<String> {
-    let factors = |i: usize| RowFactors {
-        wrap_deg: rows.wrap_deg[i],
-        load_n: rows.points[i].load_n,
-        directed_repetition: rows.points[i].sign * rows.points[i].repetition,
-    };
-    (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
 }
 
 /// Returns the name of a load as a level, to a hundredth of a newton.

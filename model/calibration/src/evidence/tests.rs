@@ -261,6 +261,6 @@ fn structure_over_the_position_is_as_fine_as_its_sampling() {
         nalgebra::DMatrix::from_row_slice(positions.len(), basis.coefficients(), &values).rank(1e-6)
     };
     let ranks: Vec<usize> = problem.rows().bases[kernel].iter().map(own).collect();
-    // Brownian motion starts at zero.
-    assert_eq!((positions.len(), &ranks[1..]), (9, &[8, 9][..]));
+    // Brownian motion starts at zero. After the levels there is one form for each position.
+    assert_eq!((positions.len(), &ranks[1..3], &ranks[3..]), (9, &[8, 9][..], &[1; 9][..]));
 }

@@ -6,10 +6,11 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 use pinswitch_inference::kernel;
 
-use super::covariates::{Covariates, distinct};
+use super::covariates::{Covariates, Groups, distinct};
 use super::forward::Channel;
-use super::structure::{BasisOfRows, GROSS_ERROR, NOISE, Record, Variant};
+use super::structure::{GROSS_ERROR, NOISE, Record};
 use super::table_kernels::{BROWNIAN_RANK, Collector, Interval};
+use super::variant::{BasisOfRows, Variant};
 use crate::table::Point;
 
 /// Series up to which time also varies within them.
@@ -33,8 +34,8 @@ const GRID_SHARE: usize = 4;
 /// Series up to which a gross error of each is a hypothesis. Errors of `k` among `n` series are at most `sqrt(n / k)` standard
 /// deviations of the scatter that they make: a few among more are listed in any case.
 const MOST_HIDING_SERIES: usize = 300;
-/// Correlations of consecutive series, and the rank of their process: what is finer has little variance
-/// next to independent offsets.
+/// Correlations of consecutive series, and the rank of their process: what is finer has little variance next to independent
+/// offsets, but distinguishes it from a slow wave.
 const WANDERING: [(f64, usize); 2] = [(0.6, 48), (0.85, 32)];
 /// Fewest series for a memory of six series, which is then shorter than the table.
 const LEAST_WANDERING_SERIES: usize = 24;
@@ -58,7 +59,8 @@ impl Collector<'_> {
             Rc::new(move |rows| kernel::brownian(&time(rows).iter().map(&share).collect::<Vec<f64>>(), rank))
         };
         let waves = waves(scale, starts.len());
-        let intervals = self.intervals();
+        let by_series = Groups::new(self.rows, |row| self.rows.sequence[row]);
+        let intervals = intervals_of(&by_series, self.rows.series_count());
         let share = |is_empty: bool, probability: f64| if is_empty { 0.0 } else { probability };
         let of_intervals = share(intervals.is_empty(), INTERVAL_PROBABILITY);
         let of_waves = share(waves.is_empty(), WAVE_PROBABILITY);
@@ -67,39 +69,48 @@ impl Collector<'_> {
         let mut of_gain: Vec<Variant> =
             variants.iter().map(|drift| drift.with_probability(1.0 - of_intervals)).collect();
         of_gain.extend(intervals.iter().cloned());
-        variants.extend(self.variants(waves, of_waves));
+        let by_time = Groups::new(self.rows, |row| self.rows.points[row].time_s.to_bits());
+        let of_wave = of_waves / waves.len().max(1) as f64;
+        let waves = waves.into_iter();
+        variants.extend(waves.filter_map(|wave| Variant::of_groups(wave, &by_time, of_wave)));
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
         self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
     }
 
-    /// Returns structure that acts in one interval of series: a change, or a fault that lasts for a while. Brownian motion prices
-    /// one large step as many small ones.
-    fn intervals(&self) -> Vec<Variant> {
-        let intervals = intervals(self.rows.series_count());
-        let probability = INTERVAL_PROBABILITY / intervals.len().max(1) as f64;
-        let variant = |interval: Range<usize>| {
-            let basis: BasisOfRows = Rc::new(move |rows| {
-                let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
-                kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
-            });
-            Variant::as_is(basis, self.rows, probability)
-        };
-        intervals.into_iter().map(variant).collect()
-    }
-
-    /// Adds offsets that wander from series to series in the order of time, in both directions alike or
-    /// oppositely, or in proportion to the force.
+    /// Adds offsets that wander from series to series in the order of time: both directions alike or oppositely, or each
+    /// direction by itself, as readings that were taken one direction after the other do; constant, or in proportion to the force.
     pub(super) fn wandering(&mut self) {
         let count = self.rows.series_count();
         if count < LEAST_WANDERING_SERIES {
             return;
         }
-        let bases = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
+        let alike = WANDERING.map(|(correlation, rank)| -> BasisOfRows {
             Rc::new(move |rows| kernel::autoregressive(&rows.sequence, count, correlation, rank))
         });
-        let channels = [Channel::Reading, Channel::Drag, Channel::Gain];
-        self.add("wandering series", NOISE, Record::Nothing, &channels, bases.into());
+        let [_, longest] = alike.clone();
+        let own: BasisOfRows = Rc::new(move |rows| of_each_direction(&longest(rows), &rows.points));
+        let forms: Vec<BasisOfRows> = alike.to_vec();
+        let of_force =
+            if self.has_both_directions() { [forms.clone(), vec![own]].concat() } else { forms.clone() };
+        let by_cell = self.by_cell();
+        for (channels, forms) in
+            [(&[Channel::Drag][..], forms), (&[Channel::Reading, Channel::Gain], of_force)]
+        {
+            let probability = 1.0 / forms.len() as f64;
+            let variant = |form| Variant::of_groups(form, &by_cell, probability);
+            let variants = forms.into_iter().filter_map(variant).collect();
+            self.add_variants("wandering series", NOISE, Record::Nothing, channels, variants);
+        }
+    }
+
+    /// Groups the rows by series and direction.
+    fn by_cell(&self) -> Groups {
+        Groups::new(self.rows, |row| (self.rows.sequence[row], is_second(&self.rows.points[row])))
+    }
+
+    fn has_both_directions(&self) -> bool {
+        distinct(&self.rows.column(|point| f64::from(u8::from(is_second(point))))) == 2
     }
 
     /// Adds a gross error of each series, alike in both directions or of its own size in each: an offset of the cell, or a
@@ -109,24 +120,49 @@ impl Collector<'_> {
         if count > MOST_HIDING_SERIES {
             return;
         }
-        let is_second = |point: &Point| point.sign > 0.0;
-        let has_both = distinct(&self.rows.column(|p| f64::from(u8::from(is_second(p))))) == 2;
+        let (has_both, by_cell) = (self.has_both_directions(), self.by_cell());
         for series in 0..count {
-            let error = |directions: usize| -> Variant {
-                let is_in = move |rows: &Covariates, row: usize, direction: usize| {
-                    let of = usize::from(is_second(&rows.points[row]));
-                    rows.sequence[row] == series && (directions == 1 || of == direction)
-                };
-                let basis: BasisOfRows = Rc::new(move |rows| {
-                    let value = |row, direction| f64::from(u8::from(is_in(rows, row, direction)));
-                    DMatrix::from_fn(rows.len(), directions, value)
-                });
-                Variant::as_is(basis, self.rows, if has_both { 0.5 } else { 1.0 })
-            };
-            let variants = (1..=if has_both { 2 } else { 1 }).map(error).collect();
+            let alike: BasisOfRows = Rc::new(move |rows| {
+                let is_in = |of_row: &usize| f64::from(u8::from(*of_row == series));
+                kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+            });
+            let of_alike = alike.clone();
+            let own: BasisOfRows = Rc::new(move |rows| of_each_direction(&of_alike(rows), &rows.points));
+            let forms = if has_both { vec![alike, own] } else { vec![alike] };
+            let probability = 1.0 / forms.len() as f64;
+            let variant = |basis| Variant::as_is(basis, &by_cell, probability);
+            let variants = forms.into_iter().map(variant).collect();
             self.add_variants("one series", GROSS_ERROR, Record::Nothing, &[Channel::Reading], variants);
         }
     }
+}
+
+fn is_second(point: &Point) -> bool {
+    point.sign > 0.0
+}
+
+/// Returns a basis with coefficients of its own in each direction.
+fn of_each_direction(basis: &DMatrix<f64>, points: &[Point]) -> DMatrix<f64> {
+    let rank = basis.ncols();
+    DMatrix::from_fn(basis.nrows(), 2 * rank, |row, column| {
+        let is_of_direction = is_second(&points[row]) == (column >= rank);
+        if is_of_direction { basis[(row, column % rank)] } else { 0.0 }
+    })
+}
+
+/// Returns structure that acts in one interval of series: a change, or a fault that lasts for a while. Brownian motion prices
+/// one large step as many small ones.
+fn intervals_of(by_series: &Groups, count: usize) -> Vec<Variant> {
+    let intervals = intervals(count);
+    let probability = INTERVAL_PROBABILITY / intervals.len().max(1) as f64;
+    let variant = |interval: Range<usize>| {
+        let basis: BasisOfRows = Rc::new(move |rows| {
+            let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
+            kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
+        });
+        Variant::as_is(basis, by_series, probability)
+    };
+    intervals.into_iter().map(variant).collect()
 }
 
 /// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles

@@ -1,0 +1,82 @@
+//! Levels of a factor of the protocol, as the forms of a kernel.
+
+use std::ops::Range;
+use std::rc::Rc;
+
+use pinswitch_inference::kernel;
+
+use super::covariates::{Covariates, Groups, RowLabels};
+use super::variant::{BasisOfRows, Variant};
+
+/// Name of the level of a factor at a row.
+pub(super) type LevelOfRow = dyn Fn(&RowFactors, &RowLabels) -> String;
+
+/// Levels of a factor in a table.
+pub(super) struct Levels {
+    /// Sorted names.
+    names: Rc<Vec<String>>,
+    of_row: Rc<LevelOfRow>,
+    groups: Groups,
+}
+
+impl Levels {
+    pub(super) fn new(rows: &Covariates, of_row: Rc<LevelOfRow>) -> Self {
+        let of_rows = names_of(rows, &*of_row);
+        let groups = Groups::new(rows, |row| of_rows[row].as_str());
+        let mut names = names_of(&groups.firsts, &*of_row);
+        names.sort_unstable();
+        Self { names: Rc::new(names), of_row, groups }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Returns independent levels and, with a probability, one level that differs from the others: a faulty part or a wrong
+    /// reading, which independent levels price as many differences. Of two levels either one differs.
+    pub(super) fn variants(&self, of_one: f64) -> Vec<Variant> {
+        let count = self.names.len();
+        let of_one = if count < 3 { 0.0 } else { of_one };
+        let mut variants = Vec::new();
+        if of_one < 1.0 {
+            variants.extend(Variant::of_groups(self.columns(0..count), &self.groups, 1.0 - of_one));
+        }
+        if of_one > 0.0 {
+            let one = |at| Variant::as_is(self.columns(at..at + 1), &self.groups, of_one / count as f64);
+            variants.extend((0..count).map(one));
+        }
+        variants
+    }
+
+    /// Returns a basis with a column for each of these levels.
+    fn columns(&self, levels: Range<usize>) -> BasisOfRows {
+        let (names, of_row) = (self.names.clone(), self.of_row.clone());
+        Rc::new(move |rows| {
+            let column = |name: &String| {
+                let at = names.binary_search(name).ok().filter(|at| levels.contains(at))?;
+                Some(at - levels.start)
+            };
+            kernel::levels(&names_of(rows, &*of_row).iter().map(column).collect::<Vec<_>>(), levels.len())
+        })
+    }
+}
+
+/// Numbers of a row that may be levels of a factor.
+pub(super) struct RowFactors {
+    pub(super) wrap_deg: f64,
+    pub(super) load_n: f64,
+    /// Share of the stroke.
+    pub(super) position: f64,
+    /// Repetition, negative in the eccentric direction.
+    pub(super) directed_repetition: f64,
+}
+
+fn names_of(rows: &Covariates, level: &LevelOfRow) -> Vec<String> {
+    let factors = |i: usize| RowFactors {
+        wrap_deg: rows.wrap_deg[i],
+        load_n: rows.points[i].load_n,
+        position: rows.points[i].position,
+        directed_repetition: rows.points[i].sign * rows.points[i].repetition,
+    };
+    (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
+}

@@ -80,3 +80,34 @@ fn names_of(rows: &Covariates, level: &LevelOfRow) -> Vec<String> {
     };
     (0..rows.len()).map(|i| level(&factors(i), &rows.labels[i])).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Frame;
+    use crate::test_session::session;
+
+    /// Forms of a factor share its probability; of two levels either one differs, so that one form is enough.
+    #[test]
+    fn one_level_may_differ_from_three_on() {
+        let mut rows = session(3);
+        let covariates = |rows: &[_]| Covariates::new(&Frame::new(rows), rows).unwrap();
+        for (count, of_one, forms) in [(2, 0.5, 1), (3, 0.5, 4), (3, 1.0, 3), (5, 0.5, 6)] {
+            let operator = |(i, row): (usize, &mut crate::table::PlateauRow)| {
+                row.labels.operator = format!("operator {}", i % count);
+            };
+            rows.iter_mut().enumerate().for_each(operator);
+            let name = |_: &RowFactors, label: &RowLabels| label.operator.clone();
+            let levels = Levels::new(&covariates(&rows), Rc::new(name));
+            let variants = levels.variants(of_one);
+            let total: f64 = variants.iter().map(|variant| variant.probability).sum();
+            assert_eq!((levels.count(), variants.len()), (count, forms));
+            assert!((total - 1.0).abs() < 1e-12, "{total}");
+            let last = &variants[forms - 1].fitted;
+            let is_one = |row: &usize| last.at(*row).iter().any(|x| *x != 0.0);
+            let share = (0..rows.len()).filter(is_one).count() as f64 / rows.len() as f64;
+            let expected = if forms == 1 { 1.0 } else { 1.0 / count as f64 };
+            assert!((share - expected).abs() < 0.05, "{share} of {count}");
+        }
+    }
+}

@@ -372,7 +372,8 @@ impl<'a> Search<'a> {
         }
         // One without a member may be better, and is the best then.
         while let Some(best) = self.ranked().first().map(|fit| (*fit).clone()) {
-            if self.reduced.insert(best.hypothesis.clone(), best.score) == Some(best.score) {
+            let before = self.reduced.insert(best.hypothesis.clone(), best.score);
+            if before.is_some_and(|score| score.total_cmp(&best.score).is_eq()) {
                 break;
             }
             for member in best.hypothesis.members() {

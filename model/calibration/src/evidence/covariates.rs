@@ -1,9 +1,5 @@
 //! Covariates of the rows of a table, in the order of their series.
 
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::sync::Arc;
-
 use pinswitch_diagnostic::{Diagnostic, codes};
 use pinswitch_friction::sort_by_number;
 
@@ -29,35 +25,6 @@ pub(super) struct Covariates {
     /// Wrap angle in degrees.
     pub(super) wrap_deg: Vec<f64>,
     pub(super) labels: Vec<RowLabels>,
-}
-
-/// Rows of a table in groups, in each of which a basis is constant.
-#[derive(Clone, Debug)]
-pub(super) struct Groups {
-    /// First row of each group.
-    pub(super) firsts: Covariates,
-    /// Number of its rows.
-    pub(super) counts: Vec<f64>,
-    /// Group of each row.
-    pub(super) of_row: Arc<[u32]>,
-}
-
-impl Groups {
-    /// Groups rows by a key.
-    pub(super) fn new<K: Eq + Hash>(rows: &Covariates, key: impl Fn(usize) -> K) -> Self {
-        let (mut firsts, mut counts, mut of_row) = (Vec::new(), Vec::new(), Vec::new());
-        let mut known: HashMap<K, usize> = HashMap::new();
-        for row in 0..rows.len() {
-            let group = *known.entry(key(row)).or_insert(firsts.len());
-            if group == firsts.len() {
-                firsts.push(row);
-                counts.push(0.0);
-            }
-            counts[group] += 1.0;
-            of_row.push(u32::try_from(group).unwrap_or(u32::MAX));
-        }
-        Self { firsts: rows.select(&firsts), counts, of_row: of_row.into() }
-    }
 }
 
 /// Names of the levels of factors at a row.
@@ -137,7 +104,7 @@ impl Covariates {
     }
 
     /// Returns some of the rows.
-    fn select(&self, rows: &[usize]) -> Self {
+    pub(super) fn select(&self, rows: &[usize]) -> Self {
         fn of<T: Clone>(all: &[T], rows: &[usize]) -> Vec<T> {
             rows.iter().map(|row| all[*row].clone()).collect()
         }

@@ -1,11 +1,13 @@
 //! Levels of a factor of the protocol, as the forms of a kernel.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::rc::Rc;
 
 use pinswitch_inference::kernel;
 
-use super::covariates::{Covariates, Groups, RowLabels};
+use super::covariates::{Covariates, RowLabels};
+use super::groups::Groups;
 use super::variant::{BasisOfRows, Variant};
 
 /// Name of the level of a factor at a row.
@@ -30,6 +32,13 @@ impl Levels {
 
     pub(super) fn count(&self) -> usize {
         self.names.len()
+    }
+
+    /// Returns whether each of several levels has one level of the other factor only, so that a function of that is one of these.
+    pub(super) fn determine(&self, other: &Self) -> bool {
+        let (own, of_other) = (&self.groups.of_row, &other.groups.of_row);
+        let pairs: BTreeSet<(u32, u32)> = own.iter().copied().zip(of_other.iter().copied()).collect();
+        self.count() > 1 && pairs.len() == self.count()
     }
 
     /// Returns independent levels and, with a probability, one level that differs from the others: a faulty part or a wrong
@@ -109,5 +118,20 @@ mod tests {
             let expected = if forms == 1 { 1.0 } else { 1.0 / count as f64 };
             assert!((share - expected).abs() < 0.05, "{share} of {count}");
         }
+    }
+
+    #[test]
+    fn levels_determine_coarser_ones() {
+        let mut rows = session(3);
+        rows.iter_mut().enumerate().for_each(|(i, row)| {
+            row.labels.operator = format!("{}", i % 6);
+            row.labels.specimen = format!("{}", i % 3);
+        });
+        let covariates = Covariates::new(&Frame::new(&rows), &rows).unwrap();
+        let levels = |name: fn(&RowLabels) -> &String| {
+            Levels::new(&covariates, Rc::new(move |_: &RowFactors, label: &RowLabels| name(label).clone()))
+        };
+        let (fine, coarse) = (levels(|label| &label.operator), levels(|label| &label.specimen));
+        assert!(fine.determine(&coarse) && !coarse.determine(&fine));
     }
 }

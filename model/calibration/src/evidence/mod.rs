@@ -10,6 +10,7 @@ mod covariates;
 mod fitted;
 mod formula_values;
 mod forward;
+mod groups;
 mod levels;
 mod priors;
 mod session_kernels;

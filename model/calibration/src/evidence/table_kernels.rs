@@ -131,8 +131,8 @@ impl Collector<'_> {
     fn along_a_series(&mut self) {
         let position = |rows: &Covariates| rows.column(|p| p.position);
         let at = position(self.rows);
-        let has_positions = distinct(&at) > 2;
-        if has_positions {
+        let stops = Levels::new(self.rows, Rc::new(stop));
+        if distinct(&at) > 2 {
             let scale = Interval::of(&at);
             let waves: BasisOfRows =
                 Rc::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
@@ -140,14 +140,15 @@ impl Collector<'_> {
             let rank = distinct(&at).min(MOST_STOPS);
             let steps: BasisOfRows =
                 Rc::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
-            let mut variants = self.variants(vec![waves, steps], 1.0 - STOP_PROBABILITY);
             // A pattern that repetitions show just as well, where each has a position of its own.
-            let stop = |row: &RowFactors, _: &RowLabels| format!("{:.2}", row.position);
-            let stops = Levels::new(self.rows, Rc::new(stop));
-            if stops.count() <= MOST_STOPS {
-                let levels = stops.variants(ONE_LEVEL_PROBABILITY);
-                variants.extend(levels.iter().map(|v| v.with_probability(STOP_PROBABILITY * v.probability)));
-            }
+            let levels = if (3..=MOST_STOPS).contains(&stops.count()) {
+                stops.variants(ONE_LEVEL_PROBABILITY)
+            } else {
+                Vec::new()
+            };
+            let of_stops = if levels.is_empty() { 0.0 } else { STOP_PROBABILITY };
+            let mut variants = self.variants(vec![waves, steps], 1.0 - of_stops);
+            variants.extend(levels.iter().map(|v| v.with_probability(of_stops * v.probability)));
             let record = Record::Table(Abscissa::Position, false);
             self.add_variants("position", "position", record, COMMON, variants);
         }
@@ -165,13 +166,14 @@ impl Collector<'_> {
                 vec![alternation],
             );
             // The same mistake in every series: the first reading after a reversal, or any other. A pattern over all of them is
-            // one along the stroke, where positions are known.
+            // one along the stroke, if each stop belongs to one of them.
             let directed = |row: &RowFactors, _: &RowLabels| format!("{:+}", row.directed_repetition);
             let record = Record::Table(Abscissa::DirectedRepetition, true);
             let channels = &[Channel::Reading, Channel::Friction];
             let levels = Levels::new(self.rows, Rc::new(directed));
             if self.has_levels(2..=MOST_LEVELS, levels.count()) {
-                let variants = levels.variants(if has_positions { 1.0 } else { ONE_LEVEL_PROBABILITY });
+                let of_one = if stops.determine(&levels) { 1.0 } else { ONE_LEVEL_PROBABILITY };
+                let variants = levels.variants(of_one);
                 self.add_variants("repetition of a direction", "repetition", record, channels, variants);
             }
             if distinct(&self.rows.series_time_s) > 1 {
@@ -346,6 +348,12 @@ impl Collector<'_> {
             self.add_variants(name, covariate, record, channels, variants);
         }
     }
+}
+
+/// Returns the position of a stop as a level, to a hundredth of the stroke.
+fn stop(row: &RowFactors, _: &RowLabels) -> String {
+    // Zero without a sign.
+    format!("{}", (100.0 * row.position).round() + 0.0)
 }
 
 /// Returns the name of a load as a level, to a hundredth of a newton.

@@ -6,8 +6,9 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 use pinswitch_inference::kernel;
 
-use super::covariates::{Covariates, Groups, distinct};
+use super::covariates::{Covariates, distinct};
 use super::forward::Channel;
+use super::groups::Groups;
 use super::structure::{GROSS_ERROR, NOISE, Record};
 use super::table_kernels::{BROWNIAN_RANK, Collector, Interval};
 use super::variant::{BasisOfRows, Variant};
@@ -90,13 +91,12 @@ impl Collector<'_> {
         });
         let [_, longest] = alike.clone();
         let own: BasisOfRows = Rc::new(move |rows| of_each_direction(&longest(rows), &rows.points));
-        let forms: Vec<BasisOfRows> = alike.to_vec();
-        let of_force =
-            if self.has_both_directions() { [forms.clone(), vec![own]].concat() } else { forms.clone() };
+        let mut of_force = alike.to_vec();
+        of_force.extend(self.has_both_directions().then_some(own));
         let by_cell = self.by_cell();
-        for (channels, forms) in
-            [(&[Channel::Drag][..], forms), (&[Channel::Reading, Channel::Gain], of_force)]
-        {
+        let of_channels =
+            [(&[Channel::Drag][..], alike.to_vec()), (&[Channel::Reading, Channel::Gain], of_force)];
+        for (channels, forms) in of_channels {
             let probability = 1.0 / forms.len() as f64;
             let variant = |form| Variant::of_groups(form, &by_cell, probability);
             let variants = forms.into_iter().filter_map(variant).collect();

@@ -5,7 +5,8 @@ use std::rc::Rc;
 use nalgebra::{DMatrix, DVector};
 use pinswitch_inference::{Basis, kernel};
 
-use super::covariates::{Covariates, Groups};
+use super::covariates::Covariates;
+use super::groups::Groups;
 
 /// Root mean square of the rows of a basis below which it changes nothing.
 const LEAST_NORM: f64 = 1e-9;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::curved_channel::CurvedChannel;
+use crate::curved_channels::CurvedChannels;
 use crate::half_t::HalfT;
 use crate::hypothesis::{Hypothesis, Member};
 use crate::noise::Scales;
@@ -74,7 +74,7 @@ pub struct Mode {
     pub(crate) weights: DVector<f64>,
     pub(crate) scales: Scales,
     pub(crate) log_sd: BTreeMap<Component, f64>,
-    /// Coefficients of the components of the curved channel.
+    /// Coefficients of the components of the curved channels.
     pub(crate) curved: BTreeMap<Component, Vec<f64>>,
 }
 
@@ -104,8 +104,8 @@ pub(crate) struct Design {
     pub(crate) target: DVector<f64>,
     /// Sensitivity of the readings to each channel.
     pub(crate) channels: Vec<Vec<f64>>,
-    /// Value of the curved channel at the mode.
-    pub(crate) curved: CurvedChannel,
+    /// Values of the curved channels at the mode.
+    pub(crate) curved: CurvedChannels,
     /// Components whose columns are constant within each series, times a sensitivity.
     pub(crate) of_series: Vec<SeriesColumns>,
 }
@@ -122,16 +122,15 @@ impl Design {
     pub(crate) fn of_rows(space: &Space, rows: &Rows, hypothesis: &Hypothesis, mode: &Mode) -> Option<Self> {
         let effects = mode.sized(hypothesis);
         let forward = &rows.forward;
-        let channel = CurvedChannel::new(mode, space, rows, hypothesis);
-        let curved = &channel.value;
+        let at = CurvedChannels::new(mode, space, rows, hypothesis);
+        let curved = at.values.as_slice();
         let baseline = forward.readings_at(&mode.constants, &effects, curved);
         let channels = forward.channels_at(&mode.constants, &effects, curved, &baseline);
         let mut builder = Builder { rows: rows.len(), ..Builder::default() };
         let mut target: Vec<f64> = baseline.iter().map(|f| -f).collect();
-        if let Some(index) = space.curved_channel {
-            let to_zero = channel.linear_change(&CurvedChannel::default(), &channels[index]);
-            target.iter_mut().zip(to_zero).for_each(|(target, change)| *target -= change);
-        }
+        let slopes = |component: Component| channels[component.channel(space)].as_slice();
+        let to_zero = at.linear_change(&CurvedChannels::default(), rows.len(), slopes);
+        target.iter_mut().zip(to_zero).for_each(|(target, change)| *target -= change);
         for (i, constant) in space.constants.iter().enumerate() {
             let mut moved = mode.constants.clone();
             moved[i] += CONSTANT_STEP;
@@ -165,10 +164,7 @@ impl Design {
                 builder.push(Role::Discrepancy(effect.effect), 0.0, column);
             }
         }
-        let sensitivity = |component: Component| {
-            let slopes = &channels[component.channel(space)];
-            channel.sensitivity(component, slopes)
-        };
+        let sensitivity = |component: Component| at.sensitivity(component, slopes(component));
         let ranges = rows.ranges();
         for (i, random) in space.random_effects.iter().enumerate() {
             let component = Component::Random(i);
@@ -195,7 +191,7 @@ impl Design {
             let columns = basis.times(&sensitivity);
             builder.push_component(component, &columns, sensitivity, basis.of_series(&ranges));
         }
-        builder.finish(target, channels, channel)
+        builder.finish(target, channels, at)
     }
 
     /// Returns the prior variance of each coefficient. Sizes have the variance `size_variance` of
@@ -277,7 +273,7 @@ impl Builder {
         }
     }
 
-    fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>, curved: CurvedChannel) -> Option<Design> {
+    fn finish(self, target: Vec<f64>, channels: Vec<Vec<f64>>, curved: CurvedChannels) -> Option<Design> {
         let is_finite =
             self.data.iter().chain(&target).chain(channels.iter().flatten()).all(|x| x.is_finite());
         is_finite.then(|| Design {
@@ -312,7 +308,7 @@ fn size_sensitivity(
     mode: &Mode,
     effects: &[SizedEffect],
     effect: SizedEffect,
-    (baseline, curved): (&[f64], &[f64]),
+    (baseline, curved): (&[f64], &[Vec<f64>]),
 ) -> Vec<f64> {
     let typical = space.effects[effect.effect].typical_size.unwrap_or(1.0);
     let step = (SIZE_STEPS.0 * typical).max(SIZE_STEPS.1 * effect.size.abs());
@@ -326,14 +322,14 @@ pub(crate) struct AddedColumns<'a> {
     problem: &'a Problem,
     hypothesis: &'a Hypothesis,
     mode: &'a Mode,
-    curved: Vec<f64>,
+    curved: Vec<Vec<f64>>,
     /// Readings of the hypothesis.
     readings: Vec<f64>,
 }
 
 impl<'a> AddedColumns<'a> {
     pub(crate) fn new(problem: &'a Problem, hypothesis: &'a Hypothesis, mode: &'a Mode) -> Self {
-        let curved = CurvedChannel::new(mode, &problem.space, &problem.rows, hypothesis).value;
+        let curved = CurvedChannels::new(mode, &problem.space, &problem.rows, hypothesis).values;
         let forward = &problem.rows.forward;
         let readings = forward.readings_at(&mode.constants, &mode.sized(hypothesis), &curved);
         Self { problem, hypothesis, mode, curved, readings }

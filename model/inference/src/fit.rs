@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::curved_channel::CurvedChannel;
+use crate::curved_channels::CurvedChannels;
 use crate::design::{Component, Design, Mode, Role};
 use crate::evidence::{Integrals, SizePosterior, log_evidence};
 use crate::hypothesis::{Element, Hypothesis, Member};
 use crate::leave_out::Linearised;
-use crate::noise::{EXCLUDED, Scales};
+use crate::noise::{EXCLUDED, LOUD, Scales};
 use crate::problem::{Problem, SizedEffect, Space};
 use crate::scales::{ScalePoint, ScaleProblem};
 
@@ -157,12 +157,21 @@ impl Fit {
         }
     }
 
-    /// Returns the fit with the noise of repeated readings; `None` if its own noise is not much larger.
+    /// Returns the fit with the usual noise of repeated readings and random effects of their prior scales, where its own are
+    /// larger; `None` if they are not much larger.
     pub(crate) fn quiet(&self, problem: &Problem) -> Option<Self> {
-        let scales = self.mode.scales.quiet(&problem.reference)?;
         let mut quiet = self.clone();
-        quiet.mode.scales = scales;
-        Some(quiet)
+        let scales = self.mode.scales.quiet(&problem.reference);
+        let mut is_loud = scales.is_some();
+        quiet.mode.scales = scales.unwrap_or(self.mode.scales);
+        for (i, random) in problem.space.random_effects.iter().enumerate() {
+            let usual = libm::log(random.scale);
+            if let Some(log) = quiet.mode.log_sd.get_mut(&Component::Random(i)) {
+                is_loud |= *log > usual + LOUD;
+                *log = log.min(usual);
+            }
+        }
+        is_loud.then_some(quiet)
     }
 
     /// Returns the standard deviation of a random effect of the space, the root of its posterior mean
@@ -204,9 +213,9 @@ fn loss_by_curvature(
 ) -> f64 {
     let forward = &at.problem.rows.forward;
     let (space, rows) = (&at.problem.space, &at.problem.rows);
-    let (curved_from, curved_to) = (&at.design.curved, CurvedChannel::new(after, space, rows, hypothesis));
-    let from = forward.readings_at(&before.constants, &before.sized(hypothesis), &curved_from.value);
-    let to = forward.readings_at(&after.constants, &after.sized(hypothesis), &curved_to.value);
+    let (curved_from, curved_to) = (&at.design.curved, CurvedChannels::new(after, space, rows, hypothesis));
+    let from = forward.readings_at(&before.constants, &before.sized(hypothesis), &curved_from.values);
+    let to = forward.readings_at(&after.constants, &after.sized(hypothesis), &curved_to.values);
     let value = |mode: &Mode, role: &Role| match role {
         Role::Constant(i) => mode.constants[*i],
         Role::Size(effect) => mode.sizes.get(effect).copied().unwrap_or(0.0),
@@ -214,10 +223,8 @@ fn loss_by_curvature(
         Role::Discrepancy(_) | Role::Variance(_) => 0.0,
     };
     let mut change = DVector::from_iterator(to.len(), to.iter().zip(&from).map(|(to, from)| to - from));
-    if let Some(channel) = space.curved_channel {
-        let linear = curved_from.linear_change(&curved_to, &at.design.channels[channel]);
-        change -= DVector::from_vec(linear);
-    }
+    let slopes = |component: Component| at.design.channels[component.channel(space)].as_slice();
+    change -= DVector::from_vec(curved_from.linear_change(&curved_to, to.len(), slopes));
     let mut coefficients = point.solution.mean.clone();
     for (i, role) in at.design.roles.iter().enumerate() {
         if matches!(role, Role::Discrepancy(_) | Role::Variance(_)) {
@@ -353,12 +360,11 @@ fn move_coefficients(space: &Space, design: &Design, point: &ScalePoint, mode: &
         }
     }
     mean -= prior_mean;
-    mode.curved = space.curved_channel.map_or_else(BTreeMap::new, |channel| {
-        let of_channel = design.components().into_iter().filter(|c| c.channel(space) == channel);
-        let coefficients =
-            |component: Component| design.columns_of(component).into_iter().map(|i| mean[i]).collect();
-        of_channel.map(|component| (component, coefficients(component))).collect()
-    });
+    let is_curved = |component: &Component| space.curved_channels.contains(&component.channel(space));
+    let coefficients =
+        |component: Component| design.columns_of(component).into_iter().map(|i| mean[i]).collect();
+    let curved = design.components().into_iter().filter(is_curved);
+    mode.curved = curved.map(|component| (component, coefficients(component))).collect();
 }
 
 /// Returns the nearest value of a coefficient that one step from the mode may reach.

@@ -108,7 +108,7 @@ mod candidates;
 mod cells;
 mod coefficients;
 mod covariance;
-mod curved_channel;
+mod curved_channels;
 mod design;
 mod evidence;
 mod expected_error;

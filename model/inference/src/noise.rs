@@ -88,7 +88,7 @@ pub struct Scales {
 
 /// Logarithm of the ratio of a scale to that of repeated readings above which it may stand for missing
 /// structure.
-const LOUD: f64 = std::f64::consts::LN_2;
+pub(crate) const LOUD: f64 = std::f64::consts::LN_2;
 
 impl Scales {
     /// Returns typical scales, from which a fit starts.

@@ -52,6 +52,8 @@ pub struct Kernel {
     pub name: String,
     /// Covariate in reports.
     pub covariate: String,
+    /// Number of its bases. Kernels of one number have the same bases, through different channels.
+    pub bases: usize,
     /// Index of the channel through which it acts.
     pub channel: usize,
     /// Scale of the half-Cauchy prior of its standard deviation, in the unit of the channel.
@@ -143,9 +145,10 @@ pub struct Space {
     pub structure_probability: f64,
     /// Index of the channel of the scale that each series draws.
     pub series_scale_channel: usize,
-    /// Index of the channel in which the readings are not linear, about whose value fits are
-    /// linearised again; `None` if they are linear in all.
-    pub curved_channel: Option<usize>,
+    /// Indices of the channels in which the readings are not linear, about whose values fits are linearised again.
+    pub curved_channels: Vec<usize>,
+    /// Pairs of channels through which one cause acts, each in its own way: a search adds kernels of both at once.
+    pub joint_channels: Vec<[usize; 2]>,
 }
 
 /// An effect with its size, as an argument of a forward model.
@@ -169,9 +172,9 @@ pub trait ForwardModel {
     /// Returns the derivative of the readings with respect to each channel, one column per channel.
     fn channels(&self, constants: &[f64], effects: &[SizedEffect]) -> Vec<Vec<f64>>;
 
-    /// Returns the readings where the curved channel of the space has this value at each row; no values
-    /// are zeros. A space without a curved channel needs no other implementation.
-    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[f64]) -> Vec<f64> {
+    /// Returns the readings where each curved channel of the space has this value at each row; an empty list
+    /// is zeros. A space without curved channels needs no other implementation.
+    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], _curved: &[Vec<f64>]) -> Vec<f64> {
         self.readings(constants, effects)
     }
 
@@ -181,19 +184,19 @@ pub trait ForwardModel {
         &self,
         [_constants, moved]: [&[f64]; 2],
         effects: &[SizedEffect],
-        curved: &[f64],
+        curved: &[Vec<f64>],
         _readings: &[f64],
     ) -> Vec<f64> {
         self.readings_at(moved, effects, curved)
     }
 
-    /// Returns the derivatives as [`ForwardModel::channels`] there, given the readings; that of the curved channel with respect
-    /// to the logarithm of one plus it.
+    /// Returns the derivatives as [`ForwardModel::channels`] there, given the readings; those of curved channels with respect
+    /// to the logarithms of one plus them.
     fn channels_at(
         &self,
         constants: &[f64],
         effects: &[SizedEffect],
-        _curved: &[f64],
+        _curved: &[Vec<f64>],
         _readings: &[f64],
     ) -> Vec<Vec<f64>> {
         self.channels(constants, effects)

@@ -76,6 +76,7 @@ pub(crate) fn space() -> Space {
         kernels: vec![Kernel {
             name: "load levels".to_owned(),
             covariate: "load".to_owned(),
+            bases: 0,
             channel: 0,
             scale: 0.3,
             variants: vec![1.0],
@@ -94,7 +95,8 @@ pub(crate) fn space() -> Space {
         usual_effects: vec![0],
         structure_probability: 0.2,
         series_scale_channel: 1,
-        curved_channel: None,
+        curved_channels: Vec::new(),
+        joint_channels: Vec::new(),
     }
 }
 

@@ -55,6 +55,7 @@ pub(super) fn actings(channel: Channel) -> &'static [Acting] {
         }
         Channel::Pins => &[(ActsOn::MuPins, Combine::Factor)],
         Channel::Silicone => &[(ActsOn::MuSilicone, Combine::Factor), (ActsOn::Threshold, Combine::Factor)],
+        Channel::HalfLoad => &[(ActsOn::Threshold, Combine::Factor)],
     }
 }
 
@@ -288,6 +289,7 @@ mod tests {
                 Channel::Friction,
                 Channel::Pins,
                 Channel::Silicone,
+                Channel::HalfLoad,
             ];
             let all: Vec<Acting> = channels.iter().flat_map(|channel| actings(*channel)).copied().collect();
             for (form, acting) in forms.iter().flat_map(|form| all.iter().map(move |acting| (form, *acting)))

@@ -28,12 +28,15 @@ pub enum Channel {
     /// Scales the friction exponent, with opposite signs in the two directions.
     #[serde(rename = "friction_by_direction")]
     FrictionByDirection,
+    /// Scales the half load of every device.
+    #[serde(rename = "half_load")]
+    HalfLoad,
 }
 
 impl Channel {
-    /// Returns whether it is a friction coefficient of the switch, the same in both directions.
+    /// Returns whether it is a constant of the switch: friction that is the same in both directions, or the half load.
     pub(crate) fn is_of_switch(self) -> bool {
-        matches!(self, Self::Friction | Self::Pins | Self::Silicone)
+        matches!(self, Self::Friction | Self::Pins | Self::Silicone | Self::HalfLoad)
     }
 }
 
@@ -336,6 +339,7 @@ impl Structure {
                 state.extra_exponent_pins *= factor;
             }
             Channel::Silicone => state.mu_silicone *= factor,
+            Channel::HalfLoad => state.half_load_n *= factor,
         }
     }
 
@@ -353,7 +357,7 @@ impl Structure {
         matches!(self.channel, Channel::Reading | Channel::Gain)
     }
 
-    /// Returns whether it is friction that differs between sessions or specimens.
+    /// Returns whether it is a constant of the switch that differs between sessions or specimens.
     pub(crate) fn is_change(&self) -> bool {
         let is_of_group =
             matches!(self.form, Shape::Table { over: Abscissa::Session | Abscissa::Specimen, .. });
@@ -368,7 +372,8 @@ impl Structure {
             | Channel::Friction
             | Channel::FrictionByDirection
             | Channel::Pins
-            | Channel::Silicone => "1",
+            | Channel::Silicone
+            | Channel::HalfLoad => "1",
         }
     }
 
@@ -382,6 +387,7 @@ impl Structure {
             Channel::FrictionByDirection => "the friction exponent, with opposite signs in the directions",
             Channel::Pins => "the friction of the pins",
             Channel::Silicone => "the friction of the silicone",
+            Channel::HalfLoad => "the half load",
         };
         let name = |i: &usize| frame.conditions.get(*i).map_or_else(String::new, Condition::name);
         let stroke = frame.stroke_mm;

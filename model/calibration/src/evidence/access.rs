@@ -206,7 +206,7 @@ impl Evidence {
         self.setup.baseline.device_indices(device)
     }
 
-    /// Returns whether a member is friction that differs between sessions or specimens: a property of
+    /// Returns whether a member is a constant of the switch that differs between sessions or specimens: a property of
     /// the switch, and no effect that the model lacks.
     pub(crate) fn is_change(&self, member: Member) -> bool {
         let Member::Kernel(kernel) = member else { return false };
@@ -219,6 +219,7 @@ impl Evidence {
         match self.setup.structures[kernel].channel {
             Channel::Pins => "mu_p",
             Channel::Silicone => "mu_s",
+            Channel::HalfLoad => "F_half",
             _ => "mu",
         }
     }

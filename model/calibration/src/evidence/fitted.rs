@@ -261,6 +261,7 @@ pub(super) fn channel_of(channel: Channel) -> effects::Channel {
         Channel::Silicone => effects::Channel::Silicone,
         Channel::Gain => effects::Channel::Gain,
         Channel::DirectionFriction => effects::Channel::FrictionByDirection,
+        Channel::HalfLoad => effects::Channel::HalfLoad,
     }
 }
 

@@ -33,9 +33,14 @@ pub(crate) enum Channel {
     Gain,
     /// Every friction exponent, with the sign of the direction.
     DirectionFriction,
+    /// The half load of every device.
+    HalfLoad,
 }
 
 impl Channel {
+    /// Channels in which readings are not linear.
+    pub(super) const CURVED: [Self; 4] = [Self::Friction, Self::Pins, Self::Silicone, Self::HalfLoad];
+
     /// Returns its index among the columns.
     pub(super) fn index(self) -> usize {
         self as usize
@@ -51,6 +56,7 @@ impl Channel {
             Self::Silicone => "friction on silicone",
             Self::Gain => "gain",
             Self::DirectionFriction => "friction by direction",
+            Self::HalfLoad => "half load",
         }
     }
 
@@ -134,22 +140,30 @@ impl Baseline {
 }
 
 /// Factors on quantities of the contact, for sensitivities.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Factors {
     exponent: f64,
     pins: f64,
     silicone: f64,
+    half_load: f64,
 }
 
-const NO_CHANGE: Factors = Factors { exponent: 1.0, pins: 1.0, silicone: 1.0 };
+const NO_CHANGE: Factors = Factors { exponent: 1.0, pins: 1.0, silicone: 1.0, half_load: 1.0 };
 
 impl Factors {
+    /// Returns one plus each of [`Channel::CURVED`] at a row.
+    fn at(curved: &[Vec<f64>], row: usize) -> Self {
+        let factor = |at: usize| 1.0 + curved.get(at).and_then(|c| c.get(row)).copied().unwrap_or(0.0);
+        Self { exponent: factor(0), pins: factor(1), silicone: factor(2), half_load: factor(3) }
+    }
+
     /// Scales a contact after all effects, as structure in a model file does.
     fn apply(self, state: &mut ContactState) {
         state.mu_pins *= self.pins;
         state.extra_exponent_pins *= self.pins;
         state.mu_silicone *= self.silicone;
         state.exponent_factor *= self.exponent;
+        state.half_load_n *= self.half_load;
     }
 }
 
@@ -164,6 +178,8 @@ pub(super) struct FrictionModel {
     pub(super) priors: Arc<[EffectPrior]>,
     /// Values of formulas at the points.
     pub(super) formula_values: FormulaValues,
+    /// Whether a kernel acts on the half loads, whose sensitivity is zero otherwise.
+    pub(super) moves_half_loads: bool,
 }
 
 /// An effect of a hypothesis.
@@ -182,7 +198,7 @@ impl FrictionModel {
         constants: &[f64],
         effects: &[SizedEffect],
         factors: Factors,
-        curved: &[f64],
+        curved: &[Vec<f64>],
     ) -> Vec<f64> {
         let acting = self.acting(&self.points, &self.formula_values, effects);
         self.evaluate_at(&self.points, &acting, &self.contacts(constants), factors, curved, |_| None)
@@ -195,11 +211,11 @@ impl FrictionModel {
         acting: &[Acting<'_>],
         states: &[ContactState],
         factors: Factors,
-        curved: &[f64],
+        curved: &[Vec<f64>],
         known: impl Fn(usize) -> Option<f64>,
     ) -> Vec<f64> {
         let moves = acting.iter().any(|acting| acting.prior.effect.moves_along_a_series());
-        let mut last: Option<(&Point, f64, f64)> = None;
+        let mut last: Option<(&Point, Factors, f64)> = None;
         points
             .iter()
             .enumerate()
@@ -207,9 +223,10 @@ impl FrictionModel {
                 if let Some(reading) = known(row) {
                     return reading;
                 }
-                let change = curved.get(row).copied().unwrap_or(0.0);
+                let change = Factors::at(curved, row);
                 // Repetitions at one setting have one expectation, unless an effect varies within a series.
-                let is_known = |known: &Point, at: f64| !moves && at == change && known.has_setting_of(point);
+                let is_known =
+                    |known: &Point, at: Factors| !moves && at == change && known.has_setting_of(point);
                 if let Some((.., reading)) = last.filter(|(known, at, _)| is_known(known, *at)) {
                     return reading;
                 }
@@ -222,7 +239,7 @@ impl FrictionModel {
                     }
                 }
                 factors.apply(&mut state);
-                state.exponent_factor *= 1.0 + change;
+                change.apply(&mut state);
                 let mut reading = state.tension_n(condition, point);
                 for Acting { prior, constants, .. } in acting {
                     reading = prior.effect.on_tension(constants, point, condition, reading);
@@ -317,7 +334,7 @@ impl ForwardModel for FrictionModel {
         self.channels_at(constants, effects, &[], &self.readings(constants, effects))
     }
 
-    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
+    fn readings_at(&self, constants: &[f64], effects: &[SizedEffect], curved: &[Vec<f64>]) -> Vec<f64> {
         self.evaluate(constants, effects, NO_CHANGE, curved)
     }
 
@@ -325,7 +342,7 @@ impl ForwardModel for FrictionModel {
         &self,
         constants: [&[f64]; 2],
         effects: &[SizedEffect],
-        curved: &[f64],
+        curved: &[Vec<f64>],
         readings: &[f64],
     ) -> Vec<f64> {
         // Most constants are of one device, and effects read none but through its contact.
@@ -340,7 +357,7 @@ impl ForwardModel for FrictionModel {
         &self,
         constants: &[f64],
         effects: &[SizedEffect],
-        curved: &[f64],
+        curved: &[Vec<f64>],
         readings: &[f64],
     ) -> Vec<Vec<f64>> {
         let slope = |factors: Factors| -> Vec<f64> {
@@ -353,7 +370,21 @@ impl ForwardModel for FrictionModel {
         let silicone = slope(Factors { silicone: up, ..NO_CHANGE });
         let sign: Vec<f64> = self.points.iter().map(|p| p.sign).collect();
         let by_direction = friction.iter().zip(&sign).map(|(f, d)| f * d).collect();
-        vec![vec![1.0; sign.len()], sign, friction, pins, silicone, readings.to_vec(), by_direction]
+        let half_load = if self.moves_half_loads {
+            slope(Factors { half_load: up, ..NO_CHANGE })
+        } else {
+            vec![0.0; sign.len()]
+        };
+        vec![
+            vec![1.0; sign.len()],
+            sign,
+            friction,
+            pins,
+            silicone,
+            readings.to_vec(),
+            by_direction,
+            half_load,
+        ]
     }
 
     fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {

@@ -305,7 +305,7 @@ impl Setup {
         Space {
             constants: self.baseline.constants(),
             effects: self.priors.iter().map(|prior| prior.space(force_unit)).collect(),
-            kernels: self.structures.iter().map(Structure::space).collect(),
+            kernels: structure::kernels(&self.structures),
             random_effects: vec![
                 random(MOUNT, &self.mounts, Channel::Friction, MOUNT_SCALE),
                 random(SPECIMEN, &self.specimens, specimen_channel, SPECIMEN_SCALE),
@@ -313,7 +313,9 @@ impl Setup {
             usual_effects: (0..self.priors.len()).filter(usual).collect(),
             structure_probability: STRUCTURE_PROBABILITY,
             series_scale_channel: Channel::Friction.index(),
-            curved_channel: Some(Channel::Friction.index()),
+            curved_channels: Channel::CURVED.map(Channel::index).into(),
+            // Another tendon changes the friction on both materials.
+            joint_channels: vec![[Channel::Pins.index(), Channel::Silicone.index()]],
         }
     }
 
@@ -330,6 +332,7 @@ impl Setup {
             baseline: self.baseline.clone(),
             priors: Arc::clone(&self.priors),
             formula_values: FormulaValues::default(),
+            moves_half_loads: self.structures.iter().any(|s| s.channel == Channel::HalfLoad),
         };
         if session == Session::New {
             forward.points = forward.points_at_mean_time();

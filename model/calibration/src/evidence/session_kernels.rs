@@ -15,7 +15,7 @@ use super::variant::BasisOfRows;
 
 /// Channels of what a session may draw again, and of the switch.
 const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
-const SWITCH: &[Channel] = &[Channel::Friction, Channel::Pins, Channel::Silicone];
+const SWITCH: &[Channel] = &[Channel::Friction, Channel::Pins, Channel::Silicone, Channel::HalfLoad];
 
 /// A form of the levels with its basis.
 type Form = (SessionLevels, BasisOfRows);

@@ -47,11 +47,12 @@ pub(super) struct Structure {
 }
 
 impl Structure {
-    /// Returns the kernel for the space of hypotheses.
-    pub(super) fn space(&self) -> Kernel {
+    /// Returns the kernel for the space of hypotheses, with the number of its bases.
+    fn space(&self, bases: usize) -> Kernel {
         Kernel {
             name: self.name.clone(),
             covariate: self.covariate.to_owned(),
+            bases,
             channel: self.channel.index(),
             scale: self.scale,
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
@@ -83,6 +84,12 @@ impl Structure {
         };
         self.bases.iter().map(repeated).collect()
     }
+}
+
+/// Returns the kernels for the space of hypotheses.
+pub(super) fn kernels(structures: &[Structure]) -> Vec<Kernel> {
+    let groups = structures.chunk_by(|a, b| Rc::ptr_eq(&a.bases, &b.bases)).enumerate();
+    groups.flat_map(|(bases, group)| group.iter().map(move |structure| structure.space(bases))).collect()
 }
 
 /// Returns the bases of structures at the rows of the fitted table.

@@ -25,6 +25,8 @@ const MOST_LOADS: usize = 14;
 pub(super) const MOST_LEVELS: usize = 20;
 /// Prior probability that of the levels of a factor one differs from the others.
 const ONE_LEVEL_PROBABILITY: f64 = 0.5;
+/// Share of the range of positions by which the interval of smooth functions is longer at each end.
+const WIDENING: f64 = 0.125;
 /// Most positions of stops that are levels of a factor, and the prior probability that a pattern along the stroke has its own
 /// value at each stop, or at one.
 const MOST_STOPS: usize = 48;
@@ -105,8 +107,9 @@ impl Collector<'_> {
         }
         let bases = Rc::new(variants);
         for channel in channels {
-            // Without two materials their friction is the friction.
-            if !self.has_both_materials && matches!(channel, Channel::Pins | Channel::Silicone) {
+            // Without two materials their friction is the friction, and nothing switches.
+            let is_of_both = matches!(channel, Channel::Pins | Channel::Silicone | Channel::HalfLoad);
+            if is_of_both && !self.has_both_materials {
                 continue;
             }
             let scale = match channel {
@@ -134,8 +137,11 @@ impl Collector<'_> {
         let stops = Levels::new(self.rows, Rc::new(stop));
         if distinct(&at) > 2 {
             let scale = Interval::of(&at);
+            // Cosines are level at the ends of their interval. In a wider one, few of them have a slope at the ends of the
+            // stroke (Solin and Särkkä 2020).
+            let wide = scale.widened(WIDENING);
             let waves: BasisOfRows =
-                Rc::new(move |rows| kernel::smooth(&scale.shares(&position(rows)), 8, 1.0));
+                Rc::new(move |rows| kernel::smooth(&wide.shares(&position(rows)), 10, 1.0));
             // A worn spot has edges, which many readings show exactly.
             let rank = distinct(&at).min(MOST_STOPS);
             let steps: BasisOfRows =
@@ -314,9 +320,15 @@ impl Collector<'_> {
         // The mount effect on friction is in every hypothesis.
         let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
         self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
-        self.levels("specimen", "specimen", Record::Table(Abscissa::Specimen, true), of_parts, |_, label| {
-            label.specimen.clone()
-        });
+        // Another cast may be softer.
+        let of_specimen = &[of_parts.as_slice(), &[Channel::HalfLoad]].concat();
+        self.levels(
+            "specimen",
+            "specimen",
+            Record::Table(Abscissa::Specimen, true),
+            of_specimen,
+            |_, label| label.specimen.clone(),
+        );
         self.levels(
             "operator",
             "operator",
@@ -373,6 +385,12 @@ impl Interval {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         Self { low, high }
+    }
+
+    /// Returns the interval that is longer at each end by a share of its width.
+    fn widened(self, share: f64) -> Self {
+        let more = share * (self.high - self.low);
+        Self { low: self.low - more, high: self.high + more }
     }
 
     /// Returns the shares 0..1 of values in the range; those outside have the nearest end.

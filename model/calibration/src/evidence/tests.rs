@@ -3,9 +3,9 @@
 use pinswitch_inference::{Member, SizedEffect};
 
 use super::{Evidence, Session};
-use crate::effects::{Vocabulary, effect_named};
+use crate::effects::{Channel, Covariate, Shape, Structure, Vocabulary, effect_named};
 use crate::model::Term;
-use crate::table::PlateauRow;
+use crate::table::{Labels, PlateauRow};
 use crate::test_session::{session, session_with};
 
 fn evidence(rows: &[PlateauRow]) -> Evidence {
@@ -24,7 +24,7 @@ fn moved_constants_change_all_that_depends_on_them() {
     let space = evidence.problem().space();
     let forward = &evidence.problem().rows().forward;
     let constants: Vec<f64> = space.constants.iter().map(|constant| constant.mean).collect();
-    let curved: Vec<f64> = (0..rows.len()).map(|row| 0.01 * (row % 3) as f64).collect();
+    let curved = vec![(0..rows.len()).map(|row| 0.01 * (row % 3) as f64).collect()];
     for (effect, prior) in space.effects.iter().enumerate() {
         let size = prior.starts.first().copied().unwrap_or(1.0);
         let effects = [SizedEffect { effect, shape: 0, size, shifts: [0.0; 3] }];
@@ -167,6 +167,35 @@ fn a_scale_of_the_cell_that_changes_is_the_cells() {
 }
 
 /// One reading determines nothing.
+/// Another day, or another cast, with a half load that is 15 % lower and the same friction.
+#[test]
+fn a_half_load_that_differs_is_a_change_of_it() {
+    let softer = Term::Structure(Structure {
+        covariate: Covariate::Condition,
+        channel: Channel::HalfLoad,
+        form: Shape::Constant,
+    });
+    let later = session_with(5, &[(softer, &[-0.15])]);
+    for (by, label) in [
+        ("session", (|labels, name| labels.session = name) as fn(&mut Labels, String)),
+        ("specimen", |labels, name| labels.specimen = name),
+    ] {
+        let mut rows = [session(3), later.clone()].concat();
+        let count = rows.len() / 2;
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.series = format!("{}-{}", i / count, row.series);
+            label(&mut row.labels, format!("{}", i / count));
+        }
+        let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+        let report = &calibration.report;
+        assert!(report.effects.is_empty(), "{by}: {:?}", report.effects);
+        let [change] = report.changes.as_slice() else { panic!("{by}: {:?}", report.changes) };
+        assert_eq!((change.constant.as_str(), change.by.as_str()), ("F_half", by));
+        let ratio = change.factors["1"] / change.factors["0"];
+        assert!((ratio - 0.85).abs() < 0.03, "{by}: {:?}", change.factors);
+    }
+}
+
 #[test]
 fn one_row_is_inconclusive() {
     let evidence = evidence(&session(9)[..1]);

@@ -525,7 +525,7 @@ mod tests {
         let rows = [&calibrated.rows[..], &next[..]].concat();
         let after = calibrate(&rows, &calibrated.vocabulary, 1).unwrap().report;
         let ids: Vec<&str> = after.effects.iter().map(|effect| effect.id.as_str()).collect();
-        assert_eq!((after.verdict, ids), (Verdict::Attributed, vec![id]));
+        assert_eq!((after.verdict, ids), (Verdict::Attributed, vec![id]), "{:?}", after.effects);
         let text = serde_json::to_string(proposal).unwrap();
         let plan: SessionPlan = serde_json::from_str(&text).unwrap();
         for question in plan.answered(&after, 49.0).questions {

@@ -11,7 +11,7 @@ use crate::session_plan::SessionPlan;
 /// A constant of the switch that differs between sessions or specimens.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ChangeReport {
-    /// `mu_p`, `mu_s`, or `mu` for all friction coefficients.
+    /// `mu_p`, `mu_s`, `mu` for all friction coefficients, or `F_half` for the half loads of all layouts.
     pub constant: String,
     /// `session` or `specimen`.
     pub by: String,

@@ -1,4 +1,4 @@
-//! Friction that differs between sessions or specimens.
+//! Constants of the switch that differ between sessions or specimens.
 
 use std::collections::BTreeMap;
 

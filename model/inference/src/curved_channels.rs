@@ -1,4 +1,4 @@
-//! The channel in which readings are not linear, such as friction: one plus it is a product over the
+//! The channels in which readings are not linear, such as friction: one plus each is a product over the
 //! random effects and kernels that act through it.
 //!
 //! As a product, a level that all rows share is the same as another value of a constant, whatever the
@@ -11,37 +11,46 @@ use crate::design::{Component, Mode};
 use crate::hypothesis::Hypothesis;
 use crate::problem::{Rows, Space};
 
-/// Bounds of the channel, and of each part.
+/// Bounds of a channel, and of each part.
 const RANGE: (f64, f64) = (-0.9, 9.0);
 
-/// Value of the curved channel at the rows of a mode.
+/// Values of the curved channels at the rows of a mode.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct CurvedChannel {
+pub(crate) struct CurvedChannels {
     /// Function of each component, in the order of the rows.
     parts: BTreeMap<Component, Vec<f64>>,
-    /// Value at each row; empty where it is zero.
-    pub(crate) value: Vec<f64>,
+    /// Value of each curved channel of the space at each row; empty where it is zero.
+    pub(crate) values: Vec<Vec<f64>>,
 }
 
-impl CurvedChannel {
-    /// Multiplies the parts.
-    fn of_parts(mut parts: BTreeMap<Component, Vec<f64>>, rows: usize) -> Self {
-        let mut value = vec![0.0; rows];
-        for part in parts.values_mut() {
-            part.iter_mut().for_each(|x| *x = x.clamp(RANGE.0, RANGE.1));
-            value.iter_mut().zip(part).for_each(|(value, x)| *value = (1.0 + *value) * (1.0 + *x) - 1.0);
-        }
-        value.iter_mut().for_each(|value| *value = value.clamp(RANGE.0, RANGE.1));
-        Self { parts, value }
+impl CurvedChannels {
+    /// Multiplies the parts of each channel.
+    fn of_parts(
+        mut parts: BTreeMap<Component, Vec<f64>>,
+        channels: &[usize],
+        channel: impl Fn(Component) -> usize,
+    ) -> Self {
+        parts.values_mut().flatten().for_each(|x| *x = x.clamp(RANGE.0, RANGE.1));
+        let product = |of: &usize| {
+            let mut value: Vec<f64> = Vec::new();
+            for part in
+                parts.iter().filter(|(component, _)| channel(**component) == *of).map(|(_, part)| part)
+            {
+                value.resize(part.len(), 0.0);
+                value.iter_mut().zip(part).for_each(|(value, x)| *value = (1.0 + *value) * (1.0 + *x) - 1.0);
+            }
+            value.iter_mut().for_each(|value| *value = value.clamp(RANGE.0, RANGE.1));
+            value
+        };
+        let values = channels.iter().map(product).collect();
+        Self { parts, values }
     }
 
-    /// Evaluates the channel.
+    /// Evaluates the channels.
     pub(crate) fn new(mode: &Mode, space: &Space, rows: &Rows, hypothesis: &Hypothesis) -> Self {
-        let (Some(channel), false) = (space.curved_channel, mode.curved.is_empty()) else {
-            return Self::default();
-        };
         let mut parts = BTreeMap::new();
-        for (i, random) in space.random_effects.iter().enumerate().filter(|(_, r)| r.channel == channel) {
+        let is_curved = |channel: usize| space.curved_channels.contains(&channel);
+        for (i, random) in space.random_effects.iter().enumerate().filter(|(_, r)| is_curved(r.channel)) {
             let component = Component::Random(i);
             let Some(levels) = mode.curved.get(&component).filter(|l| l.len() == random.levels) else {
                 continue;
@@ -49,17 +58,17 @@ impl CurvedChannel {
             let part = rows.levels[i].iter().map(|level| level.map_or(0.0, |level| levels[level]));
             parts.insert(component, part.collect::<Vec<f64>>());
         }
-        for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| space.kernels[*k].channel == channel) {
+        for (kernel, variant) in hypothesis.kernels().filter(|(k, _)| is_curved(space.kernels[*k].channel)) {
             let component = Component::Kernel(kernel);
             let basis = &rows.bases[kernel][variant];
             if let Some(known) = mode.curved.get(&component).filter(|c| c.len() == basis.coefficients()) {
                 parts.insert(component, basis.function(known));
             }
         }
-        Self::of_parts(parts, rows.len())
+        Self::of_parts(parts, &space.curved_channels, |component| component.channel(space))
     }
 
-    /// Returns the sensitivity of the readings to a component from that to the logarithm of one plus the channel.
+    /// Returns the sensitivity of the readings to a component from that to the logarithm of one plus its channel.
     pub(crate) fn sensitivity(&self, component: Component, channel: &[f64]) -> Vec<f64> {
         match self.parts.get(&component) {
             Some(part) => channel.iter().zip(part).map(|(slope, x)| slope / (1.0 + x)).collect(),
@@ -67,13 +76,19 @@ impl CurvedChannel {
         }
     }
 
-    /// Returns the change of the readings from here to another value by the linear model.
-    pub(crate) fn linear_change(&self, to: &Self, channel: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; channel.len()];
+    /// Returns the change of the readings from here to other values by the linear model, with the sensitivity to each component's
+    /// channel.
+    pub(crate) fn linear_change<'a>(
+        &self,
+        to: &Self,
+        rows: usize,
+        slopes: impl Fn(Component) -> &'a [f64],
+    ) -> Vec<f64> {
+        let mut sum = vec![0.0; rows];
         let components: BTreeSet<&Component> = self.parts.keys().chain(to.parts.keys()).collect();
         for component in components {
             let value = |of: &Self, row: usize| of.parts.get(component).map_or(0.0, |part| part[row]);
-            for (row, (sum, slope)) in sum.iter_mut().zip(channel).enumerate() {
+            for (row, (sum, slope)) in sum.iter_mut().zip(slopes(*component)).enumerate() {
                 let from = value(self, row);
                 *sum += slope * (value(to, row) - from) / (1.0 + from);
             }
@@ -93,17 +108,18 @@ mod tests {
     const MOUNT: Component = Component::Random(0);
     const CURVE: Component = Component::Kernel(2);
 
-    fn channel(mount: [f64; 2], curve: [f64; 2]) -> CurvedChannel {
-        CurvedChannel::of_parts([(MOUNT, mount.to_vec()), (CURVE, curve.to_vec())].into(), 2)
+    /// Returns two channels, of which only the second is curved.
+    fn channel(mount: [f64; 2], curve: [f64; 2]) -> CurvedChannels {
+        CurvedChannels::of_parts([(MOUNT, mount.to_vec()), (CURVE, curve.to_vec())].into(), &[1], |_| 1)
     }
 
     /// Readings of the square of one plus the channel.
-    fn readings(at: &CurvedChannel) -> Vec<f64> {
-        at.value.iter().map(|value| (1.0 + value).powi(2)).collect()
+    fn readings(at: &CurvedChannels) -> Vec<f64> {
+        at.values[0].iter().map(|value| (1.0 + value).powi(2)).collect()
     }
 
     /// Derivatives of the readings with respect to the logarithm of one plus the channel.
-    fn slopes(at: &CurvedChannel) -> Vec<f64> {
+    fn slopes(at: &CurvedChannels) -> Vec<f64> {
         readings(at).iter().map(|reading| 2.0 * reading).collect()
     }
 
@@ -116,7 +132,8 @@ mod tests {
         ];
         for (component, moved) in moved {
             let sensitivity = at.sensitivity(component, &slopes(&at));
-            let change = at.linear_change(&moved, &slopes(&at));
+            let slopes = slopes(&at);
+            let change = at.linear_change(&moved, 2, |_| &slopes);
             for row in 0..2 {
                 let slope = (readings(&moved)[row] - readings(&at)[row]) / step;
                 assert!((sensitivity[row] - slope).abs() < 1e-4, "{component:?} {row}");
@@ -144,8 +161,8 @@ mod tests {
             self.channels_at(constants, effects, &[], &[])
         }
 
-        fn readings_at(&self, constants: &[f64], _: &[SizedEffect], curved: &[f64]) -> Vec<f64> {
-            let factor = |row: usize| 1.0 + curved.get(row).copied().unwrap_or(0.0);
+        fn readings_at(&self, constants: &[f64], _: &[SizedEffect], curved: &[Vec<f64>]) -> Vec<f64> {
+            let factor = |row: usize| 1.0 + curved.first().and_then(|c| c.get(row)).copied().unwrap_or(0.0);
             let readings = self.0.iter().enumerate();
             readings.map(|(row, load)| libm::exp(constants[0]) * load * factor(row)).collect()
         }
@@ -154,7 +171,7 @@ mod tests {
             &self,
             constants: &[f64],
             effects: &[SizedEffect],
-            curved: &[f64],
+            curved: &[Vec<f64>],
             _: &[f64],
         ) -> Vec<Vec<f64>> {
             vec![vec![1.0; self.0.len()], self.readings_at(constants, effects, curved)]
@@ -178,7 +195,7 @@ mod tests {
         (rows.discrepancies, rows.relevant) = (Vec::new(), Vec::new());
         space.kernels[0].channel = 1;
         space.random_effects[0].levels = 100;
-        space.curved_channel = Some(1);
+        space.curved_channels = vec![1];
         let mut random = Random::new(5);
         let mounts: Vec<f64> = (0..100).map(|_| 0.02 * random.normal()).collect();
         let mount = |row: usize| rows.levels[0][row].map_or(0.0, |level| mounts[level]);

@@ -33,12 +33,24 @@ pub(crate) struct Candidate {
     pub(crate) columns: Range<usize>,
 }
 
+/// Two candidates of one column each, which have one basis through different channels.
+pub(crate) struct Pair {
+    /// Their places among all candidates.
+    pub(crate) places: [usize; 2],
+    /// `x'V^-1 y` of their columns.
+    pub(crate) between: f64,
+}
+
 /// Collects candidates of a fit.
 pub(crate) struct Candidates<'a> {
     marginal: &'a Marginal,
     channels: &'a [Vec<f64>],
     is_second: &'a [bool],
+    /// Channels of the pairs.
+    joint_channels: &'a [[usize; 2]],
     of_cells: BTreeMap<usize, CellProducts>,
+    between_channels: BTreeMap<[usize; 2], DMatrix<f64>>,
+    pairs: Vec<Pair>,
     /// Element, relevance and number of columns of each candidate of the block.
     waiting: Vec<(Element, f64, usize)>,
     /// Their columns, one after the other.
@@ -49,13 +61,21 @@ pub(crate) struct Candidates<'a> {
 }
 
 impl<'a> Candidates<'a> {
-    /// `is_second` has the direction of each row.
-    pub(crate) fn new(marginal: &'a Marginal, channels: &'a [Vec<f64>], is_second: &'a [bool]) -> Self {
+    /// `is_second` has the direction of each row, `joint_channels` are those of the pairs.
+    pub(crate) fn new(
+        marginal: &'a Marginal,
+        channels: &'a [Vec<f64>],
+        is_second: &'a [bool],
+        joint_channels: &'a [[usize; 2]],
+    ) -> Self {
         Self {
             marginal,
             channels,
             is_second,
+            joint_channels,
             of_cells: BTreeMap::new(),
+            between_channels: BTreeMap::new(),
+            pairs: Vec::new(),
             waiting: Vec::new(),
             columns: Vec::new(),
             done: Vec::new(),
@@ -75,6 +95,7 @@ impl<'a> Candidates<'a> {
         kernels: impl Iterator<Item = (Element, usize)>,
         basis: &BasisByCell,
     ) {
+        let mut of_one_column: Vec<(usize, usize)> = Vec::new();
         for (element, channel) in kernels {
             let sensitivity = &self.channels[channel];
             let Some(cells) = &basis.cells else {
@@ -91,8 +112,32 @@ impl<'a> Candidates<'a> {
                 .entry(channel)
                 .or_insert_with(|| CellProducts::new(marginal, sensitivity, is_second));
             if let Some((candidate, cross)) = products.candidate(element, cells) {
+                if cross.ncols() == 1 {
+                    of_one_column.push((channel, self.done.len()));
+                }
                 self.is_done(candidate, &cross);
             }
+        }
+        if let Some(cells) = &basis.cells {
+            self.add_pairs(&of_one_column, cells);
+        }
+    }
+
+    /// Adds the pairs among candidates of one basis by channel and place.
+    fn add_pairs(&mut self, of_one_column: &[(usize, usize)], cells: &Cells) {
+        let place =
+            |of: usize| of_one_column.iter().find(|(channel, _)| *channel == of).map(|(_, place)| *place);
+        for channels in self.joint_channels {
+            let ([Some(first), Some(second)], [Some(a), Some(b)]) =
+                (channels.map(place), channels.map(|channel| self.of_cells.get(&channel)))
+            else {
+                continue;
+            };
+            let ranges = &self.marginal.whitening.ranges;
+            let between =
+                self.between_channels.entry(*channels).or_insert_with(|| a.products_with(b, ranges));
+            let between = cells.quadratic_form(between);
+            self.pairs.push(Pair { places: [first, second], between });
         }
     }
 
@@ -127,17 +172,19 @@ impl<'a> Candidates<'a> {
         self.done.push(candidate);
     }
 
-    /// Returns the candidates, and `A'V^-1 x` of all their columns.
-    pub(crate) fn finish(mut self) -> (Vec<Candidate>, DMatrix<f64>) {
+    /// Returns the candidates, their pairs, and `A'V^-1 x` of all their columns.
+    pub(crate) fn finish(mut self) -> (Vec<Candidate>, Vec<Pair>, DMatrix<f64>) {
         self.whiten();
         let count = self.done.last().map_or(0, |last| last.columns.end);
-        (self.done, DMatrix::from_vec(self.marginal.gram.nrows(), count, self.cross))
+        (self.done, self.pairs, DMatrix::from_vec(self.marginal.gram.nrows(), count, self.cross))
     }
 }
 
 /// Products of the part `c` of the sensitivity to a channel in each cell: those of the first direction of every series, then
 /// those of the second.
 struct CellProducts {
+    /// `c` of each direction, whitened.
+    white: [DVector<f64>; 2],
     /// `c'V^-1 c`.
     gram: DVector<f64>,
     /// `c'V^-1 c` of both cells of each series.
@@ -179,7 +226,17 @@ impl CellProducts {
                 largest[cell] = parts[i].rows(range.start, range.len()).amax();
             }
         }
-        Self { gram, between, cross, moment, largest }
+        Self { white, gram, between, cross, moment, largest }
+    }
+
+    /// Returns `c'V^-1 d` with the parts `d` of another channel. Each series has one row; both directions of `c` follow each other,
+    /// each with both of `d`.
+    fn products_with(&self, other: &Self, ranges: &[Range<usize>]) -> DMatrix<f64> {
+        DMatrix::from_fn(ranges.len(), 4, |series, column| {
+            let Range { start, end } = ranges[series];
+            let part = |white: &DVector<f64>| white.rows(start, end - start).into_owned();
+            part(&self.white[column / 2]).dot(&part(&other.white[column % 2]))
+        })
     }
 
     /// Returns the candidate of a basis with one row per cell, and its `A'V^-1 x`; `None` if it changes no reading.
@@ -233,7 +290,7 @@ mod tests {
         let rows = DMatrix::from_fn(problem.len(), 3, |row, j| values[(cell(row), j)]);
         let basis = Basis::from(rows);
         let element = Element { member: Member::Kernel(0), form: 0 };
-        let mut candidates = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
+        let mut candidates = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction, &[]);
         let kernels = || std::iter::once((element, 1));
         let by_cell = |basis| BasisByCell::new(basis, &problem.ranges, &problem.rows.direction);
         candidates.add_kernels(kernels(), &by_cell(&basis));
@@ -243,7 +300,7 @@ mod tests {
         }
         let zero = Basis::from(DMatrix::zeros(problem.len(), 2));
         candidates.add_kernels(kernels(), &by_cell(&zero));
-        let (found, cross) = candidates.finish();
+        let (found, _, cross) = candidates.finish();
         assert_eq!(found.len(), 1 + 3);
         for (j, single) in found[1..].iter().enumerate() {
             let scale = found[0].gram[(j, j)];
@@ -253,5 +310,28 @@ mod tests {
         }
         let white = point.marginal.whitening.whiten(&columns);
         assert!((&found[0].gram - white.tr_mul(&white)).amax() < 1e-9 * found[0].gram.amax());
+    }
+
+    /// A pair of channels has the product of their columns.
+    #[test]
+    fn pairs_have_the_product_of_their_columns() {
+        let problem = long_problem(7, 9, 0.4);
+        let (_, design, point) = fitted(&problem, &full_hypothesis());
+        let mut random = Random::new(4);
+        let values = DMatrix::from_fn(14, 1, |_, _| random.normal());
+        let cell = |row: usize| 2 * problem.rows.series[row] + usize::from(problem.rows.direction[row]);
+        let basis = Basis::from(DMatrix::from_fn(problem.len(), 1, |row, _| values[cell(row)]));
+        let by_cell = BasisByCell::new(&basis, &problem.ranges, &problem.rows.direction);
+        let direction = &problem.rows.direction;
+        let mut candidates = Candidates::new(&point.marginal, &design.channels, direction, &[[1, 0]]);
+        let element = |kernel| Element { member: Member::Kernel(kernel), form: 0 };
+        candidates.add_kernels([(element(0), 0), (element(1), 1)].into_iter(), &by_cell);
+        let (_, pairs, _) = candidates.finish();
+        let [pair] = pairs.as_slice() else { panic!("{}", pairs.len()) };
+        assert_eq!(pair.places, [1, 0]);
+        let white =
+            [0, 1].map(|channel| point.marginal.whitening.whiten(&basis.times(&design.channels[channel])));
+        let expected = white[0].column(0).dot(&white[1].column(0));
+        assert!((pair.between / expected - 1.0).abs() < 1e-9, "{} {expected}", pair.between);
     }
 }

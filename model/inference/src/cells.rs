@@ -59,4 +59,14 @@ impl Cells {
         let largest = rows.row_iter().map(|row| row.amax()).collect();
         Self { rows, largest }
     }
+
+    /// Returns the sum over the cells `i`, `j` of each series of `phi_i m_ij phi_j`, for a basis of one column.
+    pub(crate) fn quadratic_form(&self, products: &DMatrix<f64>) -> f64 {
+        let series = products.nrows();
+        let of_series = |at: usize| {
+            let phi = [self.rows[at], self.rows[series + at]];
+            (0..4).map(|i| phi[i / 2] * products[(at, i)] * phi[i % 2]).sum::<f64>()
+        };
+        (0..series).map(of_series).sum()
+    }
 }

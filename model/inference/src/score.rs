@@ -7,11 +7,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::candidates::{Candidate, Candidates};
+use crate::candidates::{Candidate, Candidates, Pair};
 use crate::design::{AddedColumns, Component, Design, Role};
 use crate::fit::Fit;
 use crate::half_t::HalfT;
-use crate::hypothesis::{Element, Hypothesis, Member, log_prior_odds};
+use crate::hypothesis::{Element, Hypothesis, Member};
 use crate::problem::Problem;
 use crate::quadrature::{Mixture, largest, log_normal_cdf, log_sum_exp};
 use crate::scales::ScaleProblem;
@@ -35,6 +35,7 @@ pub(crate) struct Addition {
     /// Expected change of the score by this element.
     pub(crate) gain: f64,
     pub(crate) hypothesis: Hypothesis,
+    /// The first one of a pair.
     pub(crate) element: Element,
     /// Expected size, for an effect that has one.
     pub(crate) hint: Option<(usize, f64)>,
@@ -93,6 +94,7 @@ pub(crate) struct Scores<'a> {
     moment: DVector<f64>,
     variances: Vec<f64>,
     candidates: Vec<Candidate>,
+    pairs: Vec<Pair>,
     /// `A'V^-1 x` of their columns.
     cross: DMatrix<f64>,
     cauchy: Mixture,
@@ -122,7 +124,8 @@ impl<'a> Scores<'a> {
         let scale_problem =
             ScaleProblem { problem, design: &design, weights: &fit.mode.weights, size_variances: &sizes };
         let point = scale_problem.at(fit.mode.scales, &fit.mode.log_sd)?;
-        let mut collected = Candidates::new(&point.marginal, &design.channels, &problem.rows.direction);
+        let (channels, joint) = (&design.channels, &space.joint_channels);
+        let mut collected = Candidates::new(&point.marginal, channels, &problem.rows.direction, joint);
         let added = AddedColumns::new(problem, &fit.hypothesis, &fit.mode);
         let effects = (0..space.effects.len()).filter(|index| is_candidate(Member::Effect(*index)));
         for index in effects {
@@ -141,12 +144,12 @@ impl<'a> Scores<'a> {
                 collected.add_kernels(kernels.clone().map(element), basis);
             }
         }
-        let (candidates, cross) = collected.finish();
+        let (candidates, pairs, cross) = collected.finish();
         let (gram, moment) = (point.marginal.gram.clone(), point.marginal.moment.clone());
         let variances = point.variances;
         let cauchy = Mixture::cauchy();
         let hypothesis = fit.hypothesis.clone();
-        Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, cross, cauchy })
+        Some(Self { problem, hypothesis, design, gram, moment, variances, candidates, pairs, cross, cauchy })
     }
 
     /// Returns the additions, best first; with `removed`, those that take the place of a member,
@@ -186,7 +189,7 @@ impl<'a> Scores<'a> {
                 let information = &candidate.gram - cross.tr_mul(&cross);
                 let score = &candidate.moment - cross.tr_mul(&moment);
                 let element = candidate.element;
-                let odds = log_prior_odds(&self.problem.space, element);
+                let odds = rest.log_prior_odds_of(&self.problem.space, element);
                 let (gain, hint, size) = match element.member {
                     Member::Effect(effect) => {
                         let found = self.effect_gain(effect, candidate, &information, &score)?;
@@ -209,8 +212,33 @@ impl<'a> Scores<'a> {
                 })
             })
             .collect();
+        if removed.is_none() {
+            let pairs = self.pairs.iter().filter_map(|pair| self.pair(pair, prior, &cross_of_all, &moment));
+            additions.extend(pairs);
+        }
         additions.sort_by(|a, b| b.score.total_cmp(&a.score));
         additions
+    }
+
+    /// Returns the addition of a pair to a fit of log prior odds `prior`, given `A'V^-1 x` of all candidates and `A'V^-1 r` by the
+    /// root of the posterior covariance.
+    fn pair(&self, pair: &Pair, prior: f64, cross: &DMatrix<f64>, moment: &DVector<f64>) -> Option<Addition> {
+        let both = pair.places.map(|place| &self.candidates[place]);
+        let [first, second] = both.map(|candidate| candidate.element);
+        if self.hypothesis.contains(first.member) || self.hypothesis.contains(second.member) {
+            return None;
+        }
+        let Member::Kernel(kernel) = first.member else { return None };
+        let cross = cross.select_columns(&both.map(|candidate| candidate.columns.start));
+        let [a, b] = both.map(|candidate| (candidate.gram[(0, 0)], candidate.moment[0]));
+        let gram = DMatrix::from_row_slice(2, 2, &[a.0, pair.between, pair.between, b.0]);
+        let information = gram - cross.tr_mul(&cross);
+        let score = DVector::from_column_slice(&[a.1, b.1]) - cross.tr_mul(moment);
+        let hypothesis = self.hypothesis.with(first).with(second);
+        let odds = hypothesis.log_prior_odds(&self.problem.space) - prior;
+        let scale = HalfT::cauchy(self.problem.space.kernels[kernel].scale);
+        let gain = VarianceGain::new(information, &score).integral(scale) + odds;
+        Some(Addition { score: gain + prior, gain, hypothesis, element: first, hint: None, size: None })
     }
 
     /// Returns the gain of an effect; `None` if the fit has the same column.

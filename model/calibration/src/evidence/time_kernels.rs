@@ -18,6 +18,8 @@ use crate::table::Point;
 const FEW_SERIES: usize = 4;
 /// Probability that structure over time acts in one interval, rather than as Brownian motion.
 const INTERVAL_PROBABILITY: f64 = 0.4;
+/// Probability that the interval lasts from the start or until the end: one change rather than two.
+const CHANGE_PROBABILITY: f64 = 0.5;
 /// Probability that it is a wave.
 const WAVE_PROBABILITY: f64 = 0.2;
 /// Steps between the numbers of cycles of waves, and the largest number.
@@ -71,9 +73,13 @@ impl Collector<'_> {
             variants.iter().map(|drift| drift.with_probability(1.0 - of_intervals)).collect();
         of_gain.extend(intervals.iter().cloned());
         let by_time = Groups::new(self.rows, |row| self.rows.points[row].time_s.to_bits());
-        let of_wave = of_waves / waves.len().max(1) as f64;
+        // Frequency is a scale: every octave is equally probable.
+        let total: f64 = waves.iter().map(|(cycles, _)| 1.0 / cycles).sum();
         let waves = waves.into_iter();
-        variants.extend(waves.filter_map(|wave| Variant::of_groups(wave, &by_time, of_wave)));
+        variants
+            .extend(waves.filter_map(|(cycles, wave)| {
+                Variant::of_groups(wave, &by_time, of_waves / (cycles * total))
+            }));
         variants.extend(intervals);
         self.add_variants("time", "time", Record::Time, &channels, variants);
         self.add_variants("time", "time", Record::Time, &[Channel::Gain], of_gain);
@@ -154,8 +160,14 @@ fn of_each_direction(basis: &DMatrix<f64>, points: &[Point]) -> DMatrix<f64> {
 /// one large step as many small ones.
 fn intervals_of(by_series: &Groups, count: usize) -> Vec<Variant> {
     let intervals = intervals(count);
-    let probability = INTERVAL_PROBABILITY / intervals.len().max(1) as f64;
+    let is_change = |interval: &Range<usize>| interval.start == 0 || interval.end == count;
+    let changes = intervals.iter().filter(|interval| is_change(interval)).count();
+    let for_a_while = intervals.len() - changes;
+    let of_changes = if for_a_while == 0 { 1.0 } else { CHANGE_PROBABILITY };
     let variant = |interval: Range<usize>| {
+        let (share, among) =
+            if is_change(&interval) { (of_changes, changes) } else { (1.0 - of_changes, for_a_while) };
+        let probability = INTERVAL_PROBABILITY * share / among as f64;
         let basis: BasisOfRows = Rc::new(move |rows| {
             let is_in = |sequence: &usize| f64::from(u8::from(interval.contains(sequence)));
             kernel::single(&rows.sequence.iter().map(is_in).collect::<Vec<f64>>())
@@ -166,14 +178,14 @@ fn intervals_of(by_series: &Groups, count: usize) -> Vec<Variant> {
 }
 
 /// Returns waves over a session of this many series, none finer than the sampling. A wave with few cycles
-/// is a smooth course, which Brownian motion prices as many steps.
-fn waves(session: Interval, series: usize) -> Vec<BasisOfRows> {
+/// is a smooth course, which Brownian motion prices as many steps. Returns the number of cycles with each.
+fn waves(session: Interval, series: usize) -> Vec<(f64, BasisOfRows)> {
     let most = MOST_CYCLES.min(series as f64 / SERIES_OF_CYCLE);
     let cycles = std::iter::successors(Some(1.0), |cycles| Some(cycles + WAVE_STEP));
     cycles
         .take_while(|cycles| *cycles <= most)
-        .map(|cycles| -> BasisOfRows {
-            Rc::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles))
+        .map(|cycles| -> (f64, BasisOfRows) {
+            (cycles, Rc::new(move |rows| kernel::wave(&session.shares(&rows.column(|p| p.time_s)), cycles)))
         })
         .collect()
 }

@@ -94,7 +94,7 @@ fn named_effects_have_a_size_in_the_model() {
 #[test]
 fn what_is_there_without_a_name_is_not_nothing() {
     for (name, reason) in [
-        ("wrap-angles-off", "friction over condition has a probability of 0.6"),
+        ("wrap-angles-off", "friction over condition has a probability of 0.7"),
         ("wrap-angles-off-by-mounts", "friction differs between mounts: "),
     ] {
         let report = third_hand(name);

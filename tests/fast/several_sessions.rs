@@ -21,7 +21,7 @@ fn changed_constants_are_reported() {
     done(path, &["-q", "simulate", "--seed", "122", "--out", "b"]);
     done(path, &["-q", "simulate", "other.toml", "--seed", "121", "--out", "c"]);
     let output = printed(path, &["-q", "calibrate", "a/plateaus.csv", "c/plateaus.csv", "--out", "changed"]);
-    let change = "changed: mu_s differs between sessions: +0.0 % in session a/plateaus.csv, +29";
+    let change = "changed: mu_s differs between sessions: +0.0 % in session a/plateaus.csv, +28.";
     assert!(output.contains(change), "{output}");
     let report = json(&path.join("changed/report.json"));
     let change = &report["changes"][0];

@@ -92,6 +92,15 @@ impl Basis {
         Some(cells)
     }
 
+    /// Returns the basis of the first coefficients, at most this many.
+    pub(crate) fn first(&self, most: usize) -> Self {
+        if self.columns <= most {
+            return self.clone();
+        }
+        let rows = self.values.chunks_exact(self.columns).flat_map(|row| &row[..most]).copied();
+        Self { values: rows.collect(), columns: most, of_reading: self.of_reading.clone() }
+    }
+
     /// Returns the columns, multiplied by a factor for each reading.
     pub(crate) fn times(&self, factors: &[f64]) -> DMatrix<f64> {
         DMatrix::from_fn(self.readings(), self.columns, |i, j| self.at(i)[j] * factors[i])
@@ -156,5 +165,7 @@ mod tests {
             basis.select(&[3, 0]).times(&[1.0, 2.0]),
             DMatrix::from_row_slice(2, 2, &[3.0, 5.0, 2.0, 4.0])
         );
+        assert_eq!(basis.first(1).times(&[1.0; 4]), matrix.columns(0, 1));
+        assert_eq!(basis.first(2), basis);
     }
 }

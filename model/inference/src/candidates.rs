@@ -17,6 +17,8 @@ use crate::marginal::Marginal;
 const LEAST_ENTRY: f64 = 1e-9;
 /// Columns that are whitened together, so that each series' factor is read once for all of them.
 const BLOCK_COLUMNS: usize = 64;
+/// Columns of a kernel that vary within cells and count. Those of a process are in the order of their variance.
+const MOST_SCORED: usize = 48;
 /// Columns up to which a sum over cells is faster than a product of matrices that are copied for it.
 const FEW_COLUMNS: usize = 2;
 
@@ -99,7 +101,7 @@ impl<'a> Candidates<'a> {
         for (element, channel) in kernels {
             let sensitivity = &self.channels[channel];
             let Some(cells) = &basis.cells else {
-                let columns = basis.basis.times(sensitivity);
+                let columns = basis.basis.first(MOST_SCORED).times(sensitivity);
                 if columns.amax() > LEAST_ENTRY {
                     self.columns.extend_from_slice(columns.as_slice());
                     self.waits(element, 0.0, columns.ncols());

@@ -29,6 +29,22 @@ fn autocorrelation_is_detected() {
     }
 }
 
+/// A worn spot with edges between two of 150 positions is one structure: with fewer functions along the stroke than positions, what
+/// was left of its edges was another one of each direction.
+#[test]
+fn edges_of_a_worn_spot_are_no_other_structure() {
+    let mut plan = Plan { protocol: Protocol::Paper, seed: 3, ..Plan::default() };
+    plan.layouts.truncate(1);
+    plan.disturbances.push(Disturbance {
+        kind: DisturbanceKind::Spot { at: 0.48, width: 0.08, flat: true },
+        target: DisturbanceTarget::Friction,
+        size: 0.25,
+    });
+    let report = calibrate(&simulate(&plan).rows, &Vocabulary::built_in(), 1).unwrap().report;
+    let named: Vec<&str> = report.effects.iter().map(|e| e.covariate.as_str()).collect();
+    assert_eq!(named, ["position"], "{:?}", report.effects);
+}
+
 /// One gross error among a thousand readings changes no estimate.
 #[test]
 fn one_spike_changes_no_estimate() {

@@ -27,6 +27,8 @@ pub(super) const MOST_LEVELS: usize = 20;
 const ONE_LEVEL_PROBABILITY: f64 = 0.5;
 /// Share of the range of positions by which the interval of smooth functions is longer at each end.
 const WIDENING: f64 = 0.125;
+/// Largest rank of Brownian motion along the stroke, whose edges are between two readings.
+const POSITION_RANK: usize = 160;
 /// Most positions of stops that are levels of a factor, and the prior probability that a pattern along the stroke has its own
 /// value at each stop, or at one.
 const MOST_STOPS: usize = 48;
@@ -143,7 +145,7 @@ impl Collector<'_> {
             let waves: BasisOfRows =
                 Rc::new(move |rows| kernel::smooth(&wide.shares(&position(rows)), 10, 1.0));
             // A worn spot has edges, which many readings show exactly.
-            let rank = distinct(&at).min(MOST_STOPS);
+            let rank = distinct(&at).min(POSITION_RANK);
             let steps: BasisOfRows =
                 Rc::new(move |rows| kernel::brownian(&scale.shares(&position(rows)), rank));
             // A pattern that repetitions show just as well, where each has a position of its own.
@@ -172,13 +174,15 @@ impl Collector<'_> {
                 vec![alternation],
             );
             // The same mistake in every series: the first reading after a reversal, or any other. A pattern over all of them is
-            // one along the stroke, if each stop belongs to one of them.
+            // one along the stroke, if each stop belongs to one of them, and so is one of them, if it has one stop.
             let directed = |row: &RowFactors, _: &RowLabels| format!("{:+}", row.directed_repetition);
             let record = Record::Table(Abscissa::DirectedRepetition, true);
             let channels = &[Channel::Reading, Channel::Friction];
             let levels = Levels::new(self.rows, Rc::new(directed));
-            if self.has_levels(2..=MOST_LEVELS, levels.count()) {
-                let of_one = if stops.determine(&levels) { 1.0 } else { ONE_LEVEL_PROBABILITY };
+            let are_finer = stops.determine(&levels);
+            let are_stops = stops.count() > 2 && are_finer && levels.determine(&stops);
+            if self.has_levels(2..=MOST_LEVELS, levels.count()) && !are_stops {
+                let of_one = if are_finer { 1.0 } else { ONE_LEVEL_PROBABILITY };
                 let variants = levels.variants(of_one);
                 self.add_variants("repetition of a direction", "repetition", record, channels, variants);
             }

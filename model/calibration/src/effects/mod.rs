@@ -232,6 +232,18 @@ mod tests {
         }
     }
 
+    /// A change of the half load scales it; no value of a model file makes it zero.
+    #[test]
+    fn half_loads_stay_positive() {
+        let structure =
+            Structure { covariate: Covariate::Condition, channel: Channel::HalfLoad, form: Shape::Constant };
+        for (k, expected) in [(-0.15, 34.0), (-3.0, 4.0)] {
+            let mut state = state();
+            structure.on_contact(k, &point(), &mut state);
+            assert!((state.half_load_n - expected).abs() < 1e-12, "{k}: {}", state.half_load_n);
+        }
+    }
+
     #[test]
     fn ids_are_unique_and_rivals_exist() {
         for (i, effect) in CATALOGUE.iter().enumerate() {

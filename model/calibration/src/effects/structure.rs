@@ -300,6 +300,9 @@ impl Shape {
     }
 }
 
+/// Smallest factor of a half load, as in a fit: without one the switch has no transition.
+const LEAST_HALF_LOAD: f64 = 0.1;
+
 /// Distance of a value from a level of a factor up to which it has that level; loads are levels to a
 /// hundredth of a newton.
 const LEVEL_TOLERANCE: f64 = 0.006;
@@ -339,7 +342,7 @@ impl Structure {
                 state.extra_exponent_pins *= factor;
             }
             Channel::Silicone => state.mu_silicone *= factor,
-            Channel::HalfLoad => state.half_load_n *= factor,
+            Channel::HalfLoad => state.half_load_n *= factor.max(LEAST_HALF_LOAD),
         }
     }
 

@@ -105,20 +105,13 @@ impl<'a> SimulatedSessions<'a> {
         squares.iter().map(|square| square / expected).collect()
     }
 
-    /// Returns errors of a session: uncertainty of constants, sizes and what the next session has in common with this one, such as
-    /// specimens, which are correlated; and noise.
+    /// Returns errors of a session: uncertainty of constants and sizes, and noise.
     fn session(&self, random: &mut Random) -> DVector<f64> {
         let (problem, solution) = (self.problem, &self.linearised.point.solution);
         let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
         let mut coefficients = solution.root.tr_mul(&normal);
         for (i, role) in self.linearised.design.roles.iter().enumerate() {
-            let lasts = match role {
-                Role::Constant(_) | Role::Size(_) | Role::Shape(..) => true,
-                Role::Discrepancy(_) => false,
-                Role::Variance(Component::Random(i)) => !problem.space.random_effects[*i].is_redrawn,
-                Role::Variance(Component::Kernel(i)) => !problem.space.kernels[*i].is_session_bound,
-            };
-            if !lasts {
+            if !matches!(role, Role::Constant(_) | Role::Size(_) | Role::Shape(..)) {
                 coefficients[i] = 0.0;
             }
         }

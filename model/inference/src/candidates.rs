@@ -17,7 +17,7 @@ use crate::marginal::Marginal;
 const LEAST_ENTRY: f64 = 1e-9;
 /// Columns that are whitened together, so that each series' factor is read once for all of them.
 const BLOCK_COLUMNS: usize = 64;
-/// Columns of a kernel that vary within cells and count. Those of a process are in the order of their variance.
+/// Most columns of a kernel that count, if they vary within cells. Those of a process are in the order of their variance.
 const MOST_SCORED: usize = 48;
 /// Columns up to which a sum over cells is faster than a product of matrices that are copied for it.
 const FEW_COLUMNS: usize = 2;

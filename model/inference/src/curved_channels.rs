@@ -108,7 +108,7 @@ mod tests {
     const MOUNT: Component = Component::Random(0);
     const CURVE: Component = Component::Kernel(2);
 
-    /// Returns two channels, of which only the second is curved.
+    /// Returns the value of channel 1 with two parts.
     fn channel(mount: [f64; 2], curve: [f64; 2]) -> CurvedChannels {
         CurvedChannels::of_parts([(MOUNT, mount.to_vec()), (CURVE, curve.to_vec())].into(), &[1], |_| 1)
     }

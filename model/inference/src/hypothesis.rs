@@ -100,7 +100,7 @@ impl Hypothesis {
 
     /// Returns the logarithm of the prior odds of another element.
     ///
-    /// A cause that acts over a covariate in one form, such as a tendon that was replaced, may act through several channels: beside
+    /// A cause that acts over a covariate in one form, such as a tendon that was replaced, may act through several channels: next to
     /// a kernel of the same bases and form, structure is as probable as in all, but spread over the other channels only (weak
     /// heredity: Chipman 1996).
     pub(crate) fn log_prior_odds_of(&self, space: &Space, element: Element) -> f64 {

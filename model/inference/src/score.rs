@@ -220,8 +220,8 @@ impl<'a> Scores<'a> {
         additions
     }
 
-    /// Returns the addition of a pair to a fit of log prior odds `prior`, given `A'V^-1 x` of all candidates and `A'V^-1 r` by the
-    /// root of the posterior covariance.
+    /// Returns the addition of a pair to a fit of log prior odds `prior`, given `A'V^-1 x` of all candidates and `A'V^-1 r`, both
+    /// multiplied by the root of the posterior covariance.
     fn pair(&self, pair: &Pair, prior: f64, cross: &DMatrix<f64>, moment: &DVector<f64>) -> Option<Addition> {
         let both = pair.places.map(|place| &self.candidates[place]);
         let [first, second] = both.map(|candidate| candidate.element);

@@ -300,7 +300,7 @@ impl Shape {
     }
 }
 
-/// Smallest factor of a half load, as in a fit: without one the switch has no transition.
+/// Smallest factor of a half load, as in a fit. With a half load of zero, friction at no load is not a number.
 const LEAST_HALF_LOAD: f64 = 0.1;
 
 /// Distance of a value from a level of a factor up to which it has that level; loads are levels to a

@@ -167,6 +167,18 @@ fn a_scale_of_the_cell_that_changes_is_the_cells() {
 }
 
 /// One reading determines nothing.
+/// Intervals, waves, levels and processes of a kernel share its probability, in a short and in a long table.
+#[test]
+fn forms_of_a_kernel_have_its_probability() {
+    for rows in [&session(3)[..], &session(3)[..300]] {
+        let evidence = Evidence::baseline(rows, 1).unwrap();
+        for kernel in &evidence.problem().space().kernels {
+            let total: f64 = kernel.variants.iter().sum();
+            assert!((total - 1.0).abs() < 1e-9, "{}: {total}", kernel.name);
+        }
+    }
+}
+
 /// Another day, or another cast, with a half load that is 15 % lower and the same friction.
 #[test]
 fn a_half_load_that_differs_is_a_change_of_it() {

@@ -44,6 +44,11 @@ impl Basis {
         Arc::ptr_eq(&self.values, &other.values)
     }
 
+    /// Returns the largest size of a value.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |most, value| most.max(value.abs()))
+    }
+
     /// Returns the readings where it is not zero.
     pub(crate) fn support(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.readings()).filter(|reading| self.at(*reading).iter().any(|x| *x != 0.0))

@@ -129,6 +129,7 @@ mod random;
 mod scales;
 mod score;
 mod search;
+mod session_steps;
 mod session_view;
 mod simulated_sessions;
 #[cfg(test)]

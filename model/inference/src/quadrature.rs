@@ -35,10 +35,16 @@ impl Mixture {
     /// Returns a half-t distribution over standard deviations of any size, whose logarithms are at most `spacing` apart: on a
     /// geometric grid the width of a cell is proportional to its node.
     pub(crate) fn half_t(prior: HalfT, spacing: f64) -> Self {
-        let count = (2.0 * LOG_RANGE / spacing).ceil() as i32 + 1;
-        let nodes = geometric(libm::exp(-LOG_RANGE), libm::exp(LOG_RANGE), count);
-        let log_weights = nodes.iter().map(|x| libm::log(*x) + prior.log_kernel(*x * prior.scale)).collect();
-        Self::new(nodes.iter().map(|x| x * prior.scale).collect(), log_weights)
+        Self::half_t_over(prior, spacing, [prior.scale, prior.scale])
+    }
+
+    /// Returns the same over standard deviations from well below the first size to well above the second.
+    pub(crate) fn half_t_over(prior: HalfT, spacing: f64, sizes: [f64; 2]) -> Self {
+        let range = libm::log(sizes[1] / sizes[0]) + 2.0 * LOG_RANGE;
+        let count = (range / spacing).ceil() as i32 + 1;
+        let nodes = geometric(sizes[0] * libm::exp(-LOG_RANGE), sizes[1] * libm::exp(LOG_RANGE), count);
+        let log_weights = nodes.iter().map(|sd| libm::log(*sd) + prior.log_kernel(*sd)).collect();
+        Self::new(nodes, log_weights)
     }
 }
 

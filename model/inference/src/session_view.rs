@@ -6,8 +6,8 @@ use crate::design::{Component, Role};
 use crate::fit::Fit;
 use crate::hypothesis::Member;
 use crate::leave_out::Linearised;
-use crate::problem::{Problem, SessionLevels};
-use crate::random::Random;
+use crate::problem::Problem;
+use crate::session_steps::{Steps, prior_of_steps};
 
 /// A hypothesis at the rows of the fitted session.
 pub(crate) struct SessionView {
@@ -17,60 +17,6 @@ pub(crate) struct SessionView {
     pub(crate) deviation: Vec<f64>,
     /// How sessions differed from what was to be expected of them.
     pub(crate) steps: Vec<Steps>,
-}
-
-/// Differences of the levels of sessions from the levels that were to be expected.
-pub(crate) struct Steps {
-    /// Level that a new session is expected to have.
-    expected: f64,
-    /// Mean square of the differences, in the square of the unit of the channel.
-    square: f64,
-    /// Number of differences from which it is known.
-    count: usize,
-    /// Probability of a difference.
-    share: f64,
-    /// Change of each reading per unit of the level.
-    pub(crate) channel: Vec<f64>,
-}
-
-impl Steps {
-    /// Returns those of a curve that is constant in each session. A new session may differ from its expected level as the
-    /// sessions did: from the level before, from their mean, which is known from as many sessions, or as one of them did.
-    fn of_curve(curve: &[f64], of: SessionLevels, channel: Vec<f64>) -> Self {
-        let mut levels = curve.to_vec();
-        if of == SessionLevels::Independent {
-            levels.sort_by(f64::total_cmp);
-        }
-        levels.dedup();
-        let expected = of.expected(&levels);
-        let steps = || levels.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
-        let count = levels.len().saturating_sub(1);
-        let of_all = |sum: f64| sum / f64::max(count as f64, 1.0);
-        let (square, count, share) = match of {
-            SessionLevels::Independent => {
-                let squares = levels.iter().map(|level| (level - expected).powi(2));
-                (of_all(squares.sum()) * (1.0 + 1.0 / levels.len().max(1) as f64), count, 1.0)
-            }
-            SessionLevels::RandomWalk => (of_all(steps().sum()), count, 1.0),
-            SessionLevels::OneChange(sessions) | SessionLevels::OneSession(sessions) => {
-                let share = 1.0 / sessions.max(1) as f64;
-                (share * steps().next().unwrap_or(0.0), count.min(1), share)
-            }
-        };
-        Self { expected, square, count, share, channel }
-    }
-
-    /// Draws the difference of a new session. The variance of few differences is known badly: its posterior, with a prior
-    /// that is flat in its logarithm, is a scaled inverse chi-squared distribution with their number as degrees of freedom.
-    pub(crate) fn draw(&self, random: &mut Random) -> f64 {
-        if self.count == 0 || random.uniform() > self.share {
-            return 0.0;
-        }
-        let chi_squared: f64 = (0..self.count).map(|_| random.normal().powi(2)).sum();
-        let variance =
-            self.square / self.share * self.count as f64 / f64::max(chi_squared, f64::MIN_POSITIVE);
-        variance.sqrt() * random.normal()
-    }
 }
 
 impl SessionView {
@@ -107,7 +53,8 @@ impl SessionView {
             let curve =
                 kernel_curve(problem, fit, kernel, &design.columns_of(Component::Kernel(kernel)), mean);
             if let Some(levels) = session_levels {
-                let of_kernel = Steps::of_curve(&curve, levels, channel);
+                let change = problem.rows.bases[kernel][form].largest();
+                let of_kernel = Steps::of_curve(&curve, levels, prior_of_steps(of, change), channel);
                 let next = of_kernel.channel.iter().map(|x| x * of_kernel.expected);
                 prediction.iter_mut().zip(next).for_each(|(p, next)| *p += next);
                 steps.push(of_kernel);
@@ -124,7 +71,7 @@ impl SessionView {
 
     /// Mean square by which a new session differs from its expected levels at a row.
     pub(crate) fn step_square(&self, row: usize) -> f64 {
-        self.steps.iter().map(|steps| steps.square * steps.channel[row].powi(2)).sum()
+        self.steps.iter().map(|steps| steps.square_at(row)).sum()
     }
 }
 
@@ -180,52 +127,22 @@ pub(crate) fn kernel_curve(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::half_t::HalfT;
+    use crate::problem::SessionLevels;
 
-    #[test]
-    fn steps_between_sessions_are_counted_once_each() {
-        let of = |curve: &[f64], levels| {
-            let steps = Steps::of_curve(curve, levels, vec![1.0; curve.len()]);
-            (steps.expected, steps.square, steps.count)
-        };
-        let curve = [0.0, 0.0, 0.0, 1.0, 3.0, 3.0, -4.0];
-        assert_eq!(of(&curve, SessionLevels::RandomWalk), (-4.0, (1.0 + 4.0 + 49.0) / 3.0, 3));
-        assert_eq!(of(&curve, SessionLevels::Independent), (0.0, 26.0 / 3.0 * 1.25, 3));
-        assert_eq!(of(&[0.0, 0.0, 2.0, 2.0], SessionLevels::OneChange(4)), (2.0, 1.0, 1));
-        assert_eq!(of(&[0.0, 0.0, 2.0, 0.0], SessionLevels::OneSession(4)), (0.0, 1.0, 1));
-        use SessionLevels::{Independent, OneChange, OneSession, RandomWalk};
-        for levels in [Independent, RandomWalk, OneChange(3), OneSession(3)] {
-            assert_eq!(of(&[0.3, 0.3, 0.3], levels), (0.3, 0.0, 0));
-            assert_eq!(of(&[], levels), (0.0, 0.0, 0));
-        }
-    }
-
-    /// Two thirds of the levels of a new session are within the tabulated quantile of Student's t distribution with as many
-    /// degrees of freedom as differences.
-    #[test]
-    fn the_step_of_a_new_session_has_the_t_distribution_of_few_steps() {
-        let mut random = Random::new(8);
-        for (count, two_thirds) in [(1, 1.732), (3, 1.152)] {
-            let steps = Steps { expected: 0.0, square: 0.25, count, share: 1.0, channel: Vec::new() };
-            let within = (0..9000).filter(|_| steps.draw(&mut random).abs() < 0.5 * two_thirds).count();
-            assert!((5850..6150).contains(&within), "{count} steps: {within}");
-        }
-    }
+    const HALF_T: HalfT = HalfT { scale: 0.1, degrees: 3.0 };
 
     /// Two hypotheses of equal probability that predict 1 and 3 differ by 1 from their mean; one row of two is sound.
     #[test]
     fn a_session_varies_by_its_draws_its_step_and_the_hypotheses() {
-        let view = |prediction, deviation, step| SessionView {
+        let view = |prediction, deviation, levels: &[f64]| SessionView {
             prediction: vec![prediction, 100.0],
             deviation: vec![deviation, 100.0],
-            steps: vec![Steps {
-                expected: 0.0,
-                square: step,
-                count: 1,
-                share: 1.0,
-                channel: vec![1.0, 100.0],
-            }],
+            steps: vec![Steps::of_curve(levels, SessionLevels::RandomWalk, HALF_T, vec![1.0, 100.0])],
         };
-        let views = [(0.5, view(1.0, 0.0, 4.0)), (0.5, view(3.0, 2.0, 0.0))];
-        assert_eq!(session_variance(&views, &[0]), 0.5 * 2f64.powi(2) + 0.5 * 4.0 + 1.0);
+        let step = view(0.0, 0.0, &[0.0, 2.0]).step_square(0);
+        assert!(step > 0.0);
+        let views = [(0.5, view(1.0, 0.0, &[0.0, 2.0])), (0.5, view(3.0, 2.0, &[0.0]))];
+        assert_eq!(session_variance(&views, &[0]), 0.5 * 2f64.powi(2) + 0.5 * step + 1.0);
     }
 }

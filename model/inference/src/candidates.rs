@@ -22,6 +22,9 @@ const MOST_SCORED: usize = 48;
 /// Columns up to which a sum over cells is faster than a product of matrices that are copied for it.
 const FEW_COLUMNS: usize = 2;
 
+/// Rows of `A'V^-1 c` per entry of a cell above which sums over the entries are faster.
+const SPARSE: usize = 4;
+
 /// Products of the columns `x` of an element.
 pub(crate) struct Candidate {
     pub(crate) element: Element,
@@ -193,6 +196,8 @@ struct CellProducts {
     between: DVector<f64>,
     /// `A'V^-1 c`, one column per cell.
     cross: DMatrix<f64>,
+    /// Rows of it that may not be zero for the cells of each series, if they are few.
+    entries: Option<Vec<Vec<usize>>>,
     /// `c'V^-1 r`.
     moment: DVector<f64>,
     /// Largest entry of `c`.
@@ -228,7 +233,11 @@ impl CellProducts {
                 largest[cell] = parts[i].rows(range.start, range.len()).amax();
             }
         }
-        Self { white, gram, between, cross, moment, largest }
+        let entries = (0..count).map(|series| marginal.white_design.columns_in(series));
+        let entries = entries.collect::<Vec<_>>();
+        let most = entries.iter().map(Vec::len).max().unwrap_or(0);
+        let entries = (SPARSE * most < cross.nrows()).then_some(entries);
+        Self { white, gram, between, cross, entries, moment, largest }
     }
 
     /// Returns `c'V^-1 d` with the parts `d` of another channel. Each series has one row; both directions of `c` follow each other,
@@ -267,7 +276,15 @@ impl CellProducts {
         }
         let mut cross = DMatrix::zeros(self.cross.nrows(), rows.ncols());
         for (j, mut column) in cross.column_iter_mut().enumerate() {
-            own.iter().for_each(|cell| column.axpy(rows[(*cell, j)], &self.cross.column(*cell), 1.0));
+            for cell in own {
+                let (value, of_cell) = (rows[(*cell, j)], self.cross.column(*cell));
+                match &self.entries {
+                    Some(entries) => entries[cell % self.between.len()]
+                        .iter()
+                        .for_each(|entry| column[*entry] += value * of_cell[*entry]),
+                    None => column.axpy(value, &of_cell, 1.0),
+                }
+            }
         }
         cross
     }

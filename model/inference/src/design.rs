@@ -269,6 +269,7 @@ impl Builder {
         }
         if let Some(by_series) = by_series.filter(|rows| rows.ncols() > 0) {
             let sensitivity = DVector::from_vec(sensitivity);
+            let by_series = by_series.into();
             self.of_series.push(SeriesColumns { columns: first..self.roles.len(), sensitivity, by_series });
         }
     }

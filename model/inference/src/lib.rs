@@ -129,12 +129,14 @@ mod random;
 mod scales;
 mod score;
 mod search;
+mod series_rows;
 mod session_steps;
 mod session_view;
 mod simulated_sessions;
 #[cfg(test)]
 mod test_problem;
 mod thinning;
+mod traces;
 mod uncertainty;
 mod variance_gain;
 mod white_design;

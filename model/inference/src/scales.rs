@@ -4,17 +4,15 @@
 //! Thompson and Cullis 1995) in place of the second derivatives of the marginal likelihood.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::autoregression::Process;
 use crate::covariance::{Derivative, Noise};
 use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
 use crate::noise::{AUTOREGRESSIONS, SCALES, Scales};
 use crate::problem::Problem;
-use crate::white_design::WhiteDesign;
+use crate::traces::{Explained, RepetitionTrace};
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
 const DAMPING: f64 = 0.05;
@@ -181,8 +179,8 @@ impl ScaleProblem<'_> {
         let white_residual = marginal.white_residual(&solution.mean);
         let repetition = RepetitionTrace::new(&noise, marginal);
         let mut growth = vec![vec![0.0; self.problem.len()]; SCALES];
-        // `A'V^-1 F` of all factors, one column after the other, and the scale of each.
-        let (mut projected, mut of_scale): (Vec<f64>, Vec<usize>) = Default::default();
+        // Of `A'V^-1 F` with the factors `F` of each series.
+        let mut explained = Explained::new(solution);
         for (series, (range, root)) in
             marginal.whitening.ranges.iter().zip(&marginal.whitening.roots).enumerate()
         {
@@ -198,9 +196,8 @@ impl ScaleProblem<'_> {
                     Derivative::Factor(mut factor) => {
                         factor.as_mut_slice().chunks_exact_mut(length).for_each(|x| root.whiten(x));
                         gradient[scale] -= 0.5 * factor.norm_squared();
-                        let of_series = marginal.white_design.transposed_times_in(series, &factor);
-                        projected.extend_from_slice(of_series.as_slice());
-                        of_scale.extend(std::iter::repeat_n(scale, factor.ncols()));
+                        let (rows, of_series) = marginal.white_design.transposed_times_in(series, &factor);
+                        explained.add(scale, &rows, &of_series, &mut gradient);
                     }
                     Derivative::Repetition { growth: of_series, .. } => {
                         growth[scale][range.clone()].copy_from_slice(&of_series);
@@ -208,12 +205,7 @@ impl ScaleProblem<'_> {
                 }
             }
         }
-        // One product for all series, which is faster than one for each.
-        let projected = DMatrix::from_vec(solution.mean.len(), of_scale.len(), projected);
-        let explained = &solution.root * projected;
-        for (scale, column) in of_scale.into_iter().zip(explained.column_iter()) {
-            gradient[scale] += 0.5 * column.norm_squared();
-        }
+        explained.finish(&mut gradient);
         for scale in (0..SCALES).filter(|scale| growth[*scale].iter().any(|g| *g != 0.0)) {
             gradient[scale] -= repetition.with(&growth[scale], &solution.covariance);
         }
@@ -227,88 +219,6 @@ impl ScaleProblem<'_> {
             }
         }
         (gradient, tangents)
-    }
-}
-
-/// Traces `tr(G V' P)`, with the covariance `V' = D + A` of the estimated repetition noise and the precision `P` of the readings,
-/// the coefficients with the covariance `C` integrated. `P = V^-1 - B C B'` with `B = V^-1 A`, so that such a trace is a weighted
-/// sum of the diagonal of `V' V^-1`, less `tr(C B'G V'B)`.
-struct RepetitionTrace {
-    /// Diagonal of `V' V^-1`.
-    diagonal: Vec<f64>,
-    /// `B`.
-    precise: WhiteDesign,
-    /// `V' B`.
-    of_noise: WhiteDesign,
-}
-
-impl RepetitionTrace {
-    fn new(noise: &Noise<'_>, marginal: &Marginal) -> Self {
-        let whitening = &marginal.whitening;
-        let precise = marginal.white_design.mapped(|column| whitening.whiten_transposed_mut(column));
-        let estimated: Vec<EstimatedNoise> =
-            whitening.ranges.iter().map(|range| EstimatedNoise::new(noise, range)).collect();
-        let of_noise = precise.mapped(|column| {
-            let parts = whitening.ranges.iter().zip(&estimated);
-            parts.for_each(|(range, noise)| noise.apply(&mut column[range.clone()]));
-        });
-        let roots = whitening.roots.iter().zip(&whitening.ranges).zip(&estimated);
-        let diagonal = roots
-            .flat_map(|((root, range), estimated)| {
-                let (repetition, shared) = root.precision();
-                // `E^-1` is that of `V'` and of the variance that is not estimated.
-                let independent = noise.independent_variances(range);
-                let mut diagonal = estimated.diagonal_of_inverse(&repetition, &independent);
-                for column in shared {
-                    let mut product = column.clone();
-                    estimated.apply(&mut product);
-                    diagonal
-                        .iter_mut()
-                        .zip(product.iter().zip(&column))
-                        .for_each(|(sum, (a, x))| *sum -= a * x);
-                }
-                diagonal
-            })
-            .collect();
-        Self { diagonal, precise, of_noise }
-    }
-
-    /// Returns the trace for a diagonal `G`.
-    fn with(&self, growth: &[f64], covariance: &DMatrix<f64>) -> f64 {
-        let of_rows: f64 = growth.iter().zip(&self.diagonal).map(|(g, d)| g * d).sum();
-        let grown = self.of_noise.mapped(|column| column.iter_mut().zip(growth).for_each(|(x, g)| *x *= g));
-        of_rows - self.precise.product(&grown).dot(covariance)
-    }
-}
-
-/// Estimated repetition noise of a series: `V' = D + A`.
-struct EstimatedNoise {
-    own: Vec<f64>,
-    process: Option<Process>,
-}
-
-impl EstimatedNoise {
-    fn new(noise: &Noise<'_>, range: &Range<usize>) -> Self {
-        Self { own: noise.estimated_variances(range), process: noise.process(range) }
-    }
-
-    /// Replaces `x` by `V' x`.
-    fn apply(&self, x: &mut [f64]) {
-        let of_process = self.process.as_ref().map(|process| process.times(x));
-        x.iter_mut().zip(&self.own).for_each(|(x, own)| *x *= own);
-        x.iter_mut().zip(of_process.into_iter().flatten()).for_each(|(x, product)| *x += product);
-    }
-
-    /// Returns the diagonal of `V' E^-1` for that of `E^-1`, where `E` is the process and independent noise.
-    fn diagonal_of_inverse(&self, precision: &[f64], independent: &[f64]) -> Vec<f64> {
-        // `A E^-1 = I - (E - A) E^-1`.
-        let of_process = |precision: f64, independent: f64| match self.process {
-            Some(_) => 1.0 - independent * precision,
-            None => 0.0,
-        };
-        let rows = precision.iter().zip(independent).zip(&self.own);
-        rows.map(|((precision, independent), own)| own * precision + of_process(*precision, *independent))
-            .collect()
     }
 }
 

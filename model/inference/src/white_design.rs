@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::series_rows::SeriesRows;
 use crate::whitening::Whitening;
 
 /// Columns of a component that are constant within each series, times the sensitivity to its channel.
@@ -18,7 +19,7 @@ pub(crate) struct SeriesColumns {
     /// Sensitivity of each row.
     pub(crate) sensitivity: DVector<f64>,
     /// One row per series, one column per column.
-    pub(crate) by_series: DMatrix<f64>,
+    pub(crate) by_series: SeriesRows,
 }
 
 /// `W A`, with `W V W' = I`.
@@ -49,6 +50,14 @@ impl WhiteDesign {
         }
     }
 
+    /// Returns the products of two columns in each series.
+    fn products(&self, first: &DVector<f64>, second: &DVector<f64>) -> DVector<f64> {
+        let of = |range: &Range<usize>| {
+            first.rows(range.start, range.len()).dot(&second.rows(range.start, range.len()))
+        };
+        DVector::from_iterator(self.ranges.len(), self.ranges.iter().map(of))
+    }
+
     /// Returns one row per series: the products of two columns there.
     fn products_of_series(&self, first: &DVector<f64>, second: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(self.ranges.len(), second.ncols(), |series, j| {
@@ -67,20 +76,16 @@ impl WhiteDesign {
             indices.iter().enumerate().for_each(|(j, column)| gram[(*row, *column)] = of_own[(i, j)]);
         }
         for (nth, of) in self.of_series.iter().enumerate() {
-            let with_own = self.products_of_series(&of.sensitivity, own).transpose() * &of.by_series;
+            let with_own = of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, own));
             for (i, row) in indices.iter().enumerate() {
                 for (j, column) in of.columns.clone().enumerate() {
-                    gram[(*row, column)] = with_own[(i, j)];
-                    gram[(column, *row)] = with_own[(i, j)];
+                    gram[(*row, column)] = with_own[(j, i)];
+                    gram[(column, *row)] = with_own[(j, i)];
                 }
             }
             for other in &self.of_series[..=nth] {
-                let other_column = DMatrix::from_columns(std::slice::from_ref(&other.sensitivity));
-                let weights = self.products_of_series(&of.sensitivity, &other_column);
-                let weighted = DMatrix::from_fn(self.ranges.len(), of.columns.len(), |series, j| {
-                    weights[series] * of.by_series[(series, j)]
-                });
-                let product = weighted.transpose() * &other.by_series;
+                let weights = self.products(&of.sensitivity, &other.sensitivity);
+                let product = of.by_series.weighted_product(&weights, &other.by_series);
                 for (i, row) in of.columns.clone().enumerate() {
                     for (j, column) in other.columns.clone().enumerate() {
                         gram[(row, column)] = product[(i, j)];
@@ -111,22 +116,18 @@ impl WhiteDesign {
             indices.iter().enumerate().for_each(|(j, column)| product[(*row, *column)] = of_own[(i, j)]);
         }
         for (of, of_right) in self.of_series.iter().zip(&right.of_series) {
-            let after = self.products_of_series(&of_right.sensitivity, own).tr_mul(&of.by_series);
-            let before = self.products_of_series(&of.sensitivity, &right.own.1).tr_mul(&of.by_series);
+            let after = of.by_series.transposed_times(&self.products_of_series(&of_right.sensitivity, own));
+            let before =
+                of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, &right.own.1));
             for (i, row) in indices.iter().enumerate() {
                 for (j, column) in of.columns.clone().enumerate() {
-                    product[(*row, column)] = after[(i, j)];
-                    product[(column, *row)] = before[(i, j)];
+                    product[(*row, column)] = after[(j, i)];
+                    product[(column, *row)] = before[(j, i)];
                 }
             }
             for other in &right.of_series {
-                let other_column = DMatrix::from_columns(std::slice::from_ref(&other.sensitivity));
-                let weights = self.products_of_series(&of.sensitivity, &other_column);
-                let mut weighted = other.by_series.clone();
-                weighted
-                    .column_iter_mut()
-                    .for_each(|mut column| column.component_mul_assign(&weights.column(0)));
-                let of_both = of.by_series.tr_mul(&weighted);
+                let weights = self.products(&of.sensitivity, &other.sensitivity);
+                let of_both = of.by_series.weighted_product(&weights, &other.by_series);
                 product
                     .view_mut((of.columns.start, other.columns.start), of_both.shape())
                     .copy_from(&of_both);
@@ -135,23 +136,42 @@ impl WhiteDesign {
         product
     }
 
-    /// Returns `A_s'W_s'X` for white columns of one series.
-    pub(crate) fn transposed_times_in(&self, series: usize, white: &DMatrix<f64>) -> DMatrix<f64> {
+    /// Returns the columns that may not be zero in a series.
+    pub(crate) fn columns_in(&self, series: usize) -> Vec<usize> {
+        let mut columns = self.own.0.clone();
+        for of in &self.of_series {
+            let entries = of.by_series.entries(series).into_iter();
+            columns.extend(entries.map(|(column, _)| of.columns.start + column));
+        }
+        columns
+    }
+
+    /// Returns `A_s'W_s'X` for white columns of one series, without the rows that are zero whatever `X`, and their numbers.
+    pub(crate) fn transposed_times_in(
+        &self,
+        series: usize,
+        white: &DMatrix<f64>,
+    ) -> (Vec<usize>, DMatrix<f64>) {
         let range = &self.ranges[series];
         let (indices, own) = &self.own;
-        let mut product = DMatrix::zeros(self.columns, white.ncols());
+        let entries: Vec<Vec<(usize, f64)>> =
+            self.of_series.iter().map(|of| of.by_series.entries(series)).collect();
+        let rows = self.columns_in(series);
+        let mut product = DMatrix::zeros(rows.len(), white.ncols());
         for (j, column) in white.column_iter().enumerate() {
-            for (i, row) in indices.iter().enumerate() {
-                product[(*row, j)] = own.column(i).rows(range.start, range.len()).dot(&column);
+            for i in 0..indices.len() {
+                product[(i, j)] = own.column(i).rows(range.start, range.len()).dot(&column);
             }
-            for of in &self.of_series {
+            let mut row = indices.len();
+            for (of, entries) in self.of_series.iter().zip(&entries) {
                 let share = of.sensitivity.rows(range.start, range.len()).dot(&column);
-                for (i, row) in of.columns.clone().enumerate() {
-                    product[(row, j)] = share * of.by_series[(series, i)];
+                for (_, value) in entries {
+                    product[(row, j)] = share * value;
+                    row += 1;
                 }
             }
         }
-        product
+        (rows, product)
     }
 
     /// Returns `W A B`.
@@ -159,7 +179,7 @@ impl WhiteDesign {
         let (indices, own) = &self.own;
         let mut product = own * right.select_rows(indices);
         for of in &self.of_series {
-            let of_series = &of.by_series * right.rows(of.columns.start, of.columns.len());
+            let of_series = of.by_series.times(&right.rows(of.columns.start, of.columns.len()).into_owned());
             for (j, mut column) in product.column_iter_mut().enumerate() {
                 for (series, range) in self.ranges.iter().enumerate() {
                     let factor = of_series[(series, j)];
@@ -185,7 +205,7 @@ impl WhiteDesign {
         let of_own = own.transpose() * white;
         indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.row(i)));
         for of in &self.of_series {
-            let rows = of.by_series.transpose() * self.products_of_series(&of.sensitivity, white);
+            let rows = of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, white));
             product.rows_mut(of.columns.start, of.columns.len()).copy_from(&rows);
         }
         product
@@ -197,12 +217,11 @@ impl WhiteDesign {
         let mut product = DMatrix::zeros(self.columns, self.ranges.len());
         let of_own = self.products_of_series(white, own);
         indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.column(i).transpose()));
-        let white = DMatrix::from_columns(std::slice::from_ref(white));
         for of in &self.of_series {
-            let shared = self.products_of_series(&of.sensitivity, &white);
-            for (i, row) in of.columns.clone().enumerate() {
-                for series in 0..self.ranges.len() {
-                    product[(row, series)] = shared[series] * of.by_series[(series, i)];
+            let shared = self.products(&of.sensitivity, white);
+            for series in 0..self.ranges.len() {
+                for (column, value) in of.by_series.entries(series) {
+                    product[(of.columns.start + column, series)] = shared[series] * value;
                 }
             }
         }
@@ -249,7 +268,9 @@ mod tests {
         for (series, range) in apart.ranges.iter().enumerate() {
             let of_series = white.rows(range.start, range.len()).into_owned();
             let expected = columns.rows(range.start, range.len()).tr_mul(&of_series);
-            is_close(&apart.transposed_times_in(series, &of_series), &expected);
+            let (rows, product) = apart.transposed_times_in(series, &of_series);
+            is_close(&product, &expected.select_rows(&rows));
+            assert!((product.norm() / expected.norm() - 1.0).abs() < 1e-12, "other rows are zero");
         }
         let sum = DMatrix::from_columns(&[by_series.column_sum()]);
         is_close(&sum, &columns.tr_mul(&white.columns(0, 1)));

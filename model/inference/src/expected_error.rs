@@ -134,6 +134,32 @@ mod tests {
         assert!((error.value / truth - 1.0).abs() < 0.25, "{error:?}, {truth}");
     }
 
+    /// Three specimens that differ: their mean is uncertain, but each of them is not, and another session measures them again.
+    #[test]
+    fn the_error_on_known_specimens_is_that_of_readings() {
+        let mut rows = rows(24);
+        rows.levels = vec![rows.series.iter().map(|series| Some(series % 3)).collect()];
+        let mut space = space();
+        // With structure over the load the slope is known badly, which is another reason.
+        space.kernels.clear();
+        rows.bases.clear();
+        space.random_effects[0] = crate::RandomEffect {
+            levels: 3,
+            scale: 0.06,
+            is_redrawn: false,
+            ..space.random_effects[0].clone()
+        };
+        let mut random = Random::new(3);
+        let reading = |i: usize| {
+            let specimen = [0.8, 1.0, 1.2][rows.series[i] % 3];
+            2.0 * rows.load[i] * specimen + 0.03 * random.normal()
+        };
+        let readings: Vec<f64> = (0..rows.len()).map(reading).collect();
+        let problem = Problem::new(space, rows, readings).unwrap();
+        let error = infer(&problem, SearchOptions::default(), 5).unwrap().expected_error.unwrap();
+        assert!(error.interval[0] > 0.02 && error.interval[1] < 0.05, "{error:?}");
+    }
+
     #[test]
     fn equal_seeds_give_equal_intervals() {
         let problem = problem(8, 0.3);

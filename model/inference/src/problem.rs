@@ -64,6 +64,8 @@ pub struct Kernel {
     pub is_session_bound: bool,
     /// Process of the levels of sessions of each variant; empty for a kernel over another covariate.
     pub session_levels: Vec<SessionLevels>,
+    /// Whether it has levels of specimens, which another session measures again.
+    pub is_of_specimens: bool,
     /// Prior probability of a kernel that is noise, which is never reported; `None` for unnamed
     /// structure, which shares [`Space::structure_probability`].
     pub noise_probability: Option<f64>,
@@ -93,6 +95,17 @@ impl SessionLevels {
             Self::OneSession(_) => levels.first().copied(),
         };
         level.unwrap_or(0.0)
+    }
+
+    /// Returns the row of a new session with the expected level, given a basis that is constant in each session.
+    pub(crate) fn expected_row(self, basis: &Basis) -> Vec<f64> {
+        let mut rows: Vec<&[f64]> = (0..basis.readings()).map(|reading| basis.at(reading)).collect();
+        rows.dedup();
+        let of_column = |column| {
+            let levels: Vec<f64> = rows.iter().map(|row| row[column]).collect();
+            self.expected(&levels)
+        };
+        (0..basis.coefficients()).map(of_column).collect()
     }
 }
 

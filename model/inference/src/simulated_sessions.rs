@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::design::{Component, Role};
+use crate::design::{Component, Design, Role};
 use crate::evidence::component_gain;
 use crate::fit::Fit;
 use crate::leave_out::Linearised;
@@ -26,7 +26,7 @@ pub(crate) struct SimulatedSessions<'a> {
     rows: Vec<usize>,
     /// Places of the rows of each series among them.
     series: Vec<Range<usize>>,
-    /// Their design.
+    /// The design of a new session.
     matrix: DMatrix<f64>,
     redrawn: Vec<Redrawn>,
 }
@@ -73,7 +73,7 @@ impl<'a> SimulatedSessions<'a> {
             });
         }
         let series = problem.ranges.iter().map(of_series).collect();
-        let matrix = linearised.design.matrix.select_rows(&rows);
+        let matrix = new_session(problem, fit, &linearised.design, &rows);
         Self { problem, fit, linearised, rows, series, matrix, redrawn }
     }
 
@@ -105,17 +105,11 @@ impl<'a> SimulatedSessions<'a> {
         squares.iter().map(|square| square / expected).collect()
     }
 
-    /// Returns errors of a session: uncertainty of constants and sizes, and noise.
+    /// Returns errors of a session: the uncertainty of its expected readings, and noise.
     fn session(&self, random: &mut Random) -> DVector<f64> {
         let (problem, solution) = (self.problem, &self.linearised.point.solution);
         let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
-        let mut coefficients = solution.root.tr_mul(&normal);
-        for (i, role) in self.linearised.design.roles.iter().enumerate() {
-            if !matches!(role, Role::Constant(_) | Role::Size(_) | Role::Shape(..)) {
-                coefficients[i] = 0.0;
-            }
-        }
-        let mut errors = &self.matrix * coefficients;
+        let mut errors = &self.matrix * solution.root.tr_mul(&normal);
         let [sigma, growth, direction, series, scale, by_load] = self.fit.scales().values();
         let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
         for places in &self.series {
@@ -147,4 +141,33 @@ impl<'a> SimulatedSessions<'a> {
             }
         }
     }
+}
+
+/// Returns the design of some rows in a new session, without what its errors do not contain: structure, mounts and drifts.
+/// Levels of specimens and of sessions are known from the same readings as the constants, with which they are correlated: their
+/// sum is certain where neither is.
+fn new_session(problem: &Problem, fit: &Fit, design: &Design, rows: &[usize]) -> DMatrix<f64> {
+    let space = &problem.space;
+    let mut matrix = design.matrix.select_rows(rows);
+    for (column, role) in design.roles.iter().enumerate() {
+        let is_drawn = match role {
+            Role::Constant(_) | Role::Size(_) | Role::Shape(..) => true,
+            Role::Discrepancy(_) => false,
+            Role::Variance(Component::Random(i)) => !space.random_effects[*i].is_redrawn,
+            Role::Variance(Component::Kernel(i)) => space.kernels[*i].is_of_specimens,
+        };
+        if !is_drawn {
+            matrix.column_mut(column).fill(0.0);
+        }
+    }
+    for (kernel, form) in fit.hypothesis.kernels() {
+        let Some(levels) = space.kernels[kernel].session_levels.get(form) else { continue };
+        let component = Component::Kernel(kernel);
+        let channel = design.sensitivity(space, component);
+        let expected = levels.expected_row(&problem.rows.bases[kernel][form]);
+        for (column, value) in design.columns_of(component).into_iter().zip(expected) {
+            rows.iter().enumerate().for_each(|(i, row)| matrix[(i, column)] = channel[*row] * value);
+        }
+    }
+    matrix
 }

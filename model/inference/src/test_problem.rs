@@ -81,6 +81,7 @@ pub(crate) fn space() -> Space {
             scale: 0.3,
             variants: vec![1.0],
             is_session_bound: false,
+            is_of_specimens: false,
             session_levels: Vec::new(),
             noise_probability: None,
             is_gross_error: false,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels};
 
-use super::Session;
+use super::{SPECIMEN, Session};
 use super::covariates::Covariates;
 use super::forward::Channel;
 use super::variant::Variant;
@@ -58,6 +58,7 @@ impl Structure {
             variants: self.bases.iter().map(|variant| variant.probability).collect(),
             is_session_bound: self.is_session_bound,
             session_levels: self.session_levels.clone(),
+            is_of_specimens: self.covariate == SPECIMEN,
             noise_probability: match self.covariate {
                 NOISE => Some(WANDERING_PROBABILITY),
                 GROSS_ERROR => Some(SERIES_PROBABILITY),

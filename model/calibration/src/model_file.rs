@@ -270,6 +270,11 @@ impl ModelFile {
                     if let Shape::Table { at, value, .. } = &structure.form {
                         check_nodes(&format!("terms[{i}].structure"), at, value)?;
                     }
+                    let count = self.frame.conditions.len();
+                    if let Some(place) = structure.only_in.filter(|place| *place >= count) {
+                        let problem = format!("expected a place among the {count} conditions, from 0");
+                        return Err(invalid(format!("terms[{i}].structure.only_in"), place, problem));
+                    }
                     Term::Structure(structure.clone())
                 }
                 None => Term::Named(self.vocabulary.named(&entry.id).ok_or_else(unknown)?),

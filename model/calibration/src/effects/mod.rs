@@ -235,8 +235,12 @@ mod tests {
     /// A change of the half load scales it; no value of a model file makes it zero.
     #[test]
     fn half_loads_stay_positive() {
-        let structure =
-            Structure { covariate: Covariate::Condition, channel: Channel::HalfLoad, form: Shape::Constant };
+        let structure = Structure {
+            covariate: Covariate::Condition,
+            channel: Channel::HalfLoad,
+            only_in: None,
+            form: Shape::Constant,
+        };
         for (k, expected) in [(-0.15, 34.0), (-3.0, 4.0)] {
             let mut state = state();
             structure.on_contact(k, &point(), &mut state);

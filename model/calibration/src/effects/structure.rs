@@ -314,6 +314,9 @@ pub struct Structure {
     pub covariate: Covariate,
     /// Quantity that it changes.
     pub channel: Channel,
+    /// Index of the only condition where it acts; every one if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only_in: Option<usize>,
     /// Function of the covariate.
     #[serde(flatten)]
     pub form: Shape,
@@ -322,7 +325,7 @@ pub struct Structure {
 impl Structure {
     /// Returns the value of the shape at a point.
     pub fn value(&self, p: &Point) -> f64 {
-        self.form.value(p)
+        if self.only_in.is_some_and(|condition| condition != p.condition) { 0.0 } else { self.form.value(p) }
     }
 
     /// Changes the contact; `k` is the size.
@@ -458,7 +461,8 @@ impl Structure {
                 format!("a difference between the directions with load to the power {power}")
             }
         };
-        format!("{what}, in {on}")
+        let only_in = self.only_in.map_or_else(String::new, |condition| format!(" on {}", name(&condition)));
+        format!("{what}, in {on}{only_in}")
     }
 }
 

@@ -219,9 +219,16 @@ impl Evidence {
         match self.setup.structures[kernel].channel {
             Channel::Pins => "mu_p",
             Channel::Silicone => "mu_s",
-            Channel::HalfLoad => "F_half",
+            Channel::HalfLoad | Channel::HalfLoadOf(_) => "F_half",
             _ => "mu",
         }
+    }
+
+    /// Returns the layout whose constant a change multiplies; `None` for all of them.
+    pub(crate) fn changing_layout(&self, kernel: usize) -> Option<String> {
+        let Channel::HalfLoadOf(device) = self.setup.structures[kernel].channel else { return None };
+        let condition = self.setup.conditions.iter().find(|condition| condition.device == Some(device));
+        condition.map(|condition| condition.layout())
     }
 
     /// Returns the session or specimen of each row of the problem.

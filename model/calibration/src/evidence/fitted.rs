@@ -134,7 +134,13 @@ impl Evidence {
     ) -> Vec<(effects::Structure, f64, f64)> {
         let covariate = covariate_of(structure.covariate);
         let channel = channel_of(structure.channel);
-        let of = |form: Shape| effects::Structure { covariate, channel, form };
+        let only_in = match structure.channel {
+            Channel::HalfLoadOf(device) => {
+                self.setup.conditions.iter().position(|condition| condition.device == Some(device))
+            }
+            _ => None,
+        };
+        let of = |form: Shape| effects::Structure { covariate, channel, only_in, form };
         let columns: Vec<usize> =
             (0..).map_while(|i| coefficients.index(Coefficient::Kernel(kernel, i))).collect();
         let relative = relative_variance(coefficients, &columns);
@@ -208,6 +214,7 @@ impl Evidence {
         let structure = effects::Structure {
             covariate: Covariate::Condition,
             channel: channel_of(channel),
+            only_in: None,
             form: Shape::Table { over, at, value, is_factor: true },
         };
         Some((structure, variance / square.max(1e-300)))
@@ -261,7 +268,7 @@ pub(super) fn channel_of(channel: Channel) -> effects::Channel {
         Channel::Silicone => effects::Channel::Silicone,
         Channel::Gain => effects::Channel::Gain,
         Channel::DirectionFriction => effects::Channel::FrictionByDirection,
-        Channel::HalfLoad => effects::Channel::HalfLoad,
+        Channel::HalfLoad | Channel::HalfLoadOf(_) => effects::Channel::HalfLoad,
     }
 }
 

@@ -35,15 +35,30 @@ pub(crate) enum Channel {
     DirectionFriction,
     /// The half load of every device.
     HalfLoad,
+    /// That of one device.
+    HalfLoadOf(usize),
 }
 
 impl Channel {
-    /// Channels in which readings are not linear.
-    pub(super) const CURVED: [Self; 4] = [Self::Friction, Self::Pins, Self::Silicone, Self::HalfLoad];
+    /// Returns the channels in which readings are not linear.
+    pub(super) fn curved(devices: usize) -> Vec<Self> {
+        let of_all = [Self::Friction, Self::Pins, Self::Silicone, Self::HalfLoad];
+        of_all.into_iter().chain((0..devices).map(Self::HalfLoadOf)).collect()
+    }
 
     /// Returns its index among the columns.
     pub(super) fn index(self) -> usize {
-        self as usize
+        match self {
+            Self::Reading => 0,
+            Self::Drag => 1,
+            Self::Friction => 2,
+            Self::Pins => 3,
+            Self::Silicone => 4,
+            Self::Gain => 5,
+            Self::DirectionFriction => 6,
+            Self::HalfLoad => 7,
+            Self::HalfLoadOf(device) => 8 + device,
+        }
     }
 
     /// Returns its word in reports.
@@ -56,7 +71,7 @@ impl Channel {
             Self::Silicone => "friction on silicone",
             Self::Gain => "gain",
             Self::DirectionFriction => "friction by direction",
-            Self::HalfLoad => "half load",
+            Self::HalfLoad | Self::HalfLoadOf(_) => "half load",
         }
     }
 
@@ -151,10 +166,11 @@ struct Factors {
 const NO_CHANGE: Factors = Factors { exponent: 1.0, pins: 1.0, silicone: 1.0, half_load: 1.0 };
 
 impl Factors {
-    /// Returns one plus each of [`Channel::CURVED`] at a row.
-    fn at(curved: &[Vec<f64>], row: usize) -> Self {
+    /// Returns one plus each of [`Channel::curved`] at a row with this device.
+    fn at(curved: &[Vec<f64>], row: usize, device: Option<usize>) -> Self {
         let factor = |at: usize| 1.0 + curved.get(at).and_then(|c| c.get(row)).copied().unwrap_or(0.0);
-        Self { exponent: factor(0), pins: factor(1), silicone: factor(2), half_load: factor(3) }
+        let of_device = device.map_or(1.0, |device| factor(4 + device));
+        Self { exponent: factor(0), pins: factor(1), silicone: factor(2), half_load: factor(3) * of_device }
     }
 
     /// Scales a contact after all effects, as structure in a model file does.
@@ -223,14 +239,14 @@ impl FrictionModel {
                 if let Some(reading) = known(row) {
                     return reading;
                 }
-                let change = Factors::at(curved, row);
+                let condition = &self.conditions[point.condition];
+                let change = Factors::at(curved, row, condition.device);
                 // Repetitions at one setting have one expectation, unless an effect varies within a series.
                 let is_known =
                     |known: &Point, at: Factors| !moves && at == change && known.has_setting_of(point);
                 if let Some((.., reading)) = last.filter(|(known, at, _)| is_known(known, *at)) {
                     return reading;
                 }
-                let condition = &self.conditions[point.condition];
                 let mut state = ContactState { load_n: point.load_n, ..states[point.condition] };
                 for Acting { prior, constants, known } in acting {
                     match known {
@@ -318,6 +334,10 @@ impl FrictionModel {
         }
     }
 
+    fn devices(&self) -> usize {
+        self.baseline.device_means.len() / 2
+    }
+
     /// Returns the rows at the mean time of the fitted session.
     pub(super) fn points_at_mean_time(&self) -> Vec<Point> {
         let (time, travel) = self.mean_time;
@@ -375,16 +395,16 @@ impl ForwardModel for FrictionModel {
         } else {
             vec![0.0; sign.len()]
         };
-        vec![
-            vec![1.0; sign.len()],
-            sign,
-            friction,
-            pins,
-            silicone,
-            readings.to_vec(),
-            by_direction,
-            half_load,
-        ]
+        let of_device = |device: usize| -> Vec<f64> {
+            let is_of = |point: &Point| self.conditions[point.condition].device == Some(device);
+            self.points.iter().zip(&half_load).map(|(p, x)| if is_of(p) { *x } else { 0.0 }).collect()
+        };
+        let of_devices: Vec<Vec<f64>> = (0..self.devices()).map(of_device).collect();
+        let ones = vec![1.0; sign.len()];
+        let mut channels =
+            vec![ones, sign, friction, pins, silicone, readings.to_vec(), by_direction, half_load];
+        channels.extend(of_devices);
+        channels
     }
 
     fn of_rows(&self, rows: &[usize]) -> Box<dyn ForwardModel> {

@@ -257,7 +257,8 @@ impl Setup {
         let priors = EffectPrior::of_vocabulary(vocabulary, &frame, highest, force_unit, forms, unknown);
         let has_silicone = conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone));
         let has_both = has_silicone && conditions.iter().any(Condition::has_pins);
-        let structures = structures(rows, has_both, force_unit);
+        let devices = conditions.iter().filter(|c| c.device.is_some()).map(Condition::layout).collect();
+        let structures = structures(rows, has_both, force_unit, devices);
         let mean = |value: fn(&Point) -> f64| rows.column(value).iter().sum::<f64>() / rows.len() as f64;
         let most = |value: fn(&Point) -> f64| rows.column(value).into_iter().fold(1e-9, f64::max);
         let factor = |names: Vec<String>| {
@@ -313,7 +314,7 @@ impl Setup {
             usual_effects: (0..self.priors.len()).filter(usual).collect(),
             structure_probability: STRUCTURE_PROBABILITY,
             series_scale_channel: Channel::Friction.index(),
-            curved_channels: Channel::CURVED.map(Channel::index).into(),
+            curved_channels: Channel::curved(self.frame.devices()).into_iter().map(Channel::index).collect(),
             // Another tendon changes the friction on both materials.
             joint_channels: vec![[Channel::Pins.index(), Channel::Silicone.index()]],
         }

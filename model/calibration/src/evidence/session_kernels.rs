@@ -10,12 +10,14 @@ use pinswitch_inference::SessionLevels;
 
 use super::forward::Channel;
 use super::structure::Record;
-use super::table_kernels::{Collector, MOST_LEVELS};
+use super::table_kernels::Collector;
 use super::variant::BasisOfRows;
 
+/// Most sessions that have levels.
+const MOST_SESSIONS: usize = 100;
 /// Channels of what a session may draw again, and of the switch.
 const MEASURING: &[Channel] = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
-const SWITCH: &[Channel] = &[Channel::Friction, Channel::Pins, Channel::Silicone, Channel::HalfLoad];
+const SWITCH: &[Channel] = &[Channel::Friction, Channel::Pins, Channel::Silicone];
 
 /// A form of the levels with its basis.
 type Form = (SessionLevels, BasisOfRows);
@@ -24,12 +26,12 @@ impl Collector<'_> {
     /// Adds levels of the sessions, in each form that their number can show.
     pub(super) fn sessions(&mut self) {
         let count = self.rows.points.iter().filter_map(|p| p.session_group).max().map_or(1, |last| last + 1);
-        if self.has_levels(2..=MOST_LEVELS, count) {
+        if self.has_levels(2..=MOST_SESSIONS, count) {
             // The one session with a wrong zero may be the last. For the switch a difference of the last session is a change that
             // lasts, and so is the difference of two sessions: mount effects contain the friction that is drawn again.
             self.levels_of_sessions(MEASURING, kinds(count, count));
             let of_switch = if count == 2 { vec![vec![random_walk(count)]] } else { kinds(count, count - 1) };
-            self.levels_of_sessions(SWITCH, of_switch);
+            self.levels_of_sessions(&[SWITCH, &self.half_loads()].concat(), of_switch);
         }
     }
 

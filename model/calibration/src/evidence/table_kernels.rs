@@ -22,7 +22,7 @@ const GAIN_SCALE: f64 = 0.02;
 pub(super) const BROWNIAN_RANK: usize = 24;
 /// Most loads and most conditions that are levels of a factor.
 const MOST_LOADS: usize = 14;
-pub(super) const MOST_LEVELS: usize = 20;
+const MOST_LEVELS: usize = 20;
 /// Prior probability that of the levels of a factor one differs from the others.
 const ONE_LEVEL_PROBABILITY: f64 = 0.5;
 /// Share of the range of positions by which the interval of smooth functions is longer at each end.
@@ -49,13 +49,20 @@ pub(super) struct Collector<'a> {
     pub(super) rows: &'a Covariates,
     force_unit: f64,
     has_both_materials: bool,
+    /// Layout of each device.
+    devices: Vec<String>,
     structures: Vec<Structure>,
 }
 
 /// Returns the kernels that a table supports. Forces are `force_unit` times larger than on the
 /// paper's rig.
-pub(super) fn structures(rows: &Covariates, has_both_materials: bool, force_unit: f64) -> Vec<Structure> {
-    let mut collector = Collector { rows, force_unit, has_both_materials, structures: Vec::new() };
+pub(super) fn structures(
+    rows: &Covariates,
+    has_both_materials: bool,
+    force_unit: f64,
+    devices: Vec<String>,
+) -> Vec<Structure> {
+    let mut collector = Collector { rows, force_unit, has_both_materials, devices, structures: Vec::new() };
     // Without a clock the order of the series is not known.
     let has_clock = distinct(&rows.column(|p| p.time_s)) > 1;
     if has_clock {
@@ -121,7 +128,7 @@ impl Collector<'_> {
             };
             self.structures.push(Structure {
                 covariate,
-                name: format!("{} over {name}", channel.as_str()),
+                name: format!("{} over {name}", self.words(*channel)),
                 channel: *channel,
                 record,
                 is_session_bound,
@@ -131,6 +138,19 @@ impl Collector<'_> {
             });
         }
         &mut self.structures[known..]
+    }
+
+    fn words(&self, channel: Channel) -> String {
+        match channel {
+            Channel::HalfLoadOf(device) => format!("{} of {}", channel.as_str(), self.devices[device]),
+            _ => channel.as_str().to_owned(),
+        }
+    }
+
+    /// Returns the half load of all devices and, of several, of each: another cast of one part may be softer.
+    pub(super) fn half_loads(&self) -> Vec<Channel> {
+        let of_one = if self.devices.len() > 1 { 0..self.devices.len() } else { 0..0 };
+        std::iter::once(Channel::HalfLoad).chain(of_one.map(Channel::HalfLoadOf)).collect()
     }
 
     fn along_a_series(&mut self) {
@@ -324,8 +344,7 @@ impl Collector<'_> {
         // The mount effect on friction is in every hypothesis.
         let of_mount = &[Channel::Reading, Channel::Drag, Channel::Gain, Channel::DirectionFriction];
         self.levels("mount", "mount", Record::Nothing, of_mount, |_, label| label.mount.clone());
-        // Another cast may be softer.
-        let of_specimen = &[of_parts.as_slice(), &[Channel::HalfLoad]].concat();
+        let of_specimen = &[of_parts.as_slice(), &self.half_loads()].concat();
         self.levels(
             "specimen",
             "specimen",

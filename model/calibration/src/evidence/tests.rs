@@ -5,7 +5,8 @@ use pinswitch_inference::{Member, SizedEffect};
 use super::{Evidence, Session};
 use crate::effects::{Channel, Covariate, Shape, Structure, Vocabulary, effect_named};
 use crate::model::Term;
-use crate::table::{Labels, PlateauRow};
+use crate::model_file::ModelFile;
+use crate::table::{Frame, Labels, PlateauRow};
 use crate::test_session::{session, session_with};
 
 fn evidence(rows: &[PlateauRow]) -> Evidence {
@@ -179,32 +180,48 @@ fn forms_of_a_kernel_have_its_probability() {
     }
 }
 
-/// Another day, or another cast, with a half load that is 15 % lower and the same friction.
+/// Another day, or another cast, with half loads that are 15 % lower and the same friction: of all layouts, or of one.
 #[test]
 fn a_half_load_that_differs_is_a_change_of_it() {
-    let softer = Term::Structure(Structure {
-        covariate: Covariate::Condition,
-        channel: Channel::HalfLoad,
-        form: Shape::Constant,
-    });
-    let later = session_with(5, &[(softer, &[-0.15])]);
-    for (by, label) in [
-        ("session", (|labels, name| labels.session = name) as fn(&mut Labels, String)),
-        ("specimen", |labels, name| labels.specimen = name),
-    ] {
-        let mut rows = [session(3), later.clone()].concat();
-        let count = rows.len() / 2;
-        for (i, row) in rows.iter_mut().enumerate() {
-            row.series = format!("{}-{}", i / count, row.series);
-            label(&mut row.labels, format!("{}", i / count));
+    let frame = Frame::new(&session(3));
+    let one = frame.conditions.iter().position(|condition| condition.device == Some(1)).unwrap();
+    for only_in in [None, Some(one)] {
+        let form = Shape::Constant;
+        let (covariate, channel) = (Covariate::Condition, Channel::HalfLoad);
+        let softer = Term::Structure(Structure { covariate, channel, only_in, form });
+        let later = session_with(5, &[(softer, &[-0.15])]);
+        for (by, label) in [
+            ("session", (|labels, name| labels.session = name) as fn(&mut Labels, String)),
+            ("specimen", |labels, name| labels.specimen = name),
+        ] {
+            let mut rows = [session(3), later.clone()].concat();
+            let count = rows.len() / 2;
+            for (i, row) in rows.iter_mut().enumerate() {
+                row.series = format!("{}-{}", i / count, row.series);
+                label(&mut row.labels, format!("{}", i / count));
+            }
+            let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
+            let report = &calibration.report;
+            assert!(report.effects.is_empty(), "{by}: {:?}", report.effects);
+            let [change] = report.changes.as_slice() else { panic!("{by}: {:?}", report.changes) };
+            assert_eq!((change.constant.as_str(), change.by.as_str()), ("F_half", by));
+            assert_eq!(change.layout, only_in.map(|one| frame.conditions[one].layout()));
+            let ratio = change.factors["1"] / change.factors["0"];
+            assert!((ratio - 0.85).abs() < 0.03, "{by}: {:?}", change.factors);
+            // The term of the model file stands for the kernel.
+            let text = ModelFile::new(&calibration.augmented).to_text().unwrap();
+            let file = ModelFile::parse(&text, "model.toml").unwrap();
+            let (predicted_n, _) = file.predict(&rows, Session::Fitted, "model.toml").unwrap();
+            let errors = predicted_n.iter().zip(&rows).map(|(y, row)| (y - row.force_n).powi(2));
+            let rms = (errors.sum::<f64>() / rows.len() as f64).sqrt();
+            assert!(rms < 0.06, "{by}: {rms} N with noise of 0.05 N");
+            if let Some(one) = only_in {
+                let (text, _) = text.trim_end().rsplit_once('\n').unwrap();
+                let elsewhere = text.replace(&format!("only_in = {one}"), "only_in = 5");
+                let error = ModelFile::parse(&elsewhere, "model.toml").unwrap_err().to_string();
+                assert!(error.contains("structure.only_in"), "{error}");
+            }
         }
-        let calibration = crate::calibrate(&rows, &Vocabulary::built_in(), 1).unwrap();
-        let report = &calibration.report;
-        assert!(report.effects.is_empty(), "{by}: {:?}", report.effects);
-        let [change] = report.changes.as_slice() else { panic!("{by}: {:?}", report.changes) };
-        assert_eq!((change.constant.as_str(), change.by.as_str()), ("F_half", by));
-        let ratio = change.factors["1"] / change.factors["0"];
-        assert!((ratio - 0.85).abs() < 0.03, "{by}: {:?}", change.factors);
     }
 }
 

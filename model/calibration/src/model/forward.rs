@@ -39,6 +39,7 @@ impl Model {
         let everywhere = Structure {
             covariate: Covariate::Load,
             channel: Channel::Friction,
+            only_in: None,
             form: Shape::LoadPower { power: 0, unit_n: 1.0 },
         };
         let size = 1e-3;

@@ -11,8 +11,11 @@ use crate::session_plan::SessionPlan;
 /// A constant of the switch that differs between sessions or specimens.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ChangeReport {
-    /// `mu_p`, `mu_s`, `mu` for all friction coefficients, or `F_half` for the half loads of all layouts.
+    /// `mu_p`, `mu_s`, `mu` for all friction coefficients, or `F_half` for half loads.
     pub constant: String,
+    /// Layout of the half load; that of every layout if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<String>,
     /// `session` or `specimen`.
     pub by: String,
     /// Posterior probability of the change.
@@ -29,7 +32,8 @@ impl ChangeReport {
             .iter()
             .map(|(group, factor)| format!("{:+.1} % in {} {group}", 100.0 * (factor - 1.0), self.by))
             .collect();
-        format!("{} differs between {}s: {}", self.constant, self.by, each.join(", "))
+        let of = self.layout.as_ref().map_or_else(String::new, |layout| format!(" of {layout}"));
+        format!("{}{of} differs between {}s: {}", self.constant, self.by, each.join(", "))
     }
 }
 

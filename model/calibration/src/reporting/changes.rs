@@ -22,6 +22,7 @@ pub(super) fn changes(evidence: &Evidence) -> Vec<ChangeReport> {
                 .collect();
             Some(ChangeReport {
                 constant: evidence.changing_constant(kernel).to_owned(),
+                layout: evidence.changing_layout(kernel),
                 by: by.to_owned(),
                 probability: reported.probability,
                 factors,

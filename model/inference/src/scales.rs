@@ -226,23 +226,36 @@ impl ScaleProblem<'_> {
 mod tests {
     use super::*;
     use crate::fit::size_variances;
-    use crate::test_problem::{fitted, full_hypothesis, problem, unit_weights};
+    use crate::noise::EXCLUDED;
+    use crate::random::Random;
+    use crate::test_problem::{fitted, full_hypothesis, problem, rows, unit_weights};
 
-    /// The gradient of the marginal likelihood matches central differences, without and with
-    /// autocorrelation.
+    /// The gradient of the marginal likelihood matches central differences, without and with autocorrelation: with two mounts and
+    /// equal weights, and with 24 mounts, weights, an excluded reading, and steps of the load cell.
     #[test]
     fn gradient_matches_finite_differences() {
-        let problem = problem(6, 0.4);
+        let plain = problem(6, 0.4);
+        let unit = unit_weights(&plain);
+        assert_gradients(&plain, &unit);
+        const MOUNTS: usize = 24;
+        let mut rows = rows(2 * MOUNTS);
+        rows.levels = vec![rows.series.iter().map(|series| Some(series / 2)).collect()];
+        let mut space = plain.space.clone();
+        space.random_effects[0].levels = MOUNTS;
+        let mut random = Random::new(4);
+        let readings = rows.load.iter().map(|load| 2.0 * load + 0.1 * random.normal()).collect();
+        let mut mounts = Problem::new(space, rows, readings).unwrap();
+        mounts.reference.quantum = 0.03;
+        let weight = |row: usize| if row == 4 { EXCLUDED } else { 0.3 + random.uniform() };
+        let weights = DVector::from_iterator(mounts.len(), (0..mounts.len()).map(weight));
+        assert_gradients(&mounts, &weights);
+    }
+
+    fn assert_gradients(problem: &Problem, weights: &DVector<f64>) {
         let hypothesis = full_hypothesis();
-        let (fit, design, _) = fitted(&problem, &hypothesis);
-        let weights = unit_weights(&problem);
+        let (fit, design, _) = fitted(problem, &hypothesis);
         let size_variances = size_variances(&problem.space, &hypothesis, &fit.mode, true);
-        let at = ScaleProblem {
-            problem: &problem,
-            design: &design,
-            weights: &weights,
-            size_variances: &size_variances,
-        };
+        let at = ScaleProblem { problem, design: &design, weights, size_variances: &size_variances };
         for autoregression in [0, 2] {
             let scales = Scales { log: [-3.3, -0.4, -3.5, -3.0, -4.0, -3.6], autoregression };
             assert_gradient(&at, scales);

@@ -7,8 +7,8 @@ use crate::random::Random;
 
 /// Largest distance of the logarithms of the standard deviations over which a posterior is summed.
 const SPACING: f64 = 0.125;
-/// Degrees of freedom of the prior of the standard deviation of steps: the fewest with which the variance after one step is
-/// finite, whatever its size.
+/// Degrees of freedom of the prior of the standard deviation of steps, as of other predictions. After `n` steps far above its
+/// scale the next one has Student's t distribution with three more.
 const DEGREES: f64 = 3.0;
 
 /// Differences of levels that are smaller than this share of the scale of their prior may be those of rounding.
@@ -81,8 +81,8 @@ impl Steps {
 }
 
 /// Returns the prior of the standard deviation of the steps of a kernel, given the largest change of its level by a
-/// coefficient: half-t, in the place of the half-Cauchy prior by which hypotheses are compared. That has no variance, so that
-/// after one step the interval of an error would have no end of use.
+/// coefficient: half-t, in the place of the half-Cauchy prior by which hypotheses are compared, whose tail is so heavy that
+/// after one step the variance of the next one is infinite.
 pub(crate) fn prior_of_steps(kernel: &Kernel, change: f64) -> HalfT {
     HalfT { scale: kernel.scale * change, degrees: DEGREES }
 }
@@ -127,7 +127,8 @@ mod tests {
         }
     }
 
-    /// Far above its scale the prior falls with the fourth power. Two thirds, and nine tenths, of the levels of a new session are within the tabulated quantiles of Student's t
+    /// Far above its scale the prior falls with the fourth power. Two thirds, and nine tenths, of the levels of a new session
+    /// are within the tabulated quantiles of Student's t
     /// distribution with three degrees of freedom more than differences.
     #[test]
     fn the_step_of_a_new_session_has_the_t_distribution_of_few_steps() {

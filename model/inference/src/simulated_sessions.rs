@@ -49,7 +49,8 @@ impl<'a> SimulatedSessions<'a> {
         linearised: &'a Linearised,
         sound: &[usize],
     ) -> Self {
-        let distance = sound.len().div_ceil(MOST_READINGS).max(1);
+        // An odd distance: directions may alternate.
+        let distance = sound.len().div_ceil(MOST_READINGS) | 1;
         let rows: Vec<usize> = sound.iter().copied().step_by(distance).collect();
         let of_series = |range: &Range<usize>| {
             rows.partition_point(|row| *row < range.start)..rows.partition_point(|row| *row < range.end)
@@ -143,7 +144,8 @@ impl<'a> SimulatedSessions<'a> {
     }
 }
 
-/// Returns the design of some rows in a new session, without what its errors do not contain: structure, mounts and drifts.
+/// Returns the design of some rows in a new session, without structure, mounts and drifts: their uncertainty is in the errors of
+/// series that are left out, or a new session draws them again.
 /// Levels of specimens and of sessions are known from the same readings as the constants, with which they are correlated: their
 /// sum is certain where neither is.
 fn new_session(problem: &Problem, fit: &Fit, design: &Design, rows: &[usize]) -> DMatrix<f64> {

@@ -100,6 +100,8 @@ struct Setup {
     baseline: Baseline,
     priors: Arc<[EffectPrior]>,
     structures: Vec<Structure>,
+    /// Whether a structure acts on half loads.
+    moves_half_loads: bool,
     mean_time: (f64, f64),
     largest: Largest,
     mounts: Vec<String>,
@@ -219,6 +221,7 @@ impl Evidence {
             baseline: self.setup.baseline.clone(),
             priors: Arc::clone(&self.setup.priors),
             structures: Vec::new(),
+            moves_half_loads: self.setup.moves_half_loads,
             mean_time: self.setup.mean_time,
             largest: self.setup.largest,
             mounts: if session == Session::New { Vec::new() } else { self.setup.mounts.clone() },
@@ -279,6 +282,7 @@ impl Setup {
             vocabulary: vocabulary.clone(),
             baseline,
             priors: priors.into(),
+            moves_half_loads: structures.iter().any(|s| s.channel == Channel::HalfLoad),
             structures,
         }
     }
@@ -333,7 +337,7 @@ impl Setup {
             baseline: self.baseline.clone(),
             priors: Arc::clone(&self.priors),
             formula_values: FormulaValues::default(),
-            moves_half_loads: self.structures.iter().any(|s| s.channel == Channel::HalfLoad),
+            moves_half_loads: self.moves_half_loads,
         };
         if session == Session::New {
             forward.points = forward.points_at_mean_time();

@@ -5,10 +5,10 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 use pinswitch_inference::{Basis, Kernel, SERIES_PROBABILITY, SessionLevels};
 
-use super::{SPECIMEN, Session};
 use super::covariates::Covariates;
 use super::forward::Channel;
 use super::variant::Variant;
+use super::{SPECIMEN, Session};
 use crate::effects::Abscissa;
 
 /// Covariate of noise.

@@ -215,6 +215,14 @@ fn a_half_load_that_differs_is_a_change_of_it() {
             let errors = predicted_n.iter().zip(&rows).map(|(y, row)| (y - row.force_n).powi(2));
             let rms = (errors.sum::<f64>() / rows.len() as f64).sqrt();
             assert!(rms < 0.06, "{by}: {rms} N with noise of 0.05 N");
+            // The half load of each part is known, though what they have in common is not.
+            let predicted = calibration.evidence.predict(&rows, Session::Fitted).unwrap();
+            let largest = predicted.iter().map(|prediction| prediction.sd).fold(0.0, f64::max);
+            assert!(largest < 0.1, "{by}: {largest} N");
+            // The half loads of another session may differ again; the same specimens have the same ones.
+            let error = report.expected_error_n.as_ref().unwrap();
+            let is_wide = error.ci90[1] > 3.0 * error.ci90[0];
+            assert_eq!(is_wide, by == "session", "{by}: {error:?}");
             if let Some(one) = only_in {
                 let (text, _) = text.trim_end().rsplit_once('\n').unwrap();
                 let elsewhere = text.replace(&format!("only_in = {one}"), "only_in = 5");

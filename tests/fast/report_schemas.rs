@@ -27,7 +27,6 @@ const OPTIONAL: &[(&str, &[&str])] = &[
             "form",
             "heldout_layouts_rmse_N",
             "includes",
-            "layout",
             "least_squares_N",
             "note",
             "possible",

@@ -28,8 +28,9 @@ const MOST_SHIFT: (f64, f64) = (0.7, 4.0);
 const LEAST_SHARE: f64 = 0.02;
 /// Rounds with free sizes: from scratch, and for an effect that is added to a mode.
 const FREE_ROUNDS: (usize, usize) = (6, 2);
-/// Most rounds after these: of a fit from scratch or of the last one of a hypothesis, and of one that may be fitted again.
-const FINAL_ROUNDS: (usize, usize) = (12, 5);
+/// Most rounds after these, far more than fits need to converge. A mode in which mounts stand for a constant that differs between
+/// sessions is far from the one in which they do not: the noise grows on the way.
+const MOST_FINAL_ROUNDS: usize = 30;
 /// Newton steps of the scales in a round: from scratch, and from the mode of a similar hypothesis.
 const SCALE_STEPS: (usize, usize) = (3, 1);
 /// Change of the objective in nats below which the last rounds have converged.
@@ -91,7 +92,7 @@ impl Fit {
             (false, None) => 0,
         };
         let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
-        let rounds = free + if is_cold || start.is_final { FINAL_ROUNDS.0 } else { FINAL_ROUNDS.1 };
+        let rounds = free + MOST_FINAL_ROUNDS;
         let mut before = f64::NEG_INFINITY;
         for round in 0..rounds {
             let is_final = round >= free;

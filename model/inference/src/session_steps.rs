@@ -25,7 +25,8 @@ pub(crate) struct Steps {
     /// Standard deviations of the differences, with the sum of their posterior probabilities up to each; empty where no level
     /// differs.
     standard_deviations: Vec<(f64, f64)>,
-    /// Mean square of the differences so far, for that of a new session, in the square of the unit of the channel.
+    /// Mean square of the differences so far, for that of a new session, in the square of the unit of the channel; zero where
+    /// most sessions have none.
     square: f64,
     /// Change of each reading per unit of the level.
     pub(crate) channel: Vec<f64>,
@@ -59,7 +60,8 @@ impl Steps {
             up_to += *probability;
             *probability = up_to;
         }
-        let square = share * widening * (sum / f64::max(count as f64, 1.0));
+        // What most sessions do not have is not expected of a new one, but its interval contains it.
+        let square = if share < 1.0 { 0.0 } else { widening * (sum / f64::max(count as f64, 1.0)) };
         Self { expected, share, widening, standard_deviations, square, channel }
     }
 
@@ -119,8 +121,8 @@ mod tests {
         use SessionLevels::{Independent, OneChange, OneSession, RandomWalk};
         assert_eq!(of(&curve, RandomWalk), (-4.0, (1.0 + 4.0 + 49.0) / 3.0));
         assert_eq!(of(&curve, Independent), (0.0, 26.0 / 3.0 * 1.25));
-        assert_eq!(of(&[0.0, 0.0, 2.0, 2.0], OneChange(4)), (2.0, 1.0));
-        assert_eq!(of(&[0.0, 0.0, 2.0, 0.0], OneSession(4)), (0.0, 1.0));
+        assert_eq!(of(&[0.0, 0.0, 2.0, 2.0], OneChange(4)), (2.0, 0.0));
+        assert_eq!(of(&[0.0, 0.0, 2.0, 0.0], OneSession(4)), (0.0, 0.0));
         for levels in [Independent, RandomWalk, OneChange(3), OneSession(3)] {
             assert_eq!(of(&[0.3, 0.3, 0.3], levels), (0.3, 0.0));
             assert_eq!(of(&[], levels), (0.0, 0.0));

@@ -160,6 +160,23 @@ mod tests {
         assert!(error.interval[0] > 0.02 && error.interval[1] < 0.05, "{error:?}");
     }
 
+    /// One session of eight has an eighth of the series, whose mean square scatters more than that of all.
+    #[test]
+    fn the_error_of_one_of_many_sessions_scatters_more() {
+        let width = |sessions: usize| {
+            let mut rows = rows(48);
+            rows.sessions = rows.series.iter().map(|series| series * sessions / 48).collect();
+            let mut random = Random::new(3);
+            let shared: Vec<f64> = (0..48).map(|_| 0.05 * random.normal()).collect();
+            let reading = |i: usize| 2.0 * rows.load[i] + shared[rows.series[i]] + 0.03 * random.normal();
+            let readings: Vec<f64> = (0..rows.len()).map(reading).collect();
+            let problem = Problem::new(space(), rows, readings).unwrap();
+            let error = infer(&problem, SearchOptions::default(), 5).unwrap().expected_error.unwrap();
+            error.interval[1] / error.interval[0]
+        };
+        assert!(width(8) > 1.3 * width(1), "{} {}", width(8), width(1));
+    }
+
     #[test]
     fn equal_seeds_give_equal_intervals() {
         let problem = problem(8, 0.3);

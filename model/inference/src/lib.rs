@@ -83,6 +83,7 @@
 //! let rows = Rows {
 //!     series: (0..40).map(|i| i / 10).collect(),
 //!     direction: vec![false; 40],
+//!     sessions: vec![0; 40],
 //!     order: (0..40).map(|i| i % 10).collect(),
 //!     load: load.clone(),
 //!     levels: vec![],

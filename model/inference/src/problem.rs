@@ -230,6 +230,8 @@ pub struct Rows {
     pub series: Vec<usize>,
     /// Whether each row belongs to the second of the two directions.
     pub direction: Vec<bool>,
+    /// Session of each row.
+    pub sessions: Vec<usize>,
     /// Order of each row in its series, as a lag: 0, 1, 2, ...
     pub order: Vec<usize>,
     /// Load of each row, with which the repetition noise grows.
@@ -398,6 +400,7 @@ pub(crate) fn check_rows(space: &Space, rows: &Rows) -> Result<(), ProblemError>
         return Err(ProblemError::Empty);
     }
     expect_length("direction", rows.direction.len(), count)?;
+    expect_length("sessions", rows.sessions.len(), count)?;
     expect_length("order", rows.order.len(), count)?;
     expect_length("load", rows.load.len(), count)?;
     expect_length("levels", rows.levels.len(), space.random_effects.len())?;

@@ -1,5 +1,6 @@
 //! Simulated sessions of a fit: how far the mean square error of a session scatters about its expected value.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
@@ -26,6 +27,8 @@ pub(crate) struct SimulatedSessions<'a> {
     rows: Vec<usize>,
     /// Places of the rows of each series among them.
     series: Vec<Range<usize>>,
+    /// Places of the rows of each session among them.
+    sessions: Vec<Vec<usize>>,
     /// The design of a new session.
     matrix: DMatrix<f64>,
     redrawn: Vec<Redrawn>,
@@ -74,11 +77,17 @@ impl<'a> SimulatedSessions<'a> {
             });
         }
         let series = problem.ranges.iter().map(of_series).collect();
+        let mut sessions: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (place, row) in rows.iter().enumerate() {
+            sessions.entry(problem.rows.sessions[*row]).or_default().push(place);
+        }
+        let sessions = sessions.into_values().collect();
         let matrix = new_session(problem, fit, &linearised.design, &rows);
-        Self { problem, fit, linearised, rows, series, matrix, redrawn }
+        Self { problem, fit, linearised, rows, series, sessions, matrix, redrawn }
     }
 
-    /// Returns the mean squares of this many sessions, divided by their expected value. The levels of a session differ from the
+    /// Returns the mean squares of this many sessions, divided by their expected value. Each has the rows of one of the fitted
+    /// sessions, since a mean square of fewer series scatters more. The levels of a session differ from the
     /// expected ones by the steps of `view`. The expected value uses the mean square of the steps so far.
     pub(crate) fn relative_squares(
         &self,
@@ -87,18 +96,25 @@ impl<'a> SimulatedSessions<'a> {
         simulations: usize,
     ) -> Vec<f64> {
         let count = self.rows.len().max(1) as f64;
-        let mean_square = |errors: &DVector<f64>| errors.norm_squared() / count;
+        let mean_square = |errors: &DVector<f64>, places: &[usize]| {
+            places.iter().map(|place| errors[*place].powi(2)).sum::<f64>() / places.len().max(1) as f64
+        };
+        let all: Vec<usize> = (0..self.rows.len()).collect();
         let mut without_steps = 0.0;
         let squares: Vec<f64> = (0..simulations)
             .map(|_| {
                 let mut errors = self.session(random);
                 self.add_new_levels(random, &mut errors);
-                without_steps += mean_square(&errors) / simulations as f64;
+                let places = match self.sessions.as_slice() {
+                    [] | [_] => &all,
+                    sessions => &sessions[random.index(sessions.len())],
+                };
+                without_steps += mean_square(&errors, places) / simulations as f64;
                 for steps in &view.steps {
                     let step = steps.draw(random);
                     errors.iter_mut().zip(&self.rows).for_each(|(e, row)| *e += step * steps.channel[*row]);
                 }
-                mean_square(&errors)
+                mean_square(&errors, places)
             })
             .collect();
         let of_steps = self.rows.iter().map(|row| view.step_square(*row)).sum::<f64>() / count;

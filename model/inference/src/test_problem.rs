@@ -49,6 +49,7 @@ pub(crate) fn long_rows(count: usize, length: usize) -> Rows {
     let level: Vec<Option<usize>> = series.iter().map(|s| Some(s % 3)).collect();
     Rows {
         direction: (0..total).map(|i| i % 2 == 1).collect(),
+        sessions: vec![0; total],
         order: (0..total).map(|i| i % length).collect(),
         levels: vec![series.iter().map(|s| Some(s / 2 % 2)).collect()],
         bases: vec![vec![kernel::levels(&level, 3).into()]],

@@ -76,6 +76,7 @@ impl Problem {
         let rows = Rows {
             series: select(&all.series, kept),
             direction: select(&all.direction, kept),
+            sessions: select(&all.sessions, kept),
             order: select(&all.order, kept),
             load: select(&all.load, kept),
             levels: all.levels.iter().map(|levels| select(levels, kept)).collect(),

@@ -347,6 +347,7 @@ impl Setup {
         Rows {
             series: rows.series.clone(),
             direction: rows.points.iter().map(|p| p.sign > 0.0).collect(),
+            sessions: rows.points.iter().map(|p| p.session_group.unwrap_or(0)).collect(),
             order: rows.order.clone(),
             load: rows.column(|p| p.load_n),
             levels: vec![

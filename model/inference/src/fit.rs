@@ -31,6 +31,8 @@ const FREE_ROUNDS: (usize, usize) = (6, 2);
 /// Most rounds after these, far more than fits need to converge. A mode in which mounts stand for a constant that differs between
 /// sessions is far from the one in which they do not: the noise grows on the way.
 const MOST_FINAL_ROUNDS: usize = 30;
+/// Rounds without a gain after which a fit ends: it moves to and fro about its mode.
+const MOST_WITHOUT_GAIN: usize = 2;
 /// Newton steps of the scales in a round: from scratch, and from the mode of a similar hypothesis.
 const SCALE_STEPS: (usize, usize) = (3, 1);
 /// Change of the objective in nats below which the last rounds have converged.
@@ -93,7 +95,7 @@ impl Fit {
         };
         let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
         let rounds = free + MOST_FINAL_ROUNDS;
-        let mut before = f64::NEG_INFINITY;
+        let (mut before, mut best, mut without_gain) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 0);
         for round in 0..rounds {
             let is_final = round >= free;
             let size_variances = size_variances(&problem.space, hypothesis, &mode, is_final);
@@ -109,11 +111,14 @@ impl Fit {
                 point = scale_problem.best_autoregression(point);
             }
             let objective = point.log_posterior + log_weight_term(&mode.weights);
-            let is_last = round + 1 == rounds || (round > free && (objective - before).abs() < CONVERGED);
+            without_gain = if is_final && objective < best + CONVERGED { without_gain + 1 } else { 0 };
+            let has_converged = (objective - before).abs() < CONVERGED || without_gain == MOST_WITHOUT_GAIN;
+            let is_last = round + 1 == rounds || (round > free && has_converged);
             if is_last {
                 return Some(Self::of_point(hypothesis, &scale_problem, mode.clone(), point));
             }
             before = if is_final { objective } else { f64::NEG_INFINITY };
+            best = before.max(best);
             let weights = student_weights(&scale_problem, &point);
             move_coefficients(&problem.space, &design, &point, &mut mode);
             mode.scales = point.scales;

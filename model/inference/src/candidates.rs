@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::cells::{BasisByCell, Cells};
 use crate::hypothesis::Element;
 use crate::marginal::Marginal;
+use crate::series_rows::SPARSE;
 
 /// Largest entry of columns that change no reading.
 const LEAST_ENTRY: f64 = 1e-9;
@@ -21,9 +22,6 @@ const BLOCK_COLUMNS: usize = 64;
 const MOST_SCORED: usize = 48;
 /// Columns up to which a sum over cells is faster than a product of matrices that are copied for it.
 const FEW_COLUMNS: usize = 2;
-
-/// Rows of `A'V^-1 c` per entry of a cell above which sums over the entries are faster.
-const SPARSE: usize = 4;
 
 /// Products of the columns `x` of an element.
 pub(crate) struct Candidate {

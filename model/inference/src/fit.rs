@@ -28,8 +28,8 @@ const MOST_SHIFT: (f64, f64) = (0.7, 4.0);
 const LEAST_SHARE: f64 = 0.02;
 /// Rounds with free sizes: from scratch, and for an effect that is added to a mode.
 const FREE_ROUNDS: (usize, usize) = (6, 2);
-/// Most rounds after these, far more than fits need to converge. A mode in which mounts stand for a constant that differs between
-/// sessions is far from the one in which they do not: the noise grows on the way.
+/// Most rounds after these, far more than convergence needs. From a mode in which the mounts explain a constant that differs
+/// between sessions, the way to the mode of the right hypothesis is long: the noise grows first.
 const MOST_FINAL_ROUNDS: usize = 30;
 /// Rounds without a gain after which a fit ends: it moves to and fro about its mode.
 const MOST_WITHOUT_GAIN: usize = 2;

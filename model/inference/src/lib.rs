@@ -129,6 +129,7 @@ mod quadrature;
 mod random;
 mod scales;
 mod score;
+mod sd_posterior;
 mod search;
 mod series_rows;
 mod session_steps;

@@ -454,6 +454,7 @@ fn expect_finite(name: &'static str, values: &[f64]) -> Result<(), ProblemError>
 mod tests {
     use super::*;
     use crate::test_problem::{problem, rows};
+    use nalgebra::DMatrix;
 
     #[test]
     fn inconsistent_rows_are_refused() {
@@ -472,5 +473,16 @@ mod tests {
         assert_eq!(with(&|rows| rows.load[3] = f64::NAN), ProblemError::NotFinite { name: "load", row: 3 });
         let empty = with(&|rows| rows.series.clear());
         assert_eq!(empty, ProblemError::Empty);
+    }
+
+    /// Three sessions of two readings: a new one has the last row of a basis, the mean of its rows, or the first one.
+    #[test]
+    fn a_new_session_has_the_expected_row() {
+        let basis =
+            Basis::from(DMatrix::from_row_slice(6, 2, &[0., 3., 0., 3., 6., 0., 6., 0., 0., 9., 0., 9.]));
+        assert_eq!(SessionLevels::RandomWalk.expected_row(&basis), [0.0, 9.0]);
+        assert_eq!(SessionLevels::OneChange(3).expected_row(&basis), [0.0, 9.0]);
+        assert_eq!(SessionLevels::Independent.expected_row(&basis), [2.0, 4.0]);
+        assert_eq!(SessionLevels::OneSession(3).expected_row(&basis), [0.0, 3.0]);
     }
 }

@@ -5,6 +5,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+/// Columns of a matrix per entry of a row above which sums over the entries are faster than products of matrices.
+pub(crate) const SPARSE: usize = 2;
+
 /// One row per series, and one column per coefficient.
 #[derive(Clone, Debug)]
 pub(crate) struct SeriesRows {
@@ -99,7 +102,7 @@ mod tests {
         let mut random = Random::new(5);
         let mut any = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| random.normal());
         let (dense, values, x, right) = (any(9, 3), any(9, 1), any(9, 2), any(4, 2));
-        // The last series has no level.
+        // The last series is without a level.
         let one = DMatrix::from_fn(9, 4, |i, j| if i % 4 == j && i < 8 { values[i] } else { 0.0 });
         let other = DMatrix::from_fn(9, 5, |i, j| if i / 2 == j { values[i] } else { 0.0 });
         let weights = DVector::from_column_slice(values.as_slice());

@@ -2,15 +2,15 @@
 
 use crate::half_t::HalfT;
 use crate::problem::{Kernel, SessionLevels};
-use crate::quadrature::{Mixture, log_sum_exp};
+use crate::quadrature::Mixture;
 use crate::random::Random;
+use crate::sd_posterior::SdPosterior;
 
 /// Largest distance of the logarithms of the standard deviations over which a posterior is summed.
 const SPACING: f64 = 0.125;
 /// Degrees of freedom of the prior of the standard deviation of steps, as of other predictions. After `n` steps far above its
 /// scale the next one has Student's t distribution with three more.
 const DEGREES: f64 = 3.0;
-
 /// Differences of levels that are smaller than this share of the scale of their prior may be those of rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -22,9 +22,8 @@ pub(crate) struct Steps {
     share: f64,
     /// Variance of the difference of a new session from its expected level, over that of the differences.
     widening: f64,
-    /// Standard deviations of the differences, with the sum of their posterior probabilities up to each; empty where no level
-    /// differs.
-    standard_deviations: Vec<(f64, f64)>,
+    /// Standard deviation of the differences.
+    sd: SdPosterior,
     /// Mean square of the differences so far, for that of a new session, in the square of the unit of the channel; zero where
     /// most sessions have none.
     square: f64,
@@ -54,26 +53,18 @@ impl Steps {
                 (steps().next().unwrap_or(0.0), count.min(1), 1.0 / sessions.max(1) as f64, 1.0)
             }
         };
-        let mut standard_deviations = posterior(sum, count, prior);
-        let mut up_to = 0.0;
-        for (_, probability) in &mut standard_deviations {
-            up_to += *probability;
-            *probability = up_to;
-        }
+        let sd = SdPosterior::new(terms(sum, count, prior));
         // What most sessions do not have is not expected of a new one, but its interval contains it.
         let square = if share < 1.0 { 0.0 } else { widening * (sum / f64::max(count as f64, 1.0)) };
-        Self { expected, share, widening, standard_deviations, square, channel }
+        Self { expected, share, widening, sd, square, channel }
     }
 
     /// Draws the difference of a new session.
     pub(crate) fn draw(&self, random: &mut Random) -> f64 {
-        let (Some((largest, _)), true) = (self.standard_deviations.last(), random.uniform() < self.share)
-        else {
+        if random.uniform() >= self.share {
             return 0.0;
-        };
-        let at = random.uniform();
-        let drawn = self.standard_deviations.iter().find(|(_, up_to)| at < *up_to);
-        drawn.map_or(*largest, |(sd, _)| *sd) * self.widening.sqrt() * random.normal()
+        }
+        self.sd.draw(random).map_or(0.0, |sd| sd * self.widening.sqrt() * random.normal())
     }
 
     /// Mean square by which a reading of a new session differs from the one with the expected level.
@@ -89,9 +80,9 @@ pub(crate) fn prior_of_steps(kernel: &Kernel, change: f64) -> HalfT {
     HalfT { scale: kernel.scale * change, degrees: DEGREES }
 }
 
-/// Returns standard deviations of this many differences with the sum `sum` of their squares, each with its posterior
-/// probability.
-fn posterior(sum: f64, count: usize, prior: HalfT) -> Vec<(f64, f64)> {
+/// Returns standard deviations of this many differences with the sum `sum` of their squares, each with the logarithm of its
+/// posterior probability, up to a constant; none without differences.
+fn terms(sum: f64, count: usize, prior: HalfT) -> Vec<(f64, f64)> {
     if count == 0 {
         return Vec::new();
     }
@@ -100,9 +91,7 @@ fn posterior(sum: f64, count: usize, prior: HalfT) -> Vec<(f64, f64)> {
     let size = (sum / count).sqrt().max(ROUNDING * prior.scale);
     let nodes = Mixture::half_t_over(prior, SPACING, [size.min(prior.scale), size.max(prior.scale)]);
     let log = |(sd, weight): (&f64, &f64)| weight - count * libm::log(*sd) - 0.5 * sum / (sd * sd);
-    let terms: Vec<f64> = nodes.nodes.iter().zip(&nodes.log_weights).map(log).collect();
-    let total = log_sum_exp(&terms);
-    nodes.nodes.iter().copied().zip(terms.iter().map(|term| libm::exp(term - total))).collect()
+    nodes.nodes.iter().zip(&nodes.log_weights).map(|node| (*node.0, log(node))).collect()
 }
 
 #[cfg(test)]
@@ -129,9 +118,9 @@ mod tests {
         }
     }
 
-    /// Far above its scale the prior falls with the fourth power. Two thirds, and nine tenths, of the levels of a new session
-    /// are within the tabulated quantiles of Student's t
-    /// distribution with three degrees of freedom more than differences.
+    /// Far above its scale the prior falls with the fourth power, so that two thirds and nine tenths of the levels of a new
+    /// session are within the tabulated quantiles of Student's t distribution with three degrees of freedom more than
+    /// differences.
     #[test]
     fn the_step_of_a_new_session_has_the_t_distribution_of_few_steps() {
         let mut random = Random::new(8);
@@ -149,7 +138,7 @@ mod tests {
         }
     }
 
-    /// A step far below the scale of the prior tells that steps are small, but not that all are as small.
+    /// After one step far below the scale of the prior most steps are small, but larger ones remain probable.
     #[test]
     fn one_small_step_does_not_exclude_larger_ones() {
         let prior = HalfT { scale: 1.0, degrees: DEGREES };

@@ -10,8 +10,8 @@ use crate::evidence::component_gain;
 use crate::fit::Fit;
 use crate::leave_out::Linearised;
 use crate::problem::Problem;
-use crate::quadrature::log_sum_exp;
 use crate::random::Random;
+use crate::sd_posterior::SdPosterior;
 use crate::session_view::SessionView;
 
 /// Readings of a simulated session, at most: as many as possible at equal distances. Those of a longer one scatter less about
@@ -38,8 +38,7 @@ pub(crate) struct SimulatedSessions<'a> {
 struct Redrawn {
     effect: usize,
     levels: usize,
-    /// Standard deviations, with the sum of the probabilities up to each.
-    standard_deviations: Vec<(f64, f64)>,
+    sd: SdPosterior,
     /// Change of each simulated row per unit of its level.
     channel: Vec<f64>,
 }
@@ -62,17 +61,11 @@ impl<'a> SimulatedSessions<'a> {
         for (i, effect) in problem.space.random_effects.iter().enumerate().filter(|(_, e)| e.is_redrawn) {
             let gain = component_gain(&linearised.design, &linearised.point, Component::Random(i));
             let terms = gain.map_or_else(Vec::new, |(_, gain)| gain.fine_terms(effect.predictive_prior()));
-            let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
-            let mut sum = 0.0;
-            let up_to = terms.into_iter().map(|(sd, term)| {
-                sum += libm::exp(term - total);
-                (sd, sum)
-            });
             let channel = linearised.design.sensitivity(&problem.space, Component::Random(i));
             redrawn.push(Redrawn {
                 effect: i,
                 levels: effect.levels,
-                standard_deviations: up_to.collect(),
+                sd: SdPosterior::new(terms),
                 channel: rows.iter().map(|row| channel[*row]).collect(),
             });
         }
@@ -148,9 +141,7 @@ impl<'a> SimulatedSessions<'a> {
     /// Adds new levels of the random effects that a new session draws again, with standard deviations from their posterior.
     fn add_new_levels(&self, random: &mut Random, errors: &mut DVector<f64>) {
         for redrawn in &self.redrawn {
-            let share = random.uniform();
-            let drawn = redrawn.standard_deviations.iter().find(|(_, up_to)| share < *up_to);
-            let Some((sd, _)) = drawn.or(redrawn.standard_deviations.last()) else { continue };
+            let Some(sd) = redrawn.sd.draw(random) else { continue };
             let values: Vec<f64> = (0..redrawn.levels).map(|_| sd * random.normal()).collect();
             let level_of = &self.problem.rows.levels[redrawn.effect];
             for (place, row) in self.rows.iter().enumerate() {
@@ -162,6 +153,7 @@ impl<'a> SimulatedSessions<'a> {
 
 /// Returns the design of some rows in a new session, without structure, mounts and drifts: their uncertainty is in the errors of
 /// series that are left out, or a new session draws them again.
+///
 /// Levels of specimens and of sessions are known from the same readings as the constants, with which they are correlated: their
 /// sum is certain where neither is.
 fn new_session(problem: &Problem, fit: &Fit, design: &Design, rows: &[usize]) -> DMatrix<f64> {

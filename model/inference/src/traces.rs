@@ -7,10 +7,8 @@ use nalgebra::{DMatrix, DVector};
 use crate::autoregression::Process;
 use crate::covariance::Noise;
 use crate::marginal::{Marginal, Solution};
+use crate::series_rows::SPARSE;
 use crate::white_design::WhiteDesign;
-
-/// Coefficients per entry of a column above which sums over its entries are faster than over all coefficients.
-const SPARSE: usize = 2;
 
 /// Sums `x'C x / 2` of columns `x` with the covariance `C` of the coefficients, for each scale.
 pub(crate) struct Explained<'a> {
@@ -84,7 +82,7 @@ impl RepetitionTrace {
         let diagonal = roots
             .flat_map(|((root, range), estimated)| {
                 let (repetition, shared) = root.precision();
-                // `E^-1` is that of `V'` and of the variance that is not estimated.
+                // `E` is `V'` plus the variance that is not estimated: of steps of the load cell and of excluded rows.
                 let independent = noise.independent_variances(range);
                 let mut diagonal = estimated.diagonal_of_inverse(&repetition, &independent);
                 for column in shared {

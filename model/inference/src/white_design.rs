@@ -138,10 +138,19 @@ impl WhiteDesign {
 
     /// Returns the columns that may not be zero in a series.
     pub(crate) fn columns_in(&self, series: usize) -> Vec<usize> {
+        self.columns_of(&self.entries_in(series))
+    }
+
+    /// Returns the entries of each component that is constant within a series.
+    fn entries_in(&self, series: usize) -> Vec<Vec<(usize, f64)>> {
+        self.of_series.iter().map(|of| of.by_series.entries(series)).collect()
+    }
+
+    /// Returns the columns that vary within a series, and those of these entries.
+    fn columns_of(&self, entries: &[Vec<(usize, f64)>]) -> Vec<usize> {
         let mut columns = self.own.0.clone();
-        for of in &self.of_series {
-            let entries = of.by_series.entries(series).into_iter();
-            columns.extend(entries.map(|(column, _)| of.columns.start + column));
+        for (of, entries) in self.of_series.iter().zip(entries) {
+            columns.extend(entries.iter().map(|(column, _)| of.columns.start + column));
         }
         columns
     }
@@ -154,9 +163,8 @@ impl WhiteDesign {
     ) -> (Vec<usize>, DMatrix<f64>) {
         let range = &self.ranges[series];
         let (indices, own) = &self.own;
-        let entries: Vec<Vec<(usize, f64)>> =
-            self.of_series.iter().map(|of| of.by_series.entries(series)).collect();
-        let rows = self.columns_in(series);
+        let entries = self.entries_in(series);
+        let rows = self.columns_of(&entries);
         let mut product = DMatrix::zeros(rows.len(), white.ncols());
         for (j, column) in white.column_iter().enumerate() {
             for i in 0..indices.len() {

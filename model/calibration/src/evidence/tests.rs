@@ -208,7 +208,7 @@ fn a_half_load_that_differs_is_a_change_of_it() {
             assert_eq!(change.layout, only_in.map(|one| frame.conditions[one].layout()));
             let ratio = change.factors["1"] / change.factors["0"];
             assert!((ratio - 0.85).abs() < 0.03, "{by}: {:?}", change.factors);
-            // The term of the model file stands for the kernel.
+            // The term of the model file is the function of the kernel.
             let text = ModelFile::new(&calibration.augmented).to_text().unwrap();
             let file = ModelFile::parse(&text, "model.toml").unwrap();
             let (predicted_n, _) = file.predict(&rows, Session::Fitted, "model.toml").unwrap();

@@ -12,7 +12,7 @@ use crate::outliers::Outliers;
 use crate::problem::Problem;
 use crate::quadrature::log_sum_exp;
 use crate::random::Random;
-use crate::session_view::{SessionView, new_level_variance, session_variance};
+use crate::session_view::{SessionView, new_level_variance, session_variance, step_variance};
 use crate::simulated_sessions::SimulatedSessions;
 
 /// Most hypotheses that are averaged.
@@ -72,18 +72,17 @@ pub(crate) fn expected_error(
         .collect();
     let simulated = SimulatedSessions::new(problem, fit, linearised, &sound);
     let added = new_level_variance(problem, fit, linearised, &sound) + session_variance(&views, &sound);
-    let relative_squares = simulated.relative_squares(&mut random, &views[0].1, SIMULATIONS);
-    let mut errors: Vec<f64> = relative_squares
+    let sessions = simulated.squares(&mut random, &views, SIMULATIONS);
+    let mut errors: Vec<f64> = sessions
         .iter()
-        .map(|relative| {
+        .map(|session| {
             let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
-            let square = mean_square(drawn) + added;
-            (square * relative).sqrt()
+            session.at(mean_square(drawn) + added).sqrt()
         })
         .collect();
     errors.sort_by(f64::total_cmp);
     let quantile = |share: usize| errors[(share * (SIMULATIONS - 1)) / 100];
-    let value = (mean_square(squares.iter().copied()) + added).sqrt();
+    let value = (mean_square(squares.iter().copied()) + added + step_variance(&views, &sound)).sqrt();
     Some(ExpectedError { value, interval: [quantile(5), quantile(95)] })
 }
 

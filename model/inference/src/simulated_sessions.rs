@@ -34,6 +34,33 @@ pub(crate) struct SimulatedSessions<'a> {
     redrawn: Vec<Redrawn>,
 }
 
+/// Mean squares of a simulated session.
+pub(crate) struct SimulatedSquare {
+    /// Of errors without steps between sessions, over their expected value.
+    errors: f64,
+    /// Mean product of the same errors with the steps, over the root of that value.
+    products: f64,
+    /// Of the steps.
+    steps: f64,
+}
+
+impl SimulatedSquare {
+    /// Returns the mean square of the errors where that without steps is expected to be `square`.
+    pub(crate) fn at(&self, square: f64) -> f64 {
+        (square * self.errors + 2.0 * square.sqrt() * self.products + self.steps).max(0.0)
+    }
+}
+
+/// Returns the first view up to which the probabilities sum to more than `share`.
+fn drawn_view(views: &[(f64, SessionView)], share: f64) -> Option<&SessionView> {
+    let mut up_to = 0.0;
+    let drawn = views.iter().find(|(probability, _)| {
+        up_to += probability;
+        share < up_to
+    });
+    drawn.or(views.last()).map(|(_, view)| view)
+}
+
 /// A random effect whose levels a new session draws again.
 struct Redrawn {
     effect: usize,
@@ -79,22 +106,18 @@ impl<'a> SimulatedSessions<'a> {
         Self { problem, fit, linearised, rows, series, sessions, matrix, redrawn }
     }
 
-    /// Returns the mean squares of this many sessions, divided by their expected value. Each has the rows of one of the fitted
-    /// sessions, since a mean square of fewer series scatters more. The levels of a session differ from the
-    /// expected ones by the steps of `view`. The expected value uses the mean square of the steps so far.
-    pub(crate) fn relative_squares(
+    /// Simulates this many sessions. Each has the rows of one of the fitted sessions, since a mean square of fewer series scatters
+    /// more, and differs from its expected levels by the steps of one of the `views`, by their probability.
+    pub(crate) fn squares(
         &self,
         random: &mut Random,
-        view: &SessionView,
+        views: &[(f64, SessionView)],
         simulations: usize,
-    ) -> Vec<f64> {
-        let count = self.rows.len().max(1) as f64;
-        let mean_square = |errors: &DVector<f64>, places: &[usize]| {
-            places.iter().map(|place| errors[*place].powi(2)).sum::<f64>() / places.len().max(1) as f64
-        };
+    ) -> Vec<SimulatedSquare> {
+        let total: f64 = views.iter().map(|(p, _)| p).sum();
+        let has_steps = views.iter().any(|(_, view)| !view.steps.is_empty());
         let all: Vec<usize> = (0..self.rows.len()).collect();
-        let mut without_steps = 0.0;
-        let squares: Vec<f64> = (0..simulations)
+        let mut squares: Vec<SimulatedSquare> = (0..simulations)
             .map(|_| {
                 let mut errors = self.session(random);
                 self.add_new_levels(random, &mut errors);
@@ -102,17 +125,35 @@ impl<'a> SimulatedSessions<'a> {
                     [] | [_] => &all,
                     sessions => &sessions[random.index(sessions.len())],
                 };
-                without_steps += mean_square(&errors, places) / simulations as f64;
-                for steps in &view.steps {
-                    let step = steps.draw(random);
-                    errors.iter_mut().zip(&self.rows).for_each(|(e, row)| *e += step * steps.channel[*row]);
+                let view = if has_steps { drawn_view(views, random.uniform() * total) } else { None };
+                let steps = self.steps(random, view);
+                let mean = |value: &dyn Fn(usize) -> f64| {
+                    places.iter().map(|place| value(*place)).sum::<f64>() / places.len().max(1) as f64
+                };
+                SimulatedSquare {
+                    errors: mean(&|place| errors[place].powi(2)),
+                    products: mean(&|place| errors[place] * steps[place]),
+                    steps: mean(&|place| steps[place].powi(2)),
                 }
-                mean_square(&errors, places)
             })
             .collect();
-        let of_steps = self.rows.iter().map(|row| view.step_square(*row)).sum::<f64>() / count;
-        let expected = (without_steps + of_steps).max(f64::MIN_POSITIVE);
-        squares.iter().map(|square| square / expected).collect()
+        let sum: f64 = squares.iter().map(|square| square.errors).sum();
+        let expected = (sum / simulations.max(1) as f64).max(f64::MIN_POSITIVE);
+        for square in &mut squares {
+            square.errors /= expected;
+            square.products /= expected.sqrt();
+        }
+        squares
+    }
+
+    /// Draws the steps of a session at each simulated row.
+    fn steps(&self, random: &mut Random, view: Option<&SessionView>) -> Vec<f64> {
+        let mut steps = vec![0.0; self.rows.len()];
+        for of_kernel in view.map_or(&[][..], |view| &view.steps) {
+            let step = of_kernel.draw(random);
+            steps.iter_mut().zip(&self.rows).for_each(|(sum, row)| *sum += step * of_kernel.channel[*row]);
+        }
+        steps
     }
 
     /// Returns errors of a session: the uncertainty of its expected readings, and noise.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -269,7 +270,7 @@ impl Builder {
         }
         if let Some(by_series) = by_series.filter(|rows| rows.ncols() > 0) {
             let sensitivity = DVector::from_vec(sensitivity);
-            let by_series = by_series.into();
+            let by_series = Arc::new(by_series.into());
             self.of_series.push(SeriesColumns { columns: first..self.roles.len(), sensitivity, by_series });
         }
     }

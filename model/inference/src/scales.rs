@@ -12,7 +12,7 @@ use crate::design::{Component, Design, Mode};
 use crate::marginal::{Marginal, Solution};
 use crate::noise::{AUTOREGRESSIONS, SCALES, Scales};
 use crate::problem::Problem;
-use crate::traces::{Explained, RepetitionTrace};
+use crate::traces::{Explained, diagonal_of_repetition};
 
 /// Information that is added to each scale, so that a step is finite where the data have none.
 const DAMPING: f64 = 0.05;
@@ -177,8 +177,7 @@ impl ScaleProblem<'_> {
         let noise = self.noise(&point.scales);
         let (marginal, solution) = (&point.marginal, &point.solution);
         let white_residual = marginal.white_residual(&solution.mean);
-        let repetition = RepetitionTrace::new(&noise, marginal);
-        let mut growth = vec![vec![0.0; self.problem.len()]; SCALES];
+        let repetition = diagonal_of_repetition(&noise, marginal, &solution.covariance);
         // Of `A'V^-1 F` with the factors `F` of each series.
         let mut explained = Explained::new(solution);
         for (series, (range, root)) in
@@ -199,16 +198,14 @@ impl ScaleProblem<'_> {
                         let (rows, of_series) = marginal.white_design.transposed_times_in(series, &factor);
                         explained.add(scale, &rows, &of_series, &mut gradient);
                     }
-                    Derivative::Repetition { growth: of_series, .. } => {
-                        growth[scale][range.clone()].copy_from_slice(&of_series);
+                    Derivative::Repetition { growth, .. } => {
+                        let of_rows = growth.iter().zip(&repetition.as_slice()[range.clone()]);
+                        gradient[scale] -= of_rows.map(|(growth, x)| growth * x).sum::<f64>();
                     }
                 }
             }
         }
         explained.finish(&mut gradient);
-        for scale in (0..SCALES).filter(|scale| growth[*scale].iter().any(|g| *g != 0.0)) {
-            gradient[scale] -= repetition.with(&growth[scale], &solution.covariance);
-        }
         for (i, (component, log)) in point.log_sd.iter().enumerate() {
             let columns = self.design.columns_of(*component);
             let precision = libm::exp(-2.0 * log);

@@ -350,7 +350,9 @@ impl<'a> Search<'a> {
             let Some(reduced) = self.fit(&reduced, Start::at(fit, None)) else { return };
             start = reduced.clone();
         }
-        let others: Vec<&Addition> = exchanges.iter().filter(|e| e.element != element).collect();
+        let mut others: Vec<&Addition> = exchanges.iter().filter(|e| e.element != element).collect();
+        // Forms that the readings do not distinguish, such as intervals that differ by series without pins, gain the same.
+        others.dedup_by(|a, b| a.element.member == b.element.member && a.gain.total_cmp(&b.gain).is_eq());
         let Some(top) = others.first().map(|a| a.score) else { return };
         let least = worth - self.selectivity.loss;
         for exchange in others.into_iter().take(EXCHANGES) {
@@ -381,8 +383,11 @@ impl<'a> Search<'a> {
                 self.fit_again(&reduced, &best, false);
                 let known = self.fits.get(&reduced);
                 let is_far = known.is_none_or(|fit| fit.score < best.score - self.options.window);
-                if self.selectivity.is_thorough && is_far {
-                    self.fit_again(&reduced, &best, true);
+                if self.selectivity.is_thorough
+                    && is_far
+                    && let Some(known) = known.cloned()
+                {
+                    self.polish_one(&known);
                 }
             }
         }

@@ -29,8 +29,10 @@ pub(crate) struct SimulatedSessions<'a> {
     series: Vec<Range<usize>>,
     /// Places of the rows of each session among them.
     sessions: Vec<Vec<usize>>,
-    /// The design of a new session.
+    /// The columns of the design of a new session that are drawn.
     matrix: DMatrix<f64>,
+    /// `R` with `R'R` equal to the covariance of their coefficients.
+    root: DMatrix<f64>,
     redrawn: Vec<Redrawn>,
 }
 
@@ -102,8 +104,9 @@ impl<'a> SimulatedSessions<'a> {
             sessions.entry(problem.rows.sessions[*row]).or_default().push(place);
         }
         let sessions = sessions.into_values().collect();
-        let matrix = new_session(problem, fit, &linearised.design, &rows);
-        Self { problem, fit, linearised, rows, series, sessions, matrix, redrawn }
+        let (matrix, drawn) = new_session(problem, fit, &linearised.design, &rows);
+        let root = linearised.point.solution.root.select_columns(&drawn);
+        Self { problem, fit, linearised, rows, series, sessions, matrix, root, redrawn }
     }
 
     /// Simulates this many sessions. Each has the rows of one of the fitted sessions, since a mean square of fewer series scatters
@@ -158,9 +161,9 @@ impl<'a> SimulatedSessions<'a> {
 
     /// Returns errors of a session: the uncertainty of its expected readings, and noise.
     fn session(&self, random: &mut Random) -> DVector<f64> {
-        let (problem, solution) = (self.problem, &self.linearised.point.solution);
-        let normal = DVector::from_fn(solution.root.nrows(), |_, _| random.normal());
-        let mut errors = &self.matrix * solution.root.tr_mul(&normal);
+        let problem = self.problem;
+        let normal = DVector::from_fn(self.root.nrows(), |_, _| random.normal());
+        let mut errors = &self.matrix * self.root.tr_mul(&normal);
         let [sigma, growth, direction, series, scale, by_load] = self.fit.scales().values();
         let friction = &self.linearised.design.channels[problem.space.series_scale_channel];
         for places in &self.series {
@@ -192,33 +195,34 @@ impl<'a> SimulatedSessions<'a> {
     }
 }
 
-/// Returns the design of some rows in a new session, without structure, mounts and drifts: their uncertainty is in the errors of
-/// series that are left out, or a new session draws them again.
+/// Returns the design of some rows in a new session, and the columns that it has: without structure, mounts and drifts, whose
+/// uncertainty is in the errors of series that are left out, or which a new session draws again.
 ///
 /// Levels of specimens and of sessions are known from the same readings as the constants, with which they are correlated: their
 /// sum is certain where neither is.
-fn new_session(problem: &Problem, fit: &Fit, design: &Design, rows: &[usize]) -> DMatrix<f64> {
+fn new_session(problem: &Problem, fit: &Fit, design: &Design, rows: &[usize]) -> (DMatrix<f64>, Vec<usize>) {
     let space = &problem.space;
-    let mut matrix = design.matrix.select_rows(rows);
-    for (column, role) in design.roles.iter().enumerate() {
-        let is_drawn = match role {
-            Role::Constant(_) | Role::Size(_) | Role::Shape(..) => true,
-            Role::Discrepancy(_) => false,
-            Role::Variance(Component::Random(i)) => !space.random_effects[*i].is_redrawn,
-            Role::Variance(Component::Kernel(i)) => space.kernels[*i].is_of_specimens,
-        };
-        if !is_drawn {
-            matrix.column_mut(column).fill(0.0);
+    let forms: BTreeMap<usize, usize> = fit.hypothesis.kernels().collect();
+    let session_levels = |kernel: usize| space.kernels[kernel].session_levels.get(*forms.get(&kernel)?);
+    let is_drawn = |role: &Role| match role {
+        Role::Constant(_) | Role::Size(_) | Role::Shape(..) => true,
+        Role::Discrepancy(_) => false,
+        Role::Variance(Component::Random(i)) => !space.random_effects[*i].is_redrawn,
+        Role::Variance(Component::Kernel(i)) => {
+            space.kernels[*i].is_of_specimens || session_levels(*i).is_some()
         }
-    }
-    for (kernel, form) in fit.hypothesis.kernels() {
-        let Some(levels) = space.kernels[kernel].session_levels.get(form) else { continue };
-        let component = Component::Kernel(kernel);
+    };
+    let drawn: Vec<usize> = (0..design.roles.len()).filter(|i| is_drawn(&design.roles[*i])).collect();
+    let mut matrix = design.matrix.select_columns(&drawn).select_rows(rows);
+    for (kernel, form) in &forms {
+        let Some(levels) = session_levels(*kernel) else { continue };
+        let component = Component::Kernel(*kernel);
         let channel = design.sensitivity(space, component);
-        let expected = levels.expected_row(&problem.rows.bases[kernel][form]);
+        let expected = levels.expected_row(&problem.rows.bases[*kernel][*form]);
         for (column, value) in design.columns_of(component).into_iter().zip(expected) {
+            let column = drawn.partition_point(|drawn| *drawn < column);
             rows.iter().enumerate().for_each(|(i, row)| matrix[(i, column)] = channel[*row] * value);
         }
     }
-    matrix
+    (matrix, drawn)
 }

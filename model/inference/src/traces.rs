@@ -8,7 +8,6 @@ use crate::autoregression::Process;
 use crate::covariance::Noise;
 use crate::marginal::{Marginal, Solution};
 use crate::series_rows::SPARSE;
-use crate::white_design::WhiteDesign;
 
 /// Sums `x'C x / 2` of columns `x` with the covariance `C` of the coefficients, for each scale.
 pub(crate) struct Explained<'a> {
@@ -56,55 +55,37 @@ impl<'a> Explained<'a> {
     }
 }
 
-/// Traces `tr(G V' P)`, with the covariance `V' = D + A` of the estimated repetition noise and the precision `P` of the readings,
-/// the coefficients with the covariance `C` integrated. `P = V^-1 - B C B'` with `B = V^-1 A`, so that such a trace is a weighted
-/// sum of the diagonal of `V' V^-1`, less `tr(C B'G V'B)`.
-pub(crate) struct RepetitionTrace {
-    /// Diagonal of `V' V^-1`.
-    diagonal: Vec<f64>,
-    /// `B`.
-    precise: WhiteDesign,
-    /// `V' B`.
-    of_noise: WhiteDesign,
-}
-
-impl RepetitionTrace {
-    pub(crate) fn new(noise: &Noise<'_>, marginal: &Marginal) -> Self {
-        let whitening = &marginal.whitening;
-        let precise = marginal.white_design.mapped(|column| whitening.whiten_transposed_mut(column));
-        let estimated: Vec<EstimatedNoise> =
-            whitening.ranges.iter().map(|range| EstimatedNoise::new(noise, range)).collect();
-        let of_noise = precise.mapped(|column| {
-            let parts = whitening.ranges.iter().zip(&estimated);
-            parts.for_each(|(range, noise)| noise.apply(&mut column[range.clone()]));
-        });
-        let roots = whitening.roots.iter().zip(&whitening.ranges).zip(&estimated);
-        let diagonal = roots
-            .flat_map(|((root, range), estimated)| {
-                let (repetition, shared) = root.precision();
-                // `E` is `V'` plus the variance that is not estimated: of steps of the load cell and of excluded rows.
-                let independent = noise.independent_variances(range);
-                let mut diagonal = estimated.diagonal_of_inverse(&repetition, &independent);
-                for column in shared {
-                    let mut product = column.clone();
-                    estimated.apply(&mut product);
-                    diagonal
-                        .iter_mut()
-                        .zip(product.iter().zip(&column))
-                        .for_each(|(sum, (a, x))| *sum -= a * x);
-                }
-                diagonal
-            })
-            .collect();
-        Self { diagonal, precise, of_noise }
+/// Diagonal of `V' P`, with the covariance `V' = D + A` of the estimated repetition noise and the precision `P` of the readings, the
+/// coefficients with the covariance `C` integrated: `P = V^-1 - B C B'` with `B = V^-1 A`. The trace `tr(G V' P)` is a sum of it,
+/// weighted by the diagonal `G`.
+pub(crate) fn diagonal_of_repetition(
+    noise: &Noise<'_>,
+    marginal: &Marginal,
+    covariance: &DMatrix<f64>,
+) -> DVector<f64> {
+    let whitening = &marginal.whitening;
+    let precise = marginal.white_design.mapped(|column| whitening.whiten_transposed_mut(column));
+    let estimated: Vec<EstimatedNoise> =
+        whitening.ranges.iter().map(|range| EstimatedNoise::new(noise, range)).collect();
+    let of_noise = precise.mapped(|column| {
+        let parts = whitening.ranges.iter().zip(&estimated);
+        parts.for_each(|(range, noise)| noise.apply(&mut column[range.clone()]));
+    });
+    let mut diagonal = -of_noise.products_by_row(&precise, covariance);
+    for ((root, range), estimated) in whitening.roots.iter().zip(&whitening.ranges).zip(&estimated) {
+        let (repetition, shared) = root.precision();
+        // `E` is `V'` plus the variance that is not estimated: of steps of the load cell and of excluded rows.
+        let independent = noise.independent_variances(range);
+        let of_series = &mut diagonal.as_mut_slice()[range.clone()];
+        let of_inverse = estimated.diagonal_of_inverse(&repetition, &independent);
+        of_series.iter_mut().zip(of_inverse).for_each(|(sum, x)| *sum += x);
+        for column in shared {
+            let mut product = column.clone();
+            estimated.apply(&mut product);
+            of_series.iter_mut().zip(product.iter().zip(&column)).for_each(|(sum, (a, x))| *sum -= a * x);
+        }
     }
-
-    /// Returns the trace for a diagonal `G`.
-    pub(crate) fn with(&self, growth: &[f64], covariance: &DMatrix<f64>) -> f64 {
-        let of_rows: f64 = growth.iter().zip(&self.diagonal).map(|(g, d)| g * d).sum();
-        let grown = self.of_noise.mapped(|column| column.iter_mut().zip(growth).for_each(|(x, g)| *x *= g));
-        of_rows - self.precise.product(&grown).dot(covariance)
-    }
+    diagonal
 }
 
 /// Estimated repetition noise of a series: `V' = D + A`.

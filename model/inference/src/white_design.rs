@@ -5,11 +5,15 @@
 //! column and sums over the series, however many columns the component has.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::series_rows::SeriesRows;
 use crate::whitening::Whitening;
+
+/// Columns up to which a product takes one column after the other.
+const FEW_COLUMNS: usize = 5;
 
 /// Columns of a component that are constant within each series, times the sensitivity to its channel.
 #[derive(Clone, Debug)]
@@ -19,7 +23,7 @@ pub(crate) struct SeriesColumns {
     /// Sensitivity of each row.
     pub(crate) sensitivity: DVector<f64>,
     /// One row per series, one column per column.
-    pub(crate) by_series: SeriesRows,
+    pub(crate) by_series: Arc<SeriesRows>,
 }
 
 /// `W A`, with `W V W' = I`.
@@ -37,10 +41,12 @@ impl WhiteDesign {
     pub(crate) fn new(matrix: &DMatrix<f64>, of_series: &[SeriesColumns], whitening: &Whitening) -> Self {
         let is_own = |column: &usize| !of_series.iter().any(|of| of.columns.contains(column));
         let own: Vec<usize> = (0..matrix.ncols()).filter(is_own).collect();
-        let white_own = whitening.whiten(&matrix.select_columns(&own));
+        let mut white_own = matrix.select_columns(&own);
+        whitening.whiten_mut(white_own.as_mut_slice());
         let white = |of: &SeriesColumns| SeriesColumns {
+            columns: of.columns.clone(),
             sensitivity: whitening.whiten_vector(&of.sensitivity),
-            ..of.clone()
+            by_series: of.by_series.clone(),
         };
         Self {
             own: (own, white_own),
@@ -107,33 +113,45 @@ impl WhiteDesign {
         mapped
     }
 
-    /// Returns `A'W'X A`, where `right` is the design with `X` in place of `W`.
-    pub(crate) fn product(&self, right: &Self) -> DMatrix<f64> {
-        let mut product = DMatrix::zeros(self.columns, self.columns);
+    /// Returns `a'C b` for each row: its row `a` of `W A`, its row `b` of `X A`, where `right` is the design with `X` in place of
+    /// `W`, and a symmetric matrix `C`.
+    pub(crate) fn products_by_row(&self, right: &Self, matrix: &DMatrix<f64>) -> DVector<f64> {
         let (indices, own) = &self.own;
-        let of_own = own.tr_mul(&right.own.1);
-        for (i, row) in indices.iter().enumerate() {
-            indices.iter().enumerate().for_each(|(j, column)| product[(*row, *column)] = of_own[(i, j)]);
+        let right_own = &right.own.1;
+        let of_own = own * matrix.select_rows(indices).select_columns(indices);
+        let mut products = DVector::zeros(own.nrows());
+        for (of_own, right) in of_own.column_iter().zip(right_own.column_iter()) {
+            products.zip_zip_apply(&of_own, &right, |sum, x, y| *sum += x * y);
         }
         for (of, of_right) in self.of_series.iter().zip(&right.of_series) {
-            let after = of.by_series.transposed_times(&self.products_of_series(&of_right.sensitivity, own));
-            let before =
-                of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, &right.own.1));
-            for (i, row) in indices.iter().enumerate() {
-                for (j, column) in of.columns.clone().enumerate() {
-                    product[(*row, column)] = after[(j, i)];
-                    product[(column, *row)] = before[(j, i)];
+            // `C b` for the coefficients `b` of each series.
+            let of_series = of.by_series.times(&matrix.rows(of.columns.start, of.columns.len()).into_owned());
+            for (series, range) in self.ranges.iter().enumerate() {
+                let (first, length) = (range.start, range.len());
+                let mut sums = products.rows_mut(first, length);
+                let (left_of, right_of) =
+                    (of.sensitivity.rows(first, length), of_right.sensitivity.rows(first, length));
+                for (i, column) in indices.iter().enumerate() {
+                    let factor = of_series[(series, *column)];
+                    let (left, right) = (own.column(i), right_own.column(i));
+                    sums.zip_zip_apply(&left_of, &right.rows(first, length), |sum, x, y| {
+                        *sum += factor * x * y
+                    });
+                    sums.zip_zip_apply(&right_of, &left.rows(first, length), |sum, x, y| {
+                        *sum += factor * x * y
+                    });
+                }
+                for other in &right.of_series {
+                    let entries = other.by_series.entries(series);
+                    let column = |(column, _): &(usize, f64)| other.columns.start + column;
+                    let factor: f64 =
+                        entries.iter().map(|entry| entry.1 * of_series[(series, column(entry))]).sum();
+                    let other = other.sensitivity.rows(first, length);
+                    sums.zip_zip_apply(&left_of, &other, |sum, x, y| *sum += factor * x * y);
                 }
             }
-            for other in &right.of_series {
-                let weights = self.products(&of.sensitivity, &other.sensitivity);
-                let of_both = of.by_series.weighted_product(&weights, &other.by_series);
-                product
-                    .view_mut((of.columns.start, other.columns.start), of_both.shape())
-                    .copy_from(&of_both);
-            }
         }
-        product
+        products
     }
 
     /// Returns the columns that may not be zero in a series.
@@ -210,7 +228,9 @@ impl WhiteDesign {
     pub(crate) fn transposed_times(&self, white: &DMatrix<f64>) -> DMatrix<f64> {
         let (indices, own) = &self.own;
         let mut product = DMatrix::zeros(self.columns, white.ncols());
-        let of_own = own.transpose() * white;
+        // Of few columns, products of columns are faster than to transpose the design.
+        let is_wide = white.ncols() > FEW_COLUMNS;
+        let of_own = if is_wide { own.transpose() * white } else { own.tr_mul(white) };
         indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.row(i)));
         for of in &self.of_series {
             let rows = of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, white));
@@ -268,7 +288,10 @@ mod tests {
         let scaled = |x: &mut [f64]| x.iter_mut().enumerate().for_each(|(i, x)| *x *= (i % 5) as f64);
         let mut scaled_columns = columns.clone();
         scaled_columns.as_mut_slice().chunks_exact_mut(problem.len()).for_each(scaled);
-        is_close(&apart.product(&apart.mapped(scaled)), &columns.tr_mul(&scaled_columns));
+        let matrix = columns.tr_mul(&columns);
+        let by_row = (&columns * &matrix).component_mul(&scaled_columns).column_sum();
+        let found = apart.products_by_row(&apart.mapped(scaled), &matrix);
+        assert!((found - &by_row).amax() < 1e-9 * by_row.amax());
         is_close(&apart.times(&right), &(&columns * &right));
         is_close(&apart.transposed_times(&white), &columns.tr_mul(&white));
         let first = white.column(0).into_owned();

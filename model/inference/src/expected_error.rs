@@ -29,61 +29,88 @@ pub struct ExpectedError {
     pub interval: [f64; 2],
 }
 
-/// Returns the expected error of the average over a window of fits with these probabilities; `None`
-/// if no fit can be linearised.
-pub(crate) fn expected_error(
-    problem: &Problem,
-    window: &[Fit],
-    probabilities: &[f64],
-    outliers: &Outliers,
-    seed: u64,
-) -> Option<ExpectedError> {
-    let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
-    let mut parts = Vec::new();
-    for (fit, probability) in fits {
-        let Some(linearised) = Linearised::new(problem, fit) else { continue };
-        if let Some(left_out) = linearised.leave_series_out() {
-            parts.push((libm::log(*probability), fit, linearised, left_out));
+/// Errors of the average over a window of fits, each series left out.
+pub(crate) struct LeftOutErrors<'a> {
+    problem: &'a Problem,
+    /// The best fit, and what is simulated of it.
+    best: (&'a Fit, Linearised),
+    /// Rows without gross errors.
+    sound: Vec<usize>,
+    /// Sum of the squared errors of each series, and their number.
+    squares: Vec<(f64, f64)>,
+    /// A new session by each fit, with its probability.
+    views: Vec<(f64, SessionView)>,
+    /// Variance of what a new session draws again, without steps between sessions.
+    added: f64,
+}
+
+impl<'a> LeftOutErrors<'a> {
+    /// Leaves out each series; `None` if no fit can be linearised.
+    pub(crate) fn new(
+        problem: &'a Problem,
+        window: &'a [Fit],
+        probabilities: &[f64],
+        outliers: &Outliers,
+    ) -> Option<Self> {
+        let fits = window.iter().zip(probabilities).take(MOST_HYPOTHESES);
+        let mut parts = Vec::new();
+        for (fit, probability) in fits {
+            let Some(linearised) = Linearised::new(problem, fit) else { continue };
+            if let Some(left_out) = linearised.leave_series_out() {
+                parts.push((libm::log(*probability), fit, linearised, left_out));
+            }
         }
-    }
-    let mut residuals = vec![0.0; problem.len()];
-    for (series, range) in problem.ranges.iter().enumerate() {
-        let logs: Vec<f64> = parts.iter().map(|(p, _, _, out)| p - out.log_predictive[series]).collect();
-        let total = log_sum_exp(&logs);
-        for ((_, _, _, out), log) in parts.iter().zip(&logs) {
-            let share = libm::exp(log - total);
-            range.clone().for_each(|row| residuals[row] += share * out.of_new_series[row]);
+        let mut residuals = vec![0.0; problem.len()];
+        for (series, range) in problem.ranges.iter().enumerate() {
+            let logs: Vec<f64> = parts.iter().map(|(p, _, _, out)| p - out.log_predictive[series]).collect();
+            let total = log_sum_exp(&logs);
+            for ((_, _, _, out), log) in parts.iter().zip(&logs) {
+                let share = libm::exp(log - total);
+                range.clone().for_each(|row| residuals[row] += share * out.of_new_series[row]);
+            }
         }
+        // A new session is not expected to have gross errors.
+        let sound: Vec<usize> = (0..problem.len()).filter(|row| !outliers.contains(*row)).collect();
+        let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
+        for row in &sound {
+            let (sum, count) = &mut squares[problem.rows.series[*row]];
+            *sum += residuals[*row].powi(2);
+            *count += 1.0;
+        }
+        squares.retain(|(_, count)| *count > 0.0);
+        let views: Vec<(f64, SessionView)> = parts
+            .iter()
+            .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
+            .collect();
+        let (_, fit, linearised, _) = parts.into_iter().next()?;
+        let added = new_level_variance(problem, fit, &linearised, &sound) + session_variance(&views, &sound);
+        Some(Self { problem, best: (fit, linearised), sound, squares, views, added })
     }
-    let (_, fit, linearised, _) = parts.first()?;
-    // A new session is not expected to have gross errors.
-    let sound: Vec<usize> = (0..problem.len()).filter(|row| !outliers.contains(*row)).collect();
-    let mut squares = vec![(0.0, 0.0); problem.ranges.len()];
-    for row in &sound {
-        let (sum, count) = &mut squares[problem.rows.series[*row]];
-        *sum += residuals[*row].powi(2);
-        *count += 1.0;
+
+    /// Returns the expected error of a new session.
+    pub(crate) fn value(&self) -> f64 {
+        let of_steps = step_variance(&self.views, &self.sound);
+        (mean_square(self.squares.iter().copied()) + self.added + of_steps).sqrt()
     }
-    squares.retain(|(_, count)| *count > 0.0);
-    let mut random = Random::new(seed);
-    let views: Vec<(f64, SessionView)> = parts
-        .iter()
-        .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
-        .collect();
-    let simulated = SimulatedSessions::new(problem, fit, linearised, &sound);
-    let added = new_level_variance(problem, fit, linearised, &sound) + session_variance(&views, &sound);
-    let sessions = simulated.squares(&mut random, &views, SIMULATIONS);
-    let mut errors: Vec<f64> = sessions
-        .iter()
-        .map(|session| {
-            let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
-            session.at(mean_square(drawn) + added).sqrt()
-        })
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    let quantile = |share: usize| errors[(share * (SIMULATIONS - 1)) / 100];
-    let value = (mean_square(squares.iter().copied()) + added + step_variance(&views, &sound)).sqrt();
-    Some(ExpectedError { value, interval: [quantile(5), quantile(95)] })
+
+    /// Returns the expected error with the interval of that of one session, from simulated ones.
+    pub(crate) fn expected_error(&self, seed: u64) -> ExpectedError {
+        let mut random = Random::new(seed);
+        let (fit, linearised) = &self.best;
+        let simulated = SimulatedSessions::new(self.problem, fit, linearised, &self.sound);
+        let sessions = simulated.squares(&mut random, &self.views, SIMULATIONS);
+        let squares = &self.squares;
+        let mut errors: Vec<f64> = sessions
+            .iter()
+            .map(|session| {
+                let drawn = (0..squares.len()).map(|_| squares[random.index(squares.len())]);
+                session.at(mean_square(drawn) + self.added).sqrt()
+            })
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        let quantile = |share: usize| errors[(share * (SIMULATIONS - 1)) / 100];
+        ExpectedError { value: self.value(), interval: [quantile(5), quantile(95)] }
+    }
 }
 
 fn mean_square(series: impl Iterator<Item = (f64, f64)>) -> f64 {

@@ -11,6 +11,7 @@ use crate::hypothesis::{Element, Hypothesis, Member};
 use crate::leave_out::Linearised;
 use crate::noise::{EXCLUDED, LOUD, Scales};
 use crate::problem::{Problem, SizedEffect, Space};
+use crate::quadrature::sum_of_logs;
 use crate::scales::{ScalePoint, ScaleProblem};
 
 /// Degrees of freedom of Student's t distribution of the repetition noise.
@@ -53,6 +54,8 @@ pub struct Fit {
     pub(crate) variances: BTreeMap<Component, f64>,
     /// Constants, sizes, weights and scales at the mode.
     pub(crate) mode: Mode,
+    /// Log posterior of the mode, which its last round increased little.
+    objective: f64,
 }
 
 /// Where a fit starts.
@@ -62,6 +65,8 @@ pub(crate) struct Start<'a> {
     pub(crate) mode: Option<&'a Mode>,
     /// That hypothesis.
     pub(crate) hypothesis: Option<&'a Hypothesis>,
+    /// Log posterior of its mode.
+    pub(crate) objective: Option<f64>,
     /// Whether the fit is the last one of its hypothesis, for which every autoregression is tried.
     pub(crate) is_final: bool,
     /// Size of an added effect, from its first-order score.
@@ -76,6 +81,7 @@ impl<'a> Start<'a> {
         Self {
             mode: Some(&fit.mode),
             hypothesis: Some(&fit.hypothesis),
+            objective: Some(fit.objective),
             is_final: false,
             hint,
             excluded: &[],
@@ -95,7 +101,10 @@ impl Fit {
         };
         let steps = if is_cold { SCALE_STEPS.0 } else { SCALE_STEPS.1 };
         let rounds = free + MOST_FINAL_ROUNDS;
-        let (mut before, mut best, mut without_gain) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 0);
+        // A fit from its own mode may have converged.
+        let known = start.objective.filter(|_| start.hypothesis == Some(hypothesis));
+        let mut before = known.unwrap_or(f64::NEG_INFINITY);
+        let (mut best, mut without_gain) = (before, 0);
         for round in 0..rounds {
             let is_final = round >= free;
             let size_variances = size_variances(&problem.space, hypothesis, &mode, is_final);
@@ -113,8 +122,7 @@ impl Fit {
             let objective = point.log_posterior + log_weight_term(&mode.weights);
             without_gain = if is_final && objective < best + CONVERGED { without_gain + 1 } else { 0 };
             let has_converged = (objective - before).abs() < CONVERGED || without_gain == MOST_WITHOUT_GAIN;
-            let is_last = round + 1 == rounds || (round > free && has_converged);
-            if is_last {
+            if round + 1 == rounds || (is_final && has_converged) {
                 return Some(Self::of_point(hypothesis, &scale_problem, mode.clone(), point));
             }
             before = if is_final { objective } else { f64::NEG_INFINITY };
@@ -138,7 +146,8 @@ impl Fit {
         mode.scales = point.scales;
         mode.log_sd = point.log_sd;
         let score = log_evidence + hypothesis.log_prior_odds(&problem.space);
-        Self { hypothesis: hypothesis.clone(), log_evidence, score, sizes, variances, mode }
+        let objective = point.log_posterior + log_weight_term(&before.weights);
+        Self { hypothesis: hypothesis.clone(), log_evidence, score, sizes, variances, mode, objective }
     }
 
     /// Returns the scales of the noise.
@@ -314,8 +323,8 @@ fn start_mode(problem: &Problem, hypothesis: &Hypothesis, start: Start<'_>) -> M
 /// Returns the logarithm of the mixing density of the weights, relative to weights of 1. With the
 /// weights at their mode the mixture is Student's t distribution.
 fn log_weight_term(weights: &DVector<f64>) -> f64 {
-    let included = weights.iter().filter(|w| **w != EXCLUDED);
-    included.map(|w| DEGREES_OF_FREEDOM / 2.0 * (libm::log(*w) - w + 1.0)).sum()
+    let included = || weights.iter().copied().filter(|w| *w != EXCLUDED);
+    DEGREES_OF_FREEDOM / 2.0 * (sum_of_logs(included()) + included().map(|w| 1.0 - w).sum::<f64>())
 }
 
 /// Returns the weights that maximise the posterior, given the part of each residual that a row

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::design::Component;
-use crate::expected_error::{ExpectedError, expected_error};
+use crate::expected_error::{ExpectedError, LeftOutErrors};
 use crate::fit::{Fit, Start};
 use crate::hypothesis::{Hypothesis, Member};
 use crate::leave_out::Linearised;
@@ -69,8 +69,8 @@ pub struct Posterior {
     pub outliers: Outliers,
     /// Expected error of a new session.
     pub expected_error: Option<ExpectedError>,
-    /// Expected error of the baseline alone.
-    pub baseline_error: Option<ExpectedError>,
+    /// Expected error of the baseline alone, in the unit of the readings.
+    pub baseline_error: Option<f64>,
     /// Number of fits.
     pub fit_count: usize,
 }
@@ -107,13 +107,16 @@ pub fn infer(problem: &Problem, options: SearchOptions, seed: u64) -> Option<Pos
     let candidates = if is_baseline { Vec::new() } else { candidates(problem, best, &reported) };
     let mut outliers = Outliers::new(problem, best);
     outliers.add_gross_errors(problem, best, |member| probability(&window, &probabilities, member));
-    let error_of =
-        |fits: &[Fit], probabilities: &[f64]| expected_error(problem, fits, probabilities, &outliers, seed);
-    let expected_error = error_of(&window, &probabilities);
+    let left_out = LeftOutErrors::new(problem, &window, &probabilities, &outliers);
+    let expected_error = left_out.map(|errors| errors.expected_error(seed));
     window.iter_mut().for_each(|fit| fit.widen_sizes(problem));
     let (fit_count, baseline) = (fits, search.baseline()?);
-    let baseline_error =
-        if is_baseline { expected_error } else { error_of(std::slice::from_ref(&baseline), &[1.0]) };
+    let baseline_error = if is_baseline {
+        expected_error.map(|error| error.value)
+    } else {
+        let left_out = LeftOutErrors::new(problem, std::slice::from_ref(&baseline), &[1.0], &outliers);
+        left_out.map(|errors| errors.value())
+    };
     Some(Posterior {
         window,
         probabilities,

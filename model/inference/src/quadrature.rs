@@ -48,6 +48,19 @@ impl Mixture {
     }
 }
 
+/// Returns the sum of the logarithms of positive numbers, none beyond `1e-70` to `1e70`: of the products of four.
+pub(crate) fn sum_of_logs(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut product) = (0.0, 1.0);
+    for (i, number) in numbers.enumerate() {
+        product *= number;
+        if i % 4 == 3 {
+            sum += libm::log(product);
+            product = 1.0;
+        }
+    }
+    sum + libm::log(product)
+}
+
 /// Returns numbers in geometric progression from `first` to `last`.
 fn geometric(first: f64, last: f64, count: i32) -> Vec<f64> {
     let ratio = libm::log(last / first) / f64::from(count - 1);
@@ -99,6 +112,15 @@ pub(crate) fn log_normal_cdf(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn logarithms_add_up_for_any_count() {
+        for count in 0..10 {
+            let numbers = || (0..count).map(|i| 1e-12 * libm::pow(17.0, f64::from(i)));
+            let sum: f64 = numbers().map(libm::log).sum();
+            assert!((sum_of_logs(numbers()) - sum).abs() < 1e-12 * (1.0 + sum.abs()), "{count}");
+        }
+    }
 
     /// Quantiles of a table of Student's t distribution.
     #[test]

@@ -15,6 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::autoregression::Filter;
 use crate::covariance::Noise;
+use crate::quadrature::sum_of_logs;
 
 /// Root of the precision of all series.
 #[derive(Clone, Debug)]
@@ -142,7 +143,7 @@ impl PrecisionRoot {
                 (Repetition::Autocorrelated(filter), log_determinant)
             }
             None => {
-                let log_determinant = 0.5 * variances.iter().map(|v| libm::log(*v)).sum::<f64>();
+                let log_determinant = 0.5 * sum_of_logs(variances.iter().copied());
                 let inverse = variances.iter().map(|v| 1.0 / v.sqrt()).collect();
                 (Repetition::Independent(inverse), log_determinant)
             }

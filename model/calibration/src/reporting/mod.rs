@@ -92,7 +92,7 @@ pub(crate) fn report(findings: Findings<'_>) -> Option<Report> {
         verdict: verdict(evidence, series_scatter, &mounts).in_view_of(&findings.trials),
         adequate: adequate(&findings),
         promise_n: expected.map(|e| e.value),
-        promise_baseline_n: posterior.baseline_error.filter(|_| is_supported).map(|e| e.value),
+        promise_baseline_n: posterior.baseline_error.filter(|_| is_supported),
         expected_error_n: expected.map(|e| ExpectedErrorReport { value: e.value, ci90: e.interval }),
         least_squares_n: least_squares_n(evidence, rows, &baseline.model),
         noise_floor_n: floor_n(augmented, rows),

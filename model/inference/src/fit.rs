@@ -104,7 +104,7 @@ impl Fit {
         // A fit from its own mode may have converged.
         let known = start.objective.filter(|_| start.hypothesis == Some(hypothesis));
         let mut before = known.unwrap_or(f64::NEG_INFINITY);
-        let (mut best, mut without_gain) = (before, 0);
+        let (mut best, mut without_gain) = (f64::NEG_INFINITY, 0);
         for round in 0..rounds {
             let is_final = round >= free;
             let size_variances = size_variances(&problem.space, hypothesis, &mode, is_final);
@@ -432,6 +432,24 @@ impl Fit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_problem::{full_hypothesis, problem};
+
+    /// A fit that starts at its own mode stays there, and one that starts beside it returns, although its objective is known.
+    #[test]
+    fn a_fit_ends_at_its_mode() {
+        let (problem, hypothesis) = (problem(12, 0.4), full_hypothesis());
+        let fit = Fit::new(&problem, &hypothesis, Start::default()).unwrap();
+        let mut beside = fit.clone();
+        beside.mode.constants.iter_mut().for_each(|constant| *constant += 0.4);
+        beside.mode.scales.log.iter_mut().for_each(|log| *log += 0.7);
+        for start in [&fit, &beside] {
+            let again = Fit::new(&problem, &hypothesis, Start::at(start, None)).unwrap();
+            assert!((again.score - fit.score).abs() < 2.0 * CONVERGED, "{} {}", again.score, fit.score);
+            for (constant, known) in again.constants().iter().zip(fit.constants()) {
+                assert!((constant - known).abs() < 0.02, "{constant} {known}");
+            }
+        }
+    }
 
     /// Two coefficients whose sum is known: where one is held back, the other compensates it.
     #[test]

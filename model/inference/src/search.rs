@@ -150,7 +150,8 @@ impl<'a> Search<'a> {
             self.start_from_usual_effects();
         }
         let mut expanded = BTreeSet::new();
-        // Beyond that number only the best hypothesis is expanded: a search ends with one from which no step leads higher.
+        // Beyond the wide ones only the best hypothesis is expanded: a search ends with one from which no step leads higher, or
+        // after this number.
         while expanded.len() < MOST_EXPANSIONS {
             let Some(best) = self.best_score() else { break };
             let is_wide = expanded.len() < self.options.expansions;

@@ -119,39 +119,32 @@ impl WhiteDesign {
         let (indices, own) = &self.own;
         let right_own = &right.own.1;
         let of_own = own * matrix.select_rows(indices).select_columns(indices);
-        let mut products = DVector::zeros(own.nrows());
-        for (of_own, right) in of_own.column_iter().zip(right_own.column_iter()) {
-            products.zip_zip_apply(&of_own, &right, |sum, x, y| *sum += x * y);
+        let mut products = vec![0.0; own.nrows()];
+        for column in 0..indices.len() {
+            add_products(&mut products, 1.0, column_of(&of_own, column), column_of(right_own, column));
         }
         for (of, of_right) in self.of_series.iter().zip(&right.of_series) {
             // `C b` for the coefficients `b` of each series.
             let of_series = of.by_series.times(&matrix.rows(of.columns.start, of.columns.len()).into_owned());
             for (series, range) in self.ranges.iter().enumerate() {
-                let (first, length) = (range.start, range.len());
-                let mut sums = products.rows_mut(first, length);
-                let (left_of, right_of) =
-                    (of.sensitivity.rows(first, length), of_right.sensitivity.rows(first, length));
+                let sums = &mut products[range.clone()];
+                let left_of = &of.sensitivity.as_slice()[range.clone()];
+                let right_of = &of_right.sensitivity.as_slice()[range.clone()];
                 for (i, column) in indices.iter().enumerate() {
                     let factor = of_series[(series, *column)];
-                    let (left, right) = (own.column(i), right_own.column(i));
-                    sums.zip_zip_apply(&left_of, &right.rows(first, length), |sum, x, y| {
-                        *sum += factor * x * y
-                    });
-                    sums.zip_zip_apply(&right_of, &left.rows(first, length), |sum, x, y| {
-                        *sum += factor * x * y
-                    });
+                    add_products(sums, factor, left_of, &column_of(right_own, i)[range.clone()]);
+                    add_products(sums, factor, right_of, &column_of(own, i)[range.clone()]);
                 }
                 for other in &right.of_series {
-                    let entries = other.by_series.entries(series);
-                    let column = |(column, _): &(usize, f64)| other.columns.start + column;
-                    let factor: f64 =
-                        entries.iter().map(|entry| entry.1 * of_series[(series, column(entry))]).sum();
-                    let other = other.sensitivity.rows(first, length);
-                    sums.zip_zip_apply(&left_of, &other, |sum, x, y| *sum += factor * x * y);
+                    let mut factor = 0.0;
+                    for (column, value) in other.by_series.entries(series) {
+                        factor += value * of_series[(series, other.columns.start + column)];
+                    }
+                    add_products(sums, factor, left_of, &other.sensitivity.as_slice()[range.clone()]);
                 }
             }
         }
-        products
+        DVector::from_vec(products)
     }
 
     /// Returns the columns that may not be zero in a series.
@@ -259,6 +252,18 @@ impl WhiteDesign {
     /// Returns all columns.
     pub(crate) fn columns(&self) -> DMatrix<f64> {
         self.times(&DMatrix::identity(self.columns, self.columns))
+    }
+}
+
+/// Returns the numbers of a column.
+fn column_of(matrix: &DMatrix<f64>, column: usize) -> &[f64] {
+    &matrix.as_slice()[column * matrix.nrows()..(column + 1) * matrix.nrows()]
+}
+
+/// Adds the products of two numbers of each row, times a factor.
+fn add_products(sums: &mut [f64], factor: f64, x: &[f64], y: &[f64]) {
+    for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+        *sum += factor * x * y;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Quantities of a whole session: conditions, reference values, and scaled covariates of rows.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use pinswitch_friction::{Substrate, published};
 use serde::{Deserialize, Serialize};
@@ -342,7 +342,7 @@ impl Frame {
             *through += 1.0;
             last = Some((session, row.load_n));
         }
-        let (mut sessions, mut mounts) = (HashMap::new(), HashMap::new());
+        let (mut sessions, mut mounts) = (BTreeMap::new(), BTreeMap::new());
         for (point, row) in points.iter_mut().zip(rows) {
             point.session = place_of(&mut sessions, row.labels.session.as_str());
             let place = place_of(&mut mounts, row.labels.mount.as_str());
@@ -447,9 +447,9 @@ fn sorted(mut names: Vec<String>) -> Vec<String> {
 }
 
 /// Returns the position of a name among those seen so far, from 1.
-fn place_of<'a>(seen: &mut HashMap<&'a str, usize>, name: &'a str) -> f64 {
-    let next = seen.len() + 1;
-    *seen.entry(name).or_insert(next) as f64
+fn place_of<'a>(seen: &mut BTreeMap<&'a str, f64>, name: &'a str) -> f64 {
+    let next = (seen.len() + 1) as f64;
+    *seen.entry(name).or_insert(next)
 }
 
 /// Interpolates linearly, with constant ends; `x` ascending.

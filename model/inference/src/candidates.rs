@@ -161,8 +161,7 @@ impl<'a> Candidates<'a> {
         let mut first = 0;
         for (element, relevance, count) in std::mem::take(&mut self.waiting) {
             let own = white.columns(first, count);
-            let gram = own.tr_mul(&own);
-            let moment = moment.rows(first, count).into_owned();
+            let (gram, moment) = (own.tr_mul(&own), moment.rows(first, count).into_owned());
             let candidate = Candidate { element, gram, moment, relevance, columns: 0..0 };
             self.is_done(candidate, &cross.columns(first, count).into_owned());
             first += count;

@@ -38,7 +38,7 @@ pub(crate) struct LeftOutErrors<'a> {
     sound: Vec<usize>,
     /// Sum of the squared errors of each series, and their number.
     squares: Vec<(f64, f64)>,
-    /// A new session by each fit, with its probability.
+    /// A new session by each fit, with its probability among them.
     views: Vec<(f64, SessionView)>,
     /// Variance of what a new session draws again, without steps between sessions.
     added: f64,
@@ -78,10 +78,11 @@ impl<'a> LeftOutErrors<'a> {
             *count += 1.0;
         }
         squares.retain(|(_, count)| *count > 0.0);
-        let views: Vec<(f64, SessionView)> = parts
-            .iter()
-            .map(|(p, fit, linearised, _)| (libm::exp(*p), SessionView::new(problem, fit, linearised)))
-            .collect();
+        let total = log_sum_exp(&parts.iter().map(|(p, ..)| *p).collect::<Vec<f64>>());
+        let view = |(p, fit, linearised, _): &(f64, &Fit, Linearised, _)| {
+            (libm::exp(p - total), SessionView::new(problem, fit, linearised))
+        };
+        let views: Vec<(f64, SessionView)> = parts.iter().map(view).collect();
         let (_, fit, linearised, _) = parts.into_iter().next()?;
         let added = new_level_variance(problem, fit, &linearised, &sound) + session_variance(&views, &sound);
         Some(Self { problem, best: (fit, linearised), sound, squares, views, added })

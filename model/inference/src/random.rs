@@ -32,6 +32,22 @@ impl Random {
         index.min(count.saturating_sub(1))
     }
 
+    /// Returns an index by these probabilities; `None` if there are none.
+    pub(crate) fn by_probability(
+        &mut self,
+        probabilities: impl ExactSizeIterator<Item = f64>,
+    ) -> Option<usize> {
+        let last = probabilities.len().checked_sub(1)?;
+        let share = self.uniform();
+        let mut up_to = 0.0;
+        let mut ends = probabilities.map(|probability| {
+            up_to += probability;
+            up_to
+        });
+        // The sum of all may be less than 1 by rounding.
+        Some(ends.position(|end| share < end).unwrap_or(last))
+    }
+
     /// Returns a standard normal number (Box and Muller).
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();

@@ -3,29 +3,22 @@
 use crate::quadrature::log_sum_exp;
 use crate::random::Random;
 
-/// Standard deviations, each with the sum of the posterior probabilities up to it; empty for a component without levels.
+/// Standard deviations with their posterior probabilities; empty for a component without levels.
 pub(crate) struct SdPosterior {
-    up_to: Vec<(f64, f64)>,
+    nodes: Vec<(f64, f64)>,
 }
 
 impl SdPosterior {
     /// Returns the posterior with these standard deviations, each with the logarithm of its probability, up to a constant.
     pub(crate) fn new(terms: Vec<(f64, f64)>) -> Self {
         let total = log_sum_exp(&terms.iter().map(|(_, term)| *term).collect::<Vec<f64>>());
-        let mut sum = 0.0;
-        let up_to = terms.into_iter().map(|(sd, term)| {
-            sum += libm::exp(term - total);
-            (sd, sum)
-        });
-        Self { up_to: up_to.collect() }
+        Self { nodes: terms.into_iter().map(|(sd, term)| (sd, libm::exp(term - total))).collect() }
     }
 
     /// Draws a standard deviation; `None` if there is none.
     pub(crate) fn draw(&self, random: &mut Random) -> Option<f64> {
-        let share = random.uniform();
-        let drawn = self.up_to.iter().find(|(_, up_to)| share < *up_to);
-        // The sum of all probabilities may be less than 1 by rounding.
-        drawn.or(self.up_to.last()).map(|(sd, _)| *sd)
+        let drawn = random.by_probability(self.nodes.iter().map(|(_, probability)| *probability))?;
+        Some(self.nodes[drawn].0)
     }
 }
 

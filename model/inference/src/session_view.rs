@@ -91,10 +91,9 @@ pub(crate) fn step_variance(views: &[(f64, SessionView)], sound: &[usize]) -> f6
     sound.iter().map(of_row).sum::<f64>() / sound.len().max(1) as f64
 }
 
-/// Returns the mean over the hypotheses by their probabilities.
+/// Returns the mean over the hypotheses by their probabilities, which sum to 1.
 fn average(views: &[(f64, SessionView)], value: &dyn Fn(&SessionView) -> f64) -> f64 {
-    let total: f64 = views.iter().map(|(p, _)| p).sum();
-    views.iter().map(|(p, view)| p * value(view)).sum::<f64>() / total
+    views.iter().map(|(p, view)| p * value(view)).sum()
 }
 
 /// Returns the mean square that new levels of the random effects of a fit add, which a new session draws again.

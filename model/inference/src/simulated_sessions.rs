@@ -53,16 +53,6 @@ impl SimulatedSquare {
     }
 }
 
-/// Returns the first view up to which the probabilities sum to more than `share`.
-fn drawn_view(views: &[(f64, SessionView)], share: f64) -> Option<&SessionView> {
-    let mut up_to = 0.0;
-    let drawn = views.iter().find(|(probability, _)| {
-        up_to += probability;
-        share < up_to
-    });
-    drawn.or(views.last()).map(|(_, view)| view)
-}
-
 /// A random effect whose levels a new session draws again.
 struct Redrawn {
     effect: usize,
@@ -117,7 +107,6 @@ impl<'a> SimulatedSessions<'a> {
         views: &[(f64, SessionView)],
         simulations: usize,
     ) -> Vec<SimulatedSquare> {
-        let total: f64 = views.iter().map(|(p, _)| p).sum();
         let has_steps = views.iter().any(|(_, view)| !view.steps.is_empty());
         let all: Vec<usize> = (0..self.rows.len()).collect();
         let mut squares: Vec<SimulatedSquare> = (0..simulations)
@@ -128,8 +117,9 @@ impl<'a> SimulatedSessions<'a> {
                     [] | [_] => &all,
                     sessions => &sessions[random.index(sessions.len())],
                 };
-                let view = if has_steps { drawn_view(views, random.uniform() * total) } else { None };
-                let steps = self.steps(random, view);
+                let probabilities = views.iter().map(|(probability, _)| *probability);
+                let drawn = if has_steps { random.by_probability(probabilities) } else { None };
+                let steps = self.steps(random, drawn.map(|view| &views[view].1));
                 let mean = |value: &dyn Fn(usize) -> f64| {
                     places.iter().map(|place| value(*place)).sum::<f64>() / places.len().max(1) as f64
                 };

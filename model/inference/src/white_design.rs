@@ -12,9 +12,6 @@ use nalgebra::{DMatrix, DVector};
 use crate::series_rows::SeriesRows;
 use crate::whitening::Whitening;
 
-/// Columns up to which a product takes one column after the other.
-const FEW_COLUMNS: usize = 5;
-
 /// Columns of a component that are constant within each series, times the sensitivity to its channel.
 #[derive(Clone, Debug)]
 pub(crate) struct SeriesColumns {
@@ -221,9 +218,7 @@ impl WhiteDesign {
     pub(crate) fn transposed_times(&self, white: &DMatrix<f64>) -> DMatrix<f64> {
         let (indices, own) = &self.own;
         let mut product = DMatrix::zeros(self.columns, white.ncols());
-        // Of few columns, products of columns are faster than to transpose the design.
-        let is_wide = white.ncols() > FEW_COLUMNS;
-        let of_own = if is_wide { own.transpose() * white } else { own.tr_mul(white) };
+        let of_own = own.transpose() * white;
         indices.iter().enumerate().for_each(|(i, row)| product.set_row(*row, &of_own.row(i)));
         for of in &self.of_series {
             let rows = of.by_series.transposed_times(&self.products_of_series(&of.sensitivity, white));

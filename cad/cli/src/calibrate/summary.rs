@@ -91,7 +91,7 @@ fn inconclusive(report: &Report) -> String {
     let is_confirmed = |t: &&TrialReport| t.outcome == TrialOutcome::Confirmed;
     let confirmed: Vec<&str> = report.trials.iter().filter(is_confirmed).map(|t| t.id.as_str()).collect();
     let changed = if report.changes.is_empty() { "" } else { "changed constants, but " };
-    let mut text = format!("inconclusive: {changed}no effect is detected");
+    let mut text = format!("inconclusive: {changed}no effect is established");
     if !confirmed.is_empty() {
         text.push_str(&format!("; {} is confirmed on unseen readings", listed(&confirmed)));
     } else if report.limits.iter().any(|limit| !limit.excluded) {
@@ -163,9 +163,9 @@ fn others(report: &Report) -> String {
     let each: Vec<String> = others.iter().map(|(name, p)| format!("{name} {}", probability(*p))).collect();
     match (report.effects.is_empty(), each.is_empty()) {
         (true, true) => format!(
-            "no effect is detected; none that this table can show has a probability above {NAMED_PROBABILITY}\n"
+            "no effect is established; none that this table can show has a probability above {NAMED_PROBABILITY}\n"
         ),
-        (true, false) => format!("no effect is detected; probabilities: {}\n", listed(&each)),
+        (true, false) => format!("no effect is established; probabilities: {}\n", listed(&each)),
         (false, true) => format!("nothing else that this table can show above {NAMED_PROBABILITY}\n"),
         (false, false) => format!("other probabilities above {NAMED_PROBABILITY}: {}\n", listed(&each)),
     }

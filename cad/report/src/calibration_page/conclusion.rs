@@ -42,7 +42,7 @@ fn friction(report: &Report) -> String {
 /// Returns the reported effects with their probabilities and rivals.
 fn effects(report: &Report) -> String {
     if report.effects.is_empty() {
-        return "<p>No effect is detected.</p>".to_owned();
+        return "<p>No effect is established.</p>".to_owned();
     }
     report.effects.iter().map(effect).collect()
 }
@@ -221,7 +221,7 @@ fn inconclusive(report: &Report) -> String {
         _ => {
             let scatter =
                 report.scatter_in_words().map_or_else(String::new, |words| format!("; {}", escape(&words)));
-            format!("no effect is detected, but effects of consequence are not excluded{scatter}")
+            format!("no effect is established, but effects of consequence are not excluded{scatter}")
         }
     };
     let mut html = format!("<p>Verdict: <b>inconclusive</b>: {reason}. Record more data.</p>");
